@@ -1,0 +1,1 @@
+//! Physics of a row of beads: materials, contact laws, chains, the wave loop, sensors, theory.

@@ -1,0 +1,3 @@
+//! The `hertzchain` program: one file a verb, no logic of its own.
+
+fn main() {}

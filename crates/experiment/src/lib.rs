@@ -1,0 +1,1 @@
+//! The experiment file: TOML with units, presets and readings; it becomes chains and shots.

@@ -1,0 +1,1 @@
+//! Shots, sweeps, the paper's claims and their reproduction.
