@@ -1,1 +1,20 @@
-//! Physics of a row of beads: materials, contact laws, chains, the wave loop, sensors, theory.
+//! Physics of a row of beads: materials, contact laws, chains, the wave loop,
+//! sensors on a chain, theory.
+//!
+//! This crate has no files, no clock, no randomness and no threads: the same
+//! input gives the same bits. Symbols and conventions are those of
+//! `docs/conventions.md`: body 0 is the striker, beads are 1..=N, contact `c`
+//! sits between bodies `c` and `c + 1`, contact N between bead N and the far
+//! end; positions and velocities point from the striker to the wall.
+
+pub mod chain;
+pub mod laws;
+pub mod material;
+pub mod motion;
+pub mod sensor;
+pub mod theory;
+
+pub use chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension};
+pub use material::{Material, Pair};
+pub use motion::Motion;
+pub use sensor::Sensor;

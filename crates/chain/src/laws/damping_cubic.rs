@@ -1,0 +1,41 @@
+use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
+use crate::material::Pair;
+
+/// Cubic in the overlap rate [Labbe]: F = B δ̇³ while in contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DampingCubic {
+    /// B in kg s/m².
+    pub coefficient_kg_s_m2: f64,
+}
+
+impl Term<1> for DampingCubic {
+    const INFO: LawInfo = LawInfo {
+        name: "damping_cubic",
+        equation: "F = B δ̇³",
+        parameters: &[Parameter {
+            name: "coefficient",
+            unit: "kg s/m^2",
+            meaning: "coefficient B",
+            source: Source::Required,
+            least: 0.0,
+        }],
+        validity: "phenomenological, fitted between 0.075 and 1.23 m/s; acts at once when a contact closes",
+        reference: "Labbe",
+        nature: Nature::Dissipative,
+        gated: true,
+    };
+
+    fn new(values: &[Option<f64>]) -> Self {
+        Self {
+            coefficient_kg_s_m2: values[0].unwrap_or(f64::NAN),
+        }
+    }
+
+    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {
+        Ok([self.coefficient_kg_s_m2])
+    }
+
+    fn force(&[coefficient]: &[f64; 1], contact: Closed) -> f64 {
+        coefficient * contact.rate * contact.rate * contact.rate
+    }
+}

@@ -1,0 +1,303 @@
+//! The two faces of a contact law: [`Term`], which an author writes, and
+//! [`Law`], which the wave loop calls.
+
+use crate::material::Pair;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// One closed contact, as a law sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Closed {
+    /// Overlap δ ≥ 0 in m.
+    pub overlap: f64,
+    /// √δ, given by the loop so that laws need no square root of their own.
+    pub root: f64,
+    /// Overlap rate δ̇ in m/s, positive while approaching.
+    pub rate: f64,
+    /// Largest overlap since the contact was made, in m; never below `overlap`.
+    pub largest: f64,
+}
+
+impl Closed {
+    /// A contact that has never been deeper than now.
+    #[must_use]
+    pub fn new(overlap: f64, rate: f64) -> Self {
+        Self {
+            overlap,
+            root: overlap.sqrt(),
+            rate,
+            largest: overlap,
+        }
+    }
+}
+
+/// What a law does with energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nature {
+    /// All work is stored and comes back: F = dU/dδ.
+    Elastic,
+    /// All work is lost: F δ̇ ≥ 0.
+    Dissipative,
+    /// Part is stored, part is lost, and the contact remembers how deep it was.
+    ElasticPlastic,
+}
+
+/// Where a parameter's value comes from when the user gives none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// The user must give it.
+    Required,
+    /// It follows from the materials, radii and masses of the two bodies.
+    Materials,
+    /// A plain default.
+    Default(f64),
+}
+
+/// One parameter that a user types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Key in the experiment file.
+    pub name: &'static str,
+    /// SI unit, "1" for a plain number. `{name}` stands for the value of
+    /// another parameter of the same law: `N/m^{exponent}`.
+    pub unit: &'static str,
+    /// Meaning in a few words.
+    pub meaning: &'static str,
+    /// Value when absent.
+    pub source: Source,
+    /// Smallest accepted value (itself accepted).
+    pub least: f64,
+}
+
+/// What there is to know about a law before using it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawInfo {
+    /// Name in the experiment file, general word first.
+    pub name: &'static str,
+    /// The equation, in plain text.
+    pub equation: &'static str,
+    /// What a user types.
+    pub parameters: &'static [Parameter],
+    /// Where it holds.
+    pub validity: &'static str,
+    /// Key into `references.bib`.
+    pub reference: &'static str,
+    /// What it does with energy.
+    pub nature: Nature,
+    /// Acts only while the contact is closed; all laws but one.
+    pub gated: bool,
+}
+
+/// Why a law can't be used on a pair of bodies.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("law `{law}`: {what}")]
+pub struct LawError {
+    /// Name of the law.
+    pub law: &'static str,
+    /// What is wrong, and what was expected.
+    pub what: String,
+}
+
+/// A contact law as its author writes it: fields are the user's parameters,
+/// `C` numbers per contact are what the loop needs.
+pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
+    /// Name, equation, parameters, source.
+    const INFO: LawInfo;
+
+    /// The law from parameter values in the order of `INFO.parameters`;
+    /// `None` where the user gave nothing and the materials decide.
+    fn new(values: &[Option<f64>]) -> Self;
+
+    /// The numbers the loop needs for one contact.
+    ///
+    /// # Errors
+    /// When the materials lack what the law needs.
+    fn coefficients(&self, pair: &Pair) -> Result<[f64; C], LawError>;
+
+    /// Force in N, positive when it pushes the bodies apart.
+    fn force(k: &[f64; C], contact: Closed) -> f64;
+
+    /// Energy in J that the contact would give back.
+    fn energy(_k: &[f64; C], _overlap: f64, _largest: f64) -> f64 {
+        0.0
+    }
+}
+
+/// Coefficients of one law over consecutive contacts: column `j` holds
+/// coefficient `j` of every contact.
+#[derive(Clone, Debug, Default)]
+pub struct Columns {
+    values: Vec<f64>,
+    contacts: usize,
+}
+
+impl Columns {
+    /// Columns from one row a contact.
+    #[must_use]
+    pub fn from_rows(rows: &[Vec<f64>]) -> Self {
+        let width = rows.first().map_or(0, Vec::len);
+        let values = (0..width)
+            .flat_map(|j| rows.iter().map(move |row| row[j]))
+            .collect();
+        Self {
+            values,
+            contacts: rows.len(),
+        }
+    }
+
+    fn slices<const C: usize>(&self, first: usize, count: usize) -> [&[f64]; C] {
+        std::array::from_fn(|j| &self.values[j * self.contacts + first..][..count])
+    }
+
+    fn at<const C: usize>(&self, contact: usize) -> [f64; C] {
+        std::array::from_fn(|j| self.values[j * self.contacts + contact])
+    }
+}
+
+/// State of consecutive contacts, as columns of equal length.
+#[derive(Clone, Copy, Debug)]
+pub struct Contacts<'a> {
+    /// Overlaps, 0 where open.
+    pub overlap: &'a [f64],
+    /// Their square roots.
+    pub root: &'a [f64],
+    /// Overlap rates.
+    pub rate: &'a [f64],
+    /// Largest overlaps.
+    pub largest: &'a [f64],
+}
+
+/// A contact law as the loop calls it: over columns, or for one contact.
+pub trait Law: Debug + Send + Sync {
+    /// Name, equation, parameters, source.
+    fn info(&self) -> &'static LawInfo;
+
+    /// The numbers the loop needs for one contact.
+    ///
+    /// # Errors
+    /// When the materials lack what the law needs.
+    fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError>;
+
+    /// Adds the forces of consecutive contacts, the first being row `first`
+    /// of the columns, to `force_n`.
+    fn add_forces(&self, k: &Columns, first: usize, contacts: Contacts<'_>, force_n: &mut [f64]);
+
+    /// Force in N of one contact.
+    fn force(&self, k: &Columns, at: usize, contact: Closed) -> f64;
+
+    /// Energy in J that one contact would give back.
+    fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64;
+}
+
+/// Makes a [`Term`] callable by the loop.
+#[derive(Clone, Debug)]
+struct Of<T, const C: usize>(T);
+
+impl<T: Term<C>, const C: usize> Law for Of<T, C> {
+    fn info(&self) -> &'static LawInfo {
+        const { &T::INFO }
+    }
+
+    fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError> {
+        let k = self.0.coefficients(pair)?;
+        match k.iter().all(|value| value.is_finite()) {
+            true => Ok(k.to_vec()),
+            false => Err(LawError {
+                law: T::INFO.name,
+                what: format!("its coefficients {k:?} are not finite for this pair of bodies"),
+            }),
+        }
+    }
+
+    fn add_forces(&self, k: &Columns, first: usize, contacts: Contacts<'_>, force_n: &mut [f64]) {
+        let n = force_n.len();
+        let k = k.slices::<C>(first, n);
+        let (overlap, root) = (&contacts.overlap[..n], &contacts.root[..n]);
+        let (rate, largest) = (&contacts.rate[..n], &contacts.largest[..n]);
+        for i in 0..n {
+            let row = std::array::from_fn(|j| k[j][i]);
+            let contact = Closed {
+                overlap: overlap[i],
+                root: root[i],
+                rate: rate[i],
+                largest: largest[i],
+            };
+            force_n[i] += T::force(&row, contact);
+        }
+    }
+
+    fn force(&self, k: &Columns, at: usize, contact: Closed) -> f64 {
+        T::force(&k.at(at), contact)
+    }
+
+    fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64 {
+        T::energy(&k.at(at), overlap, largest)
+    }
+}
+
+/// A law ready for a chain.
+pub fn law<T: Term<C>, const C: usize>(term: T) -> Arc<dyn Law> {
+    Arc::new(Of(term))
+}
+
+/// One row of the registry.
+#[derive(Debug)]
+pub struct Row {
+    /// Name, equation, parameters, source.
+    pub info: LawInfo,
+    /// Builds the law from values in the order of `info.parameters`.
+    build: fn(&[Option<f64>]) -> Arc<dyn Law>,
+}
+
+/// The registry row of a law.
+#[must_use]
+pub const fn row<T: Term<C>, const C: usize>() -> Row {
+    Row {
+        info: T::INFO,
+        build: |values| law(T::new(values)),
+    }
+}
+
+impl Row {
+    /// The law from named parameter values in SI.
+    ///
+    /// # Errors
+    /// An unknown or repeated name, a missing required parameter, or a value
+    /// below the least one or not finite.
+    pub fn build(&self, given: &[(&str, f64)]) -> Result<Arc<dyn Law>, LawError> {
+        let fail = |what: String| LawError {
+            law: self.info.name,
+            what,
+        };
+        let known = |name: &str| self.info.parameters.iter().any(|p| p.name == name);
+        if let Some((name, _)) = given.iter().find(|(name, _)| !known(name)) {
+            return Err(fail(format!("has no parameter `{name}`")));
+        }
+        let values = self
+            .info
+            .parameters
+            .iter()
+            .map(|p| value_of(p, given).map_err(fail));
+        Ok((self.build)(&values.collect::<Result<Vec<_>, _>>()?))
+    }
+}
+
+/// The value of one parameter among those given.
+fn value_of(parameter: &Parameter, given: &[(&str, f64)]) -> Result<Option<f64>, String> {
+    let name = parameter.name;
+    match given.iter().find(|(key, _)| *key == name) {
+        Some(&(_, value)) if value.is_finite() && value >= parameter.least => Ok(Some(value)),
+        Some(&(_, value)) => Err(format!(
+            "`{name}` = {value} {} must be finite and at least {}",
+            parameter.unit, parameter.least
+        )),
+        None => match parameter.source {
+            Source::Required => Err(format!(
+                "needs `{name}` ({}, in {})",
+                parameter.meaning, parameter.unit
+            )),
+            Source::Materials => Ok(None),
+            Source::Default(value) => Ok(Some(value)),
+        },
+    }
+}

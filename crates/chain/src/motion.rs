@@ -1,0 +1,135 @@
+//! Prescribed motion of a driven end.
+
+/// Position of a driven end against time, starting from rest at 0.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// x = a (1 − cos 2πft)/2 · sign convention: starts at rest, moves toward the chain.
+    Sine {
+        /// Peak-to-peak amplitude a in m.
+        amplitude_m: f64,
+        /// Frequency f in Hz.
+        frequency_hz: f64,
+    },
+    /// One push and back: x = a sin²(πt/T) for t < T, then 0.
+    Pulse {
+        /// Largest displacement a in m.
+        amplitude_m: f64,
+        /// Duration T in s.
+        duration_s: f64,
+    },
+    /// Measured points, joined by a cubic with continuous velocity
+    /// (three-point slopes); at rest before the first and after the last.
+    Table {
+        /// Times in s, strictly increasing.
+        times_s: Vec<f64>,
+        /// Positions in m, one a time.
+        positions_m: Vec<f64>,
+    },
+}
+
+impl Motion {
+    /// Position in m and velocity in m/s at a time in s.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> (f64, f64) {
+        match self {
+            Self::Sine {
+                amplitude_m,
+                frequency_hz,
+            } => raised(*amplitude_m, *frequency_hz, time_s),
+            Self::Pulse {
+                amplitude_m,
+                duration_s,
+            } if time_s < *duration_s => raised(*amplitude_m, duration_s.recip(), time_s),
+            Self::Pulse { .. } => (0.0, 0.0),
+            Self::Table {
+                times_s,
+                positions_m,
+            } => interpolate(times_s, positions_m, time_s),
+        }
+    }
+
+    /// The first time after `time_s` at which the motion is not smooth; a
+    /// step must end there.
+    #[must_use]
+    pub fn next_break(&self, time_s: f64) -> f64 {
+        match self {
+            Self::Sine { .. } => f64::INFINITY,
+            Self::Pulse { duration_s, .. } if time_s < *duration_s => *duration_s,
+            Self::Pulse { .. } => f64::INFINITY,
+            Self::Table { times_s, .. } => {
+                let next = times_s.partition_point(|&t| t <= time_s);
+                times_s.get(next).copied().unwrap_or(f64::INFINITY)
+            }
+        }
+    }
+
+    /// A speed in m/s that the motion reaches, for scales.
+    #[must_use]
+    pub fn largest_speed_m_s(&self) -> f64 {
+        match self {
+            Self::Sine {
+                amplitude_m,
+                frequency_hz,
+            } => std::f64::consts::PI * (amplitude_m * frequency_hz).abs(),
+            Self::Pulse {
+                amplitude_m,
+                duration_s,
+            } => std::f64::consts::PI * (amplitude_m / duration_s).abs(),
+            Self::Table {
+                times_s,
+                positions_m,
+            } => times_s
+                .windows(2)
+                .zip(positions_m.windows(2))
+                .map(|(t, x)| ((x[1] - x[0]) / (t[1] - t[0])).abs())
+                .fold(0.0, f64::max),
+        }
+    }
+}
+
+/// a (1 − cos 2πft)/2 and its rate.
+fn raised(amplitude_m: f64, frequency_hz: f64, time_s: f64) -> (f64, f64) {
+    let omega = 2.0 * std::f64::consts::PI * frequency_hz;
+    let (sin, cos) = (omega * time_s).sin_cos();
+    (
+        0.5 * amplitude_m * (1.0 - cos),
+        0.5 * amplitude_m * omega * sin,
+    )
+}
+
+/// Cubic Hermite interpolation with three-point slopes, flat outside.
+fn interpolate(times: &[f64], positions: &[f64], time: f64) -> (f64, f64) {
+    let right = times.partition_point(|&t| t <= time);
+    let (Some(&first), Some(&last)) = (positions.first(), positions.last()) else {
+        return (0.0, 0.0);
+    };
+    if right == 0 {
+        return (first, 0.0);
+    }
+    if right >= times.len() {
+        return (last, 0.0);
+    }
+    let left = right - 1;
+    let h = times[right] - times[left];
+    let s = (time - times[left]) / h;
+    let (x0, x1) = (positions[left], positions[right]);
+    let (d0, d1) = (
+        h * slope(times, positions, left),
+        h * slope(times, positions, right),
+    );
+    let (c2, c3) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
+    let position = x0 + s * (d0 + s * (c2 + s * c3));
+    (position, (d0 + s * (2.0 * c2 + 3.0 * s * c3)) / h)
+}
+
+/// Slope of the parabola through a point and its neighbours; 0 at the ends,
+/// where the driven end is at rest.
+fn slope(times: &[f64], positions: &[f64], at: usize) -> f64 {
+    if at == 0 || at + 1 >= times.len() {
+        return 0.0;
+    }
+    let (left, right) = (times[at] - times[at - 1], times[at + 1] - times[at]);
+    let before = (positions[at] - positions[at - 1]) / left;
+    let after = (positions[at + 1] - positions[at]) / right;
+    (before * right + after * left) / (left + right)
+}
