@@ -1,1 +1,32 @@
 //! Pictures of results as SVG and PNG.
+//!
+//! A [`Figure`] holds panels: a [`Chart`] with [`Series`] and perhaps a
+//! [`HeatMap`], a [`VerdictMatrix`], or a [`RigDrawing`]. All data come as
+//! plain slices. An [`Animation`] becomes one HTML file that needs nothing else.
+//!
+//! Text is markup: inside `$...$`, `v_0`, `10^{-5}`, `K_{\mathrm{eff}}` and
+//! `\alpha` are set as in TeX; outside everything is literal apart from
+//! commands such as `\mu`. Equal input gives equal bytes.
+
+mod animation;
+mod axis;
+mod chart;
+mod draw;
+mod error;
+mod figure;
+mod heat;
+mod matrix;
+mod png_image;
+mod render;
+mod rig;
+mod share;
+mod text;
+
+pub use animation::Animation;
+pub use chart::{Chart, Dash, Legend, Marker, Series};
+pub use draw::{Colour, ColourMap};
+pub use error::FigureError;
+pub use figure::{DOUBLE_COLUMN_MM, Figure, Panel, SINGLE_COLUMN_MM};
+pub use heat::HeatMap;
+pub use matrix::{Verdict, VerdictMatrix};
+pub use rig::{FarEnd, RigDrawing};

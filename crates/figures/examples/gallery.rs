@@ -1,0 +1,267 @@
+//! Draws every kind of picture from made-up data, to be looked at.
+//!
+//! `cargo run --release -p hertzchain-figures --example gallery -- OUTPUT_FOLDER`
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hertzchain_figures::{Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, Series};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "gallery".into()));
+    fs::create_dir_all(&folder)?;
+    let pictures = [
+        ("signals", signals()),
+        ("tof", tof()),
+        ("ratios", ratios()),
+        ("space_time", space_time()),
+        ("energy", energy()),
+        ("residuals", residuals()),
+    ];
+    for (name, figure) in pictures {
+        write(&folder, name, &figure)?;
+    }
+    Ok(())
+}
+
+fn write(folder: &Path, name: &str, figure: &Figure) -> Result<(), Box<dyn Error>> {
+    fs::write(folder.join(format!("{name}.svg")), figure.svg())?;
+    fs::write(folder.join(format!("{name}.png")), figure.png(300.0)?)?;
+    Ok(())
+}
+
+fn grid(from: f64, to: f64, count: u32) -> Vec<f64> {
+    let share = |i: u32| f64::from(i) / f64::from(count - 1);
+    (0..count).map(|i| from + (to - from) * share(i)).collect()
+}
+
+fn log_grid(from: f64, to: f64, count: u32) -> Vec<f64> {
+    grid(from.ln(), to.ln(), count)
+        .into_iter()
+        .map(f64::exp)
+        .collect()
+}
+
+fn map(x: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
+    x.iter().map(|v| f(*v)).collect()
+}
+
+/// Three pulses in one channel.
+fn signal(t_us: f64, scale_n: f64, split: f64) -> f64 {
+    let pulse = |at: f64, width: f64, height: f64| height / ((t_us - at) / width).cosh().powi(4);
+    scale_n
+        * (pulse(150.0, 28.0, 1.0)
+            + pulse(780.0, 28.0, 1.7)
+            + pulse(1450.0, 30.0, 0.45)
+            + split * pulse(1560.0, 34.0, 0.5))
+}
+
+fn signals() -> Figure {
+    let t = grid(0.0, 1800.0, 4000);
+    let cases = [
+        ("dry, $v_0$ = 0.1368 m/s", 4.6, 0.0),
+        ("pump oil, $v_0$ = 1.1520 m/s", 62.0, 0.2),
+        ("gear oil, $v_0$ = 0.1396 m/s", 4.4, 0.1),
+        ("motor oil, $v_0$ = 0.3993 m/s", 16.0, 0.8),
+    ];
+    let panels = cases.map(|(name, scale, split)| {
+        let data = map(&t, |t| {
+            signal(t, scale, split) + 0.004 * scale * (t * 1.7).sin()
+        });
+        let model = map(&t, |t| signal(t, scale, split));
+        Chart::new(r"Time (\mus)", "Force (N)")
+            .title(name)
+            .with(
+                Series::line("virtual rig", &t, &data)
+                    .colour(Colour::GREY)
+                    .width(0.7),
+            )
+            .with(
+                Series::line("model", &t, &model)
+                    .colour(Colour::VERMILION)
+                    .dash(Dash::Dashed),
+            )
+    });
+    let empty = Figure::double_column(105.0).columns(2).letters().share_x();
+    panels.into_iter().fold(empty, Figure::panel)
+}
+
+fn tof() -> Figure {
+    let v = log_grid(0.075, 1.23, 18);
+    let fine = log_grid(0.07, 1.3, 100);
+    let incident = |v: f64| 660.0 * (v / 1.23).powf(-0.178);
+    let reflected = |v: f64| 699.0 * (v / 1.23).powf(-0.169);
+    let hertz = |v: f64| 640.0 * (v / 1.23).powf(-0.2);
+    let scatter = |f: fn(f64, f64) -> f64, k: f64| map(&v, |x| f(x, (x * k).sin()));
+    let y_in = scatter(|v, s| 660.0 * (v / 1.23).powf(-0.178) + 6.0 * s, 91.0);
+    let y_re = scatter(|v, s| 699.0 * (v / 1.23).powf(-0.169) + 9.0 * s, 47.0);
+    let e_in = map(&v, |v| 4.0 / v.sqrt());
+    let e_re = map(&v, |v| 9.0 / v.sqrt());
+    let add = |chart: Chart| {
+        chart
+            .with(
+                Series::line("Hertz + viscoelastic", &fine, &map(&fine, hertz))
+                    .colour(Colour::GREY)
+                    .dash(Dash::Dashed),
+            )
+            .with(Series::line("full model", &fine, &map(&fine, incident)).colour(Colour::BLACK))
+            .with(Series::line("", &fine, &map(&fine, reflected)).colour(Colour::BLACK))
+            .with(
+                Series::points("incident", &v, &y_in)
+                    .marker(Marker::Circle)
+                    .colour(Colour::BLUE)
+                    .y_error(&e_in),
+            )
+            .with(
+                Series::points("reflected", &v, &y_re)
+                    .marker(Marker::OpenSquare)
+                    .colour(Colour::VERMILION)
+                    .y_error(&e_re),
+            )
+    };
+    let x_label = "Impact speed $v_0$ (m/s)";
+    let inset = add(Chart::new("$v_0$ (m/s)", r"ToF (\mus)").x_log().y_log());
+    Figure::single_column(68.0)
+        .panel(add(Chart::new(x_label, r"Time of flight (\mus)")).inset(inset))
+}
+
+fn ratios() -> Figure {
+    let v = log_grid(0.075, 1.23, 20);
+    let set = |name: &str, marker, colour, f: fn(f64) -> f64| {
+        let y = map(&v, f);
+        let e = map(&v, |v| 0.004 / v.sqrt());
+        Series::line(name, &v, &y)
+            .marker(marker)
+            .colour(colour)
+            .width(0.6)
+            .y_error(&e)
+    };
+    let chart = Chart::new(
+        "Impact speed $v_0$ (m/s)",
+        r"$\mathrm{ToF}_{\mathrm{wet}} / \mathrm{ToF}_{\mathrm{dry}}$",
+    )
+    .x_log()
+    .with(set("pump, DS19", Marker::Triangle, Colour::GREEN, |v| {
+        1.0 + 0.035 * (v / 1.1).ln() / 2.7
+    }))
+    .with(set("gear, EP 80W-90", Marker::Square, Colour::BLUE, |v| {
+        0.985 + 0.008 * (v * 5.0).sin()
+    }))
+    .with(set(
+        "motor, SAE 0W-30",
+        Marker::Circle,
+        Colour::VERMILION,
+        |v| 1.025 + 0.02 * v.ln() / 2.6,
+    ))
+    .h_line(1.0, "as dry")
+    .v_line(1.1, "paper's crossing");
+    Figure::single_column(64.0).panel(chart)
+}
+
+fn velocity(bead: f64, t_us: f64) -> f64 {
+    let front = (bead - t_us / 16.0) / 1.1;
+    let back = (bead - (82.0 - t_us / 16.0)) / 1.1;
+    0.68 / front.cosh().powi(2) - 0.5 / back.cosh().powi(2)
+        + 0.004 * (bead * 1.3 + t_us / 30.0).sin()
+}
+
+fn space_time() -> Figure {
+    let (beads, times) = (41_u32, 1200_u32);
+    let value = |i: u32| velocity(f64::from(i / times), f64::from(i % times));
+    let values: Vec<f64> = (0..beads * times).map(value).collect();
+    let heat = |colours, label: &str| {
+        HeatMap::new(times as usize, beads as usize, &values)
+            .x_edges(0.0, 1200.0)
+            .y_edges(-0.5, 40.5)
+            .colours(colours)
+            .label(label)
+    };
+    let theory = Series::line("exact solitary wave", &[0.0, 640.0], &[0.0, 40.0])
+        .colour(Colour::BLACK)
+        .dash(Dash::Dashed)
+        .width(0.7);
+    let signed = Chart::new(r"Time (\mus)", "Bead")
+        .title("dry")
+        .heat(heat(ColourMap::Diverging, "Velocity (m/s)"))
+        .with(theory);
+    let positive = Chart::new(r"Time (\mus)", "Bead")
+        .title("pump oil")
+        .heat(heat(ColourMap::Sequential, "Velocity (m/s)"));
+    Figure::double_column(62.0)
+        .columns(2)
+        .letters()
+        .panel(signed)
+        .panel(positive)
+}
+
+fn energy() -> Figure {
+    let t = grid(0.0, 1500.0, 600);
+    let lost = map(&t, |t| 0.12 * (1.0 - (-t / 900.0).exp()));
+    let elastic = map(&t, |t| lost_at(t) + 0.3 + 0.1 * (t / 20.0).sin().powi(2));
+    let total = map(&t, |_| 1.0);
+    let zero = map(&t, |_| 0.0);
+    let chart = Chart::new(r"Time (\mus)", "Share of the initial energy")
+        .with(Series::band("dissipated", &t, &zero, &lost).colour(Colour::VERMILION))
+        .with(Series::band("elastic", &t, &lost, &elastic).colour(Colour::BLUE))
+        .with(Series::band("kinetic", &t, &elastic, &total).colour(Colour::GREY));
+    let residual = Chart::new(r"Time (\mus)", "Residual")
+        .y_log()
+        .with(Series::line(
+            "",
+            &t,
+            &map(&t, |t| 1e-13 * (1.0 + t) * (1.5 + (t / 7.0).sin())),
+        ));
+    Figure::single_column(95.0)
+        .letters()
+        .share_x()
+        .panel(chart)
+        .panel(residual)
+}
+
+fn lost_at(t: f64) -> f64 {
+    0.12 * (1.0 - (-t / 900.0).exp())
+}
+
+/// Awkward data: gaps, infinities, large numbers, a million points.
+fn residuals() -> Figure {
+    let n = 1_000_000;
+    let x = grid(0.0, 3.2e8, n);
+    let y: Vec<f64> = x
+        .iter()
+        .enumerate()
+        .map(|(i, x)| {
+            if i % 100_000 < 9_000 {
+                f64::NAN
+            } else {
+                -3e-5 * (x / 3e7).sin() + 4e-6 * (i as f64 * 0.7).sin()
+            }
+        })
+        .collect();
+    let few = log_grid(1e-6, 1e7, 14);
+    let decades = Chart::new("Frequency (Hz)", "Amplitude $A_n$")
+        .x_log()
+        .y_log()
+        .with(Series::points(
+            "measured",
+            &few,
+            &map(&few, |f| 1e3 / (1.0 + f * f)),
+        ))
+        .with(Series::line(
+            "Lorentz",
+            &few,
+            &map(&few, |f| 1e3 / (1.0 + f * f)),
+        ))
+        .with(Series::line(
+            "steeper",
+            &few,
+            &map(&few, |f| 3e2 / (1.0 + f * f * f)),
+        ))
+        .with(Series::line("flat", &few, &map(&few, |_| 1e-6)));
+    let long = Chart::new("Sample", "Signal (V)").with(Series::line("a million samples", &x, &y));
+    Figure::double_column(60.0)
+        .columns(2)
+        .letters()
+        .panel(long)
+        .panel(decades)
+}

@@ -1,0 +1,4 @@
+//! stub
+/// v
+#[derive(Debug, Clone, Copy)]
+pub struct Animation;

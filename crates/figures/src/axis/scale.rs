@@ -1,0 +1,174 @@
+//! Data range and its mapping to the unit interval.
+
+/// The finite values seen along one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extent {
+    lo: f64,
+    hi: f64,
+    log: bool,
+}
+
+/// Values beyond are treated as out of any picture; differences stay finite.
+const LARGEST: f64 = 1e300;
+/// Values below are zero: they have no power of ten that is itself a number.
+const SMALLEST: f64 = 1e-290;
+
+impl Extent {
+    pub(crate) fn new(log: bool) -> Self {
+        Self {
+            lo: f64::INFINITY,
+            hi: f64::NEG_INFINITY,
+            log,
+        }
+    }
+
+    /// Takes in a value unless the axis cannot show it.
+    pub(crate) fn add(&mut self, value: f64) {
+        let value = if value.abs() < SMALLEST { 0.0 } else { value };
+        let shown = value.is_finite() && value.abs() <= LARGEST && (!self.log || value >= SMALLEST);
+        if shown {
+            self.lo = self.lo.min(value);
+            self.hi = self.hi.max(value);
+        }
+    }
+
+    /// A scale that holds all values with `pad` of the length free at both ends.
+    pub(crate) fn scale(self, pad: f64) -> Scale {
+        let Self { lo, hi, log } = self;
+        if lo > hi {
+            let (lo, hi) = if log { (0.1, 10.0) } else { (0.0, 1.0) };
+            return Scale { lo, hi, log };
+        }
+        if log {
+            padded_log(lo, hi, pad)
+        } else {
+            padded_linear(lo, hi, pad)
+        }
+    }
+}
+
+fn padded_linear(lo: f64, hi: f64, pad: f64) -> Scale {
+    let magnitude = lo.abs().max(hi.abs());
+    let span = hi - lo;
+    // Spans below the resolution of a label are noise around a constant.
+    let (lo, hi) = if magnitude == 0.0 {
+        (-1.0, 1.0)
+    } else if span <= 1e-8 * magnitude {
+        (lo - 0.05 * magnitude, hi + 0.05 * magnitude)
+    } else {
+        (lo - pad * span, hi + pad * span)
+    };
+    Scale { lo, hi, log: false }
+}
+
+fn padded_log(lo: f64, hi: f64, pad: f64) -> Scale {
+    let ratio = if hi / lo < 1.0 + 1e-6 {
+        1.1
+    } else {
+        (hi / lo).powf(pad)
+    };
+    Scale {
+        lo: lo / ratio,
+        hi: hi * ratio,
+        log: true,
+    }
+}
+
+/// A linear or logarithmic map of `[lo, hi]` to the unit interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
+    pub(crate) log: bool,
+}
+
+impl Scale {
+    /// A scale with the limits asked for, if they make one.
+    pub(crate) fn fixed(lo: f64, hi: f64, log: bool) -> Option<Self> {
+        let finite = lo.is_finite() && hi.is_finite() && lo.abs().max(hi.abs()) <= LARGEST;
+        let wide_enough = (hi - lo).abs() > SMALLEST + 1e-8 * lo.abs().max(hi.abs());
+        let sound = finite && wide_enough && (!log || lo.min(hi) >= SMALLEST);
+        sound.then_some(Self {
+            lo: lo.min(hi),
+            hi: lo.max(hi),
+            log,
+        })
+    }
+
+    /// Position of a value, 0 at `lo` and 1 at `hi`; nothing if it has none.
+    pub(crate) fn share(&self, value: f64) -> Option<f64> {
+        if !value.is_finite() || (self.log && value <= 0.0) {
+            return None;
+        }
+        let share = if self.log {
+            (value / self.lo).ln() / (self.hi / self.lo).ln()
+        } else {
+            (value - self.lo) / (self.hi - self.lo)
+        };
+        // Far outside the frame the exact place no longer matters.
+        (!share.is_nan()).then(|| share.clamp(-1e6, 1e6))
+    }
+
+    /// The value at a share of the axis, the inverse of [`Scale::share`].
+    pub(crate) fn value(&self, share: f64) -> f64 {
+        if self.log {
+            self.lo * (self.hi / self.lo).powf(share)
+        } else {
+            self.lo + share * (self.hi - self.lo)
+        }
+    }
+
+    pub(crate) fn decades(&self) -> f64 {
+        self.hi.log10() - self.lo.log10()
+    }
+
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        self.share(value)
+            .is_some_and(|s| (-1e-9..=1.0 + 1e-9).contains(&s))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scale_of(values: &[f64], log: bool) -> Scale {
+        let mut extent = Extent::new(log);
+        values.iter().for_each(|v| extent.add(*v));
+        extent.scale(0.05)
+    }
+
+    #[test]
+    fn log_range_does_not_widen_to_whole_decades() {
+        let scale = scale_of(&[0.075, 1.23], true);
+        assert!(scale.lo > 0.06 && scale.hi < 1.5, "{scale:?}");
+    }
+
+    #[test]
+    fn data_an_axis_cannot_show_is_left_out_of_the_range() {
+        let scale = scale_of(&[f64::NAN, f64::INFINITY, -3.0, 0.0, 2.0, 4.0], true);
+        assert!(scale.lo > 1.0 && scale.hi < 6.0, "{scale:?}");
+    }
+
+    #[test]
+    fn constant_and_missing_data_still_make_an_axis() {
+        for values in [&[][..], &[0.0], &[7.0, 7.0], &[f64::NAN]] {
+            for log in [false, true] {
+                let scale = scale_of(values, log);
+                assert!(scale.hi > scale.lo, "{values:?} {scale:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn value_inverts_share() {
+        let scale = Scale {
+            lo: 0.02,
+            hi: 3.0,
+            log: true,
+        };
+        let back = scale.share(scale.value(0.3)).expect("inside the axis");
+        // A logarithm and a power, a few ulp each.
+        assert!((back - 0.3).abs() < 1e-13);
+    }
+}

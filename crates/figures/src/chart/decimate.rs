@@ -1,0 +1,87 @@
+//! Thinning of long series: what falls into one printed pixel column is
+//! replaced by its ends and extremes, which look the same.
+
+use std::collections::BTreeSet;
+
+use crate::draw::Point;
+
+/// Width of a column in points: a pixel at 300 dpi.
+const COLUMN: f64 = 0.24;
+/// Shorter lines are drawn as they are.
+const FEW: usize = 2000;
+
+/// Thins one unbroken line.
+pub(crate) fn line(points: Vec<Point>) -> Vec<Point> {
+    if points.len() <= FEW {
+        return points;
+    }
+    let column = |p: &Point| (p.x / COLUMN).floor();
+    let runs = points.chunk_by(|a, b| column(a) == column(b));
+    runs.flat_map(|run| ends_and_extremes(run)).collect()
+}
+
+/// First, lowest, highest and last point in their order along the line.
+fn ends_and_extremes(run: &[Point]) -> Vec<Point> {
+    let mut keep = BTreeSet::from([0, run.len() - 1]);
+    let by_y = |a: &(usize, &Point), b: &(usize, &Point)| a.1.y.total_cmp(&b.1.y);
+    keep.extend(run.iter().enumerate().min_by(by_y).map(|(i, _)| i));
+    keep.extend(run.iter().enumerate().max_by(by_y).map(|(i, _)| i));
+    keep.into_iter()
+        .filter_map(|i| run.get(i).copied())
+        .collect()
+}
+
+/// Drops points that a printed pixel cannot tell from an earlier one.
+pub(crate) fn scatter(points: Vec<Point>) -> Vec<Point> {
+    if points.len() <= FEW {
+        return points;
+    }
+    let mut seen = BTreeSet::new();
+    let pixel = |v: f64| (v / COLUMN).round() as i64;
+    points
+        .into_iter()
+        .filter(|p| seen.insert((pixel(p.x), pixel(p.y))))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(n: u32) -> Vec<Point> {
+        let at = |i: u32| f64::from(i) / f64::from(n);
+        (0..n)
+            .map(|i| Point::new(200.0 * at(i), (900.0 * at(i)).sin()))
+            .collect()
+    }
+
+    #[test]
+    fn a_million_points_become_a_few_per_pixel_column() {
+        let thin = line(wave(1_000_000));
+        assert!(
+            thin.len() < 4 * (200.0 / COLUMN) as usize + 8,
+            "{}",
+            thin.len()
+        );
+    }
+
+    #[test]
+    fn extremes_survive_thinning() {
+        let mut points = wave(100_000);
+        points[54_321].y = 7.5;
+        points[65_432].y = -9.5;
+        let thin = line(points);
+        assert!(thin.iter().any(|p| p.y == 7.5) && thin.iter().any(|p| p.y == -9.5));
+    }
+
+    #[test]
+    fn short_lines_are_untouched() {
+        assert_eq!(line(wave(500)), wave(500));
+    }
+
+    #[test]
+    fn coinciding_markers_are_drawn_once() {
+        let points = vec![Point::new(1.0, 2.0); 50_000];
+        assert_eq!(scatter(points).len(), 1);
+    }
+}

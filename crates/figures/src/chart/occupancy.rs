@@ -1,0 +1,139 @@
+//! Which parts of a frame are taken, so that legends, insets and labels find
+//! a free place.
+
+use crate::draw::{Point, Rect};
+
+/// Edge of a cell in points.
+const CELL: f64 = 2.0;
+
+/// A coarse grid over a frame that counts what lies where.
+#[derive(Debug, Clone)]
+pub(crate) struct Occupancy {
+    frame: Rect,
+    columns: usize,
+    rows: usize,
+    cells: Vec<u32>,
+}
+
+impl Occupancy {
+    pub(crate) fn new(frame: Rect) -> Self {
+        let columns = (frame.width() / CELL).ceil() as usize + 1;
+        let rows = (frame.height() / CELL).ceil() as usize + 1;
+        Self {
+            frame,
+            columns,
+            rows,
+            cells: vec![0; columns * rows],
+        }
+    }
+
+    fn index(&self, p: Point) -> Option<usize> {
+        if !self.frame.contains(p) {
+            return None;
+        }
+        let column = ((p.x - self.frame.x0) / CELL) as usize;
+        let row = ((p.y - self.frame.y0) / CELL) as usize;
+        Some(row * self.columns + column)
+    }
+
+    /// Marks one place as taken, `weight` telling how bad it is to cover it.
+    pub(crate) fn mark(&mut self, p: Point, weight: u32) {
+        if let Some(cell) = self.index(p).and_then(|i| self.cells.get_mut(i)) {
+            *cell = (*cell).max(weight);
+        }
+    }
+
+    /// Marks everything along a polyline.
+    pub(crate) fn mark_line(&mut self, points: &[Point], weight: u32) {
+        for pair in points.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let steps = ((b.x - a.x).hypot(b.y - a.y) / CELL)
+                .ceil()
+                .clamp(1.0, 4096.0);
+            for i in 0..=steps as u32 {
+                let t = f64::from(i) / steps;
+                self.mark(
+                    Point::new(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)),
+                    weight,
+                );
+            }
+        }
+    }
+
+    /// Marks an area.
+    pub(crate) fn mark_rect(&mut self, rect: &Rect, weight: u32) {
+        for (column, row) in self.covered(rect) {
+            if let Some(cell) = self.cells.get_mut(row * self.columns + column) {
+                *cell = (*cell).max(weight);
+            }
+        }
+    }
+
+    /// What covering `rect` would hide; zero if it is free.
+    pub(crate) fn cost(&self, rect: &Rect) -> u64 {
+        let cells = self.covered(rect);
+        cells
+            .filter_map(|(c, r)| self.cells.get(r * self.columns + c))
+            .map(|w| u64::from(*w))
+            .sum()
+    }
+
+    fn covered(&self, rect: &Rect) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let range = |from: f64, to: f64, start: f64, count: usize| {
+            let first = ((from - start) / CELL).floor().max(0.0) as usize;
+            let last = ((to - start) / CELL).floor().max(-1.0) + 1.0;
+            first..(last as usize).min(count)
+        };
+        let columns = range(rect.x0, rect.x1, self.frame.x0, self.columns);
+        let rows = range(rect.y0, rect.y1, self.frame.y0, self.rows);
+        rows.flat_map(move |r| columns.clone().map(move |c| (c, r)))
+    }
+
+    /// Of several places the cheapest, the first among equals.
+    pub(crate) fn freest(&self, places: &[Rect]) -> Option<(Rect, u64)> {
+        let costs = places.iter().map(|r| (*r, self.cost(r)));
+        costs.min_by_key(|(_, cost)| *cost)
+    }
+}
+
+/// Places for a box of the given size along the inner edge of `frame`: the
+/// corners first, then in between.
+pub(crate) fn places(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
+    const SHARES: [(f64, f64); 12] = [
+        (1.0, 0.0),
+        (0.0, 0.0),
+        (1.0, 1.0),
+        (0.0, 1.0),
+        (0.5, 0.0),
+        (0.5, 1.0),
+        (1.0, 0.5),
+        (0.0, 0.5),
+        (0.75, 0.0),
+        (0.25, 0.0),
+        (0.75, 1.0),
+        (0.25, 1.0),
+    ];
+    let at = |(across, down): (f64, f64)| {
+        let x = frame.x0 + across * (frame.width() - width).max(0.0);
+        let y = frame.y0 + down * (frame.height() - height).max(0.0);
+        Rect::sized(x, y, width, height)
+    };
+    SHARES.map(at).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_corner_without_data_is_the_freest() {
+        let frame = Rect::sized(0.0, 0.0, 100.0, 100.0);
+        let mut taken = Occupancy::new(frame);
+        taken.mark_line(&[Point::new(0.0, 0.0), Point::new(100.0, 100.0)], 1);
+        taken.mark_rect(&Rect::sized(60.0, 0.0, 40.0, 40.0), 1);
+        let (place, cost) = taken
+            .freest(&places(&frame, 30.0, 30.0))
+            .expect("there are places");
+        assert_eq!((place.x0, place.y0, cost), (0.0, 70.0, 0));
+    }
+}

@@ -1,0 +1,293 @@
+//! A small SVG writer. Numbers are cut to a hundredth of a point, so equal
+//! input gives equal text.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use super::{Colour, PT_PER_MM, PathData, Point, Rect};
+use crate::text::GlyphId;
+
+/// Appends a number with at most two decimals and no trailing zeros.
+pub(crate) fn fmt(out: &mut String, value: f64) {
+    let hundredths = (value.clamp(-1e9, 1e9) * 100.0).round() as i64;
+    let (whole, rest) = (hundredths.abs() / 100, hundredths.abs() % 100);
+    let sign = if hundredths < 0 { "-" } else { "" };
+    let written = match (rest, rest % 10) {
+        (0, _) => write!(out, "{sign}{whole}"),
+        (_, 0) => write!(out, "{sign}{whole}.{}", rest / 10),
+        _ => write!(out, "{sign}{whole}.{rest:02}"),
+    };
+    written.expect("a String takes any text");
+}
+
+/// A line's look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stroke {
+    pub(crate) colour: Colour,
+    pub(crate) width: f64,
+    pub(crate) dash: &'static [f64],
+}
+
+/// How a path is painted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Paint {
+    fill: Option<String>,
+    stroke: Option<Stroke>,
+    opacity: Option<f64>,
+}
+
+impl Paint {
+    pub(crate) fn fill(colour: Colour) -> Self {
+        Self {
+            fill: Some(colour.to_string()),
+            ..Self::default()
+        }
+    }
+
+    /// Fills with a gradient made by [`Svg::gradient`].
+    pub(crate) fn gradient(id: &str) -> Self {
+        Self {
+            fill: Some(format!("url(#{id})")),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn line(colour: Colour, width: f64) -> Self {
+        Self::dashed(colour, width, &[])
+    }
+
+    pub(crate) fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+        Self {
+            stroke: Some(Stroke {
+                colour,
+                width,
+                dash,
+            }),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn outlined(mut self, colour: Colour, width: f64) -> Self {
+        self.stroke = Some(Stroke {
+            colour,
+            width,
+            dash: &[],
+        });
+        self
+    }
+
+    pub(crate) fn opacity(mut self, share: f64) -> Self {
+        self.opacity = Some(share);
+        self
+    }
+
+    fn attributes(&self) -> String {
+        let mut out = format!(" fill=\"{}\"", self.fill.as_deref().unwrap_or("none"));
+        if let Some(stroke) = self.stroke {
+            let _ = write!(out, " stroke=\"{}\" stroke-width=\"", stroke.colour);
+            fmt(&mut out, stroke.width);
+            out.push_str("\" stroke-linejoin=\"round\"");
+            push_dash(&mut out, &stroke);
+        }
+        if let Some(share) = self.opacity {
+            out.push_str(" opacity=\"");
+            fmt(&mut out, share);
+            out.push('"');
+        }
+        out
+    }
+}
+
+fn push_dash(out: &mut String, stroke: &Stroke) {
+    if stroke.dash.is_empty() {
+        return;
+    }
+    out.push_str(" stroke-dasharray=\"");
+    for (i, d) in stroke.dash.iter().enumerate() {
+        if i > 0 {
+            out.push(' ');
+        }
+        fmt(out, *d);
+    }
+    out.push('"');
+}
+
+/// An SVG document being written.
+#[derive(Debug, Default)]
+pub(crate) struct Svg {
+    body: String,
+    defs: String,
+    glyphs: BTreeMap<GlyphId, String>,
+    gradients: Vec<(Colour, String)>,
+    texts: usize,
+    clips: usize,
+}
+
+impl Svg {
+    pub(crate) fn new() -> Self {
+        Self::default()
+    }
+
+    pub(crate) fn path(&mut self, data: &PathData, paint: &Paint) {
+        if !data.is_empty() {
+            let (d, look) = (data.as_str(), paint.attributes());
+            let _ = writeln!(self.body, "<path d=\"{d}\"{look}/>");
+        }
+    }
+
+    pub(crate) fn segment(&mut self, a: Point, b: Point, paint: &Paint) {
+        self.path(PathData::new().segment(a, b), paint);
+    }
+
+    pub(crate) fn rect(&mut self, rect: &Rect, paint: &Paint) {
+        self.path(PathData::new().rect(rect), paint);
+    }
+
+    pub(crate) fn circle(&mut self, centre: Point, radius: f64, paint: &Paint) {
+        self.path(PathData::new().circle(centre, radius), paint);
+    }
+
+    /// Everything drawn until [`Svg::close`] is cut at `rect`.
+    pub(crate) fn open_clip(&mut self, rect: &Rect) {
+        self.clips += 1;
+        let (n, mut d) = (self.clips, PathData::new());
+        d.rect(rect);
+        let d = d.as_str();
+        let _ = writeln!(
+            self.defs,
+            "<clipPath id=\"c{n}\"><path d=\"{d}\"/></clipPath>"
+        );
+        let _ = writeln!(self.body, "<g clip-path=\"url(#c{n})\">");
+    }
+
+    pub(crate) fn close(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
+    /// Shading of a ball lit from the upper left; the name to paint with.
+    pub(crate) fn ball_gradient(&mut self, colour: Colour) -> String {
+        if let Some((_, id)) = self.gradients.iter().find(|(c, _)| *c == colour) {
+            return id.clone();
+        }
+        let id = format!("b{}", self.gradients.len());
+        let (light, dark) = (
+            colour.mixed(Colour::WHITE, 0.75),
+            colour.mixed(Colour::BLACK, 0.3),
+        );
+        let _ = writeln!(
+            self.defs,
+            "<radialGradient id=\"{id}\" cx=\"0.36\" cy=\"0.32\" r=\"0.72\">\
+             <stop offset=\"0\" stop-color=\"{light}\"/><stop offset=\"0.55\" stop-color=\"{colour}\"/>\
+             <stop offset=\"1\" stop-color=\"{dark}\"/></radialGradient>"
+        );
+        self.gradients.push((colour, id.clone()));
+        id
+    }
+
+    /// A PNG stretched over `rect`, its pixels kept sharp.
+    pub(crate) fn image(&mut self, rect: &Rect, png: &[u8]) {
+        self.body
+            .push_str("<image preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\"");
+        let (x, y, w, h) = (rect.x0, rect.y0, rect.width(), rect.height());
+        for (name, value) in [("x", x), ("y", y), ("width", w), ("height", h)] {
+            let _ = write!(self.body, " {name}=\"");
+            fmt(&mut self.body, value);
+            self.body.push('"');
+        }
+        let data = STANDARD.encode(png);
+        let _ = writeln!(self.body, " xlink:href=\"data:image/png;base64,{data}\"/>");
+    }
+
+    /// Opens a text: glyphs follow in font units, placed by `transform`.
+    pub(crate) fn open_text(&mut self, transform: &str, colour: Colour, plain: &str) {
+        self.texts += 1;
+        let (n, label) = (self.texts, escape(plain));
+        let _ = write!(
+            self.body,
+            "<g id=\"t{n}\" aria-label=\"{label}\" fill=\"{colour}\" transform=\"{transform}\">"
+        );
+    }
+
+    /// One glyph of an open text; its outline is stored once per document.
+    pub(crate) fn glyph(&mut self, id: GlyphId, outline: impl FnOnce() -> String, transform: &str) {
+        self.glyphs.entry(id).or_insert_with(outline);
+        let _ = write!(
+            self.body,
+            "<use xlink:href=\"#{id}\" transform=\"{transform}\"/>"
+        );
+    }
+
+    /// The finished document of the given size.
+    pub(crate) fn finish(self, width_mm: f64, height_mm: f64, title: &str) -> String {
+        let mut size = [String::new(), String::new()];
+        fmt(&mut size[0], width_mm * PT_PER_MM);
+        fmt(&mut size[1], height_mm * PT_PER_MM);
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+             width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
+            size[0], size[1]
+        );
+        let _ = writeln!(
+            out,
+            "<title>{}</title>\n<defs>\n{}",
+            escape(title),
+            self.defs
+        );
+        for (id, d) in self.glyphs {
+            let _ = writeln!(out, "<path id=\"{id}\" d=\"{d}\"/>");
+        }
+        out.push_str("</defs>\n<path d=\"M0 0H10000V10000H0Z\" fill=\"#ffffff\"/>\n");
+        out.push_str(&self.body);
+        out.push_str("</svg>\n");
+        out
+    }
+}
+
+/// Text safe inside an attribute or element; characters XML forbids become spaces.
+pub(crate) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_two_decimals_and_lose_trailing_zeros() {
+        let written = |v: f64| {
+            let mut s = String::new();
+            fmt(&mut s, v);
+            s
+        };
+        let cases = [
+            (1.0, "1"),
+            (-0.5, "-0.5"),
+            (2.345, "2.35"),
+            (0.001, "0"),
+            (-3.04, "-3.04"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(written(value), text);
+        }
+        assert_eq!(written(f64::NAN), "0");
+    }
+
+    #[test]
+    fn markup_characters_are_escaped() {
+        assert_eq!(escape("a<b & \"c\"\u{1}"), "a&lt;b &amp; &quot;c&quot; ");
+    }
+}

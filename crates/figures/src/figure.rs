@@ -1,0 +1,321 @@
+//! A figure: panels in a grid, as SVG or PNG.
+
+use crate::FigureError;
+use crate::chart::{Chart, Prepared, Style};
+use crate::draw::{Colour, PT_PER_MM, Point, Rect, Side, Svg};
+use crate::matrix::VerdictMatrix;
+use crate::rig::RigDrawing;
+use crate::text::{Anchor, TextLine};
+
+/// Width of a single journal column in millimetres.
+pub const SINGLE_COLUMN_MM: f64 = 86.0;
+/// Width of a journal page of two columns in millimetres.
+pub const DOUBLE_COLUMN_MM: f64 = 178.0;
+
+/// Space around and between panels, in points.
+const MARGIN: f64 = 3.0;
+const GUTTER: f64 = 7.0;
+/// Height of the line with panel letter and title, in points.
+const HEADING: f64 = 11.5;
+
+/// What can be put into a figure.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum Panel {
+    /// A diagram with axes, with or without a map.
+    Chart(Box<Chart>),
+    /// Verdicts on claims.
+    Matrix(VerdictMatrix),
+    /// A drawing of the apparatus.
+    Rig(RigDrawing),
+}
+
+impl From<Chart> for Panel {
+    fn from(chart: Chart) -> Self {
+        Self::Chart(Box::new(chart))
+    }
+}
+
+impl From<VerdictMatrix> for Panel {
+    fn from(matrix: VerdictMatrix) -> Self {
+        Self::Matrix(matrix)
+    }
+}
+
+impl From<RigDrawing> for Panel {
+    fn from(rig: RigDrawing) -> Self {
+        Self::Rig(rig)
+    }
+}
+
+impl Panel {
+    fn title(&self) -> &str {
+        match self {
+            Self::Chart(chart) => &chart.title,
+            Self::Matrix(_) | Self::Rig(_) => "",
+        }
+    }
+}
+
+/// Panels in a grid, filled row by row.
+///
+/// ```
+/// use hertzchain_figures::{Chart, Figure, Series};
+/// let speed_m_s = [0.1, 0.2, 0.5, 1.0];
+/// let tof_us = [1020.0, 890.0, 741.0, 645.0];
+/// let chart = Chart::new("Impact speed $v_0$ (m/s)", r"ToF (\mus)")
+///     .x_log()
+///     .with(Series::points("dry", &speed_m_s, &tof_us));
+/// let svg = Figure::single_column(60.0).panel(chart).svg();
+/// assert!(svg.starts_with("<svg"));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Figure {
+    width_mm: f64,
+    height_mm: f64,
+    columns: usize,
+    panels: Vec<Panel>,
+    letters: bool,
+    share_x: bool,
+    share_y: bool,
+    title: String,
+}
+
+impl Figure {
+    /// A figure of any size; sizes are held between 10 mm and 5 m.
+    #[must_use]
+    pub fn new(width_mm: f64, height_mm: f64) -> Self {
+        let held = |mm: f64| {
+            if mm.is_finite() {
+                mm.clamp(10.0, 5000.0)
+            } else {
+                SINGLE_COLUMN_MM
+            }
+        };
+        Self {
+            width_mm: held(width_mm),
+            height_mm: held(height_mm),
+            columns: 1,
+            panels: Vec::new(),
+            letters: false,
+            share_x: false,
+            share_y: false,
+            title: String::new(),
+        }
+    }
+
+    /// As wide as one journal column.
+    #[must_use]
+    pub fn single_column(height_mm: f64) -> Self {
+        Self::new(SINGLE_COLUMN_MM, height_mm)
+    }
+
+    /// As wide as a journal page of two columns.
+    #[must_use]
+    pub fn double_column(height_mm: f64) -> Self {
+        Self::new(DOUBLE_COLUMN_MM, height_mm)
+    }
+
+    /// Puts the panels into this many columns.
+    #[must_use]
+    pub fn columns(mut self, columns: usize) -> Self {
+        self.columns = columns.max(1);
+        self
+    }
+
+    /// Adds a panel.
+    #[must_use]
+    pub fn panel(mut self, panel: impl Into<Panel>) -> Self {
+        self.panels.push(panel.into());
+        self
+    }
+
+    /// Letters (a), (b), ... above the panels.
+    #[must_use]
+    pub fn letters(mut self) -> Self {
+        self.letters = true;
+        self
+    }
+
+    /// Charts of a column share their x axis; only the lowest is labelled.
+    #[must_use]
+    pub fn share_x(mut self) -> Self {
+        self.share_x = true;
+        self
+    }
+
+    /// Charts of a row share their y axis; only the leftmost is labelled.
+    #[must_use]
+    pub fn share_y(mut self) -> Self {
+        self.share_y = true;
+        self
+    }
+
+    /// Title inside the file, for readers of the SVG; not drawn.
+    #[must_use]
+    pub fn title(mut self, title: &str) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Width and height in millimetres.
+    #[must_use]
+    pub fn size_mm(&self) -> (f64, f64) {
+        (self.width_mm, self.height_mm)
+    }
+
+    /// The picture as SVG; text is outlines, so it needs no font.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let mut svg = Svg::new();
+        let panels = self.shared();
+        let grid = Grid::new(self, &panels);
+        for (i, panel) in panels.iter().enumerate() {
+            let frame = grid.frame(i);
+            self.heading(&mut svg, panel, i, &frame, &grid);
+            match panel {
+                Panel::Chart(chart) => {
+                    let prepared =
+                        Prepared::new(chart, Style::JOURNAL, frame.width(), frame.height());
+                    prepared.draw(&mut svg, chart, &frame);
+                }
+                Panel::Matrix(matrix) => matrix.draw(&mut svg, &frame),
+                Panel::Rig(rig) => rig.draw(&mut svg, &frame),
+            }
+        }
+        svg.finish(self.width_mm, self.height_mm, &self.title)
+    }
+
+    /// The picture as PNG at a resolution in dots per inch; journals ask for 300.
+    ///
+    /// # Errors
+    /// [`FigureError::Size`] if the size in pixels is zero or too large.
+    pub fn png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
+        crate::render::png(&self.svg(), self.width_mm, self.height_mm, dpi)
+    }
+
+    /// The panels, shared axes given one range and one set of labels.
+    fn shared(&self) -> Vec<Panel> {
+        let mut panels = self.panels.clone();
+        if self.share_x {
+            crate::share::x_axes(&mut panels, self.columns);
+        }
+        if self.share_y {
+            crate::share::y_axes(&mut panels, self.columns);
+        }
+        panels
+    }
+
+    fn heading(&self, svg: &mut Svg, panel: &Panel, index: usize, frame: &Rect, grid: &Grid) {
+        let mut x = frame.x0;
+        let baseline = frame.y0 - grid.above(index) - 4.0;
+        if self.letters {
+            let letter = TextLine::bold(&panel_letter(index), 8.5);
+            letter.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
+            x += letter.width() + 4.0;
+        }
+        let title = TextLine::new(panel.title(), 8.0).fitted(frame.x1 - x);
+        title.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
+    }
+}
+
+/// (a) to (z), then numbers.
+fn panel_letter(index: usize) -> String {
+    match u8::try_from(index) {
+        Ok(i) if i < 26 => format!("({})", char::from(b'a' + i)),
+        _ => format!("({})", index + 1),
+    }
+}
+
+/// Places of the frames: equal in size, aligned along rows and columns.
+struct Grid {
+    columns: usize,
+    frame: (f64, f64),
+    /// Margins of each column (left, right) and row (top, bottom).
+    across: Vec<Side>,
+    down: Vec<Side>,
+}
+
+impl Grid {
+    fn new(figure: &Figure, panels: &[Panel]) -> Self {
+        let columns = figure.columns.min(panels.len()).max(1);
+        let rows = panels.len().div_ceil(columns).max(1);
+        let page = (figure.width_mm * PT_PER_MM, figure.height_mm * PT_PER_MM);
+        let mut grid = Self {
+            columns,
+            frame: (0.75 * page.0 / columns as f64, 0.75 * page.1 / rows as f64),
+            across: vec![Side::default(); columns],
+            down: vec![Side::default(); rows],
+        };
+        // Ticks depend on the frame and the frame on the tick labels: once more settles it.
+        for _ in 0..3 {
+            grid.measure(panels, figure.letters);
+            grid.fit(page);
+        }
+        grid
+    }
+
+    fn measure(&mut self, panels: &[Panel], letters: bool) {
+        self.across.fill(Side::default());
+        self.down.fill(Side::default());
+        for (i, panel) in panels.iter().enumerate() {
+            let mut side = self.margins(panel);
+            if letters || !panel.title().is_empty() {
+                side.top += HEADING;
+            }
+            if let Some(column) = self.across.get_mut(i % self.columns) {
+                *column = column.union(side);
+            }
+            if let Some(row) = self.down.get_mut(i / self.columns) {
+                *row = row.union(side);
+            }
+        }
+    }
+
+    fn margins(&self, panel: &Panel) -> Side {
+        match panel {
+            Panel::Chart(chart) => {
+                let prepared = Prepared::new(chart, Style::JOURNAL, self.frame.0, self.frame.1);
+                prepared.margins(chart, self.frame.0)
+            }
+            Panel::Matrix(_) | Panel::Rig(_) => Side::default(),
+        }
+    }
+
+    fn fit(&mut self, page: (f64, f64)) {
+        let gaps = |count: usize| 2.0 * MARGIN + GUTTER * (count - 1) as f64;
+        let across: f64 = self.across.iter().map(|s| s.left + s.right).sum();
+        let down: f64 = self.down.iter().map(|s| s.top + s.bottom).sum();
+        let (columns, rows) = (self.across.len(), self.down.len());
+        self.frame = (
+            ((page.0 - across - gaps(columns)) / columns as f64).max(4.0),
+            ((page.1 - down - gaps(rows)) / rows as f64).max(4.0),
+        );
+    }
+
+    fn frame(&self, index: usize) -> Rect {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let left: f64 = self
+            .across
+            .iter()
+            .take(column)
+            .map(|s| s.left + s.right + self.frame.0 + GUTTER)
+            .sum();
+        let top: f64 = self
+            .down
+            .iter()
+            .take(row)
+            .map(|s| s.top + s.bottom + self.frame.1 + GUTTER)
+            .sum();
+        let own = (self.across.get(column), self.down.get(row));
+        let x = MARGIN + left + own.0.map_or(0.0, |s| s.left);
+        let y = MARGIN + top + own.1.map_or(0.0, |s| s.top);
+        Rect::sized(x, y, self.frame.0, self.frame.1)
+    }
+
+    /// Room between the heading and the frame.
+    fn above(&self, index: usize) -> f64 {
+        let top = self.down.get(index / self.columns).map_or(0.0, |s| s.top);
+        (top - HEADING).clamp(0.0, 12.0)
+    }
+}

@@ -1,0 +1,135 @@
+//! The embedded faces and their outlines.
+
+use std::fmt;
+use std::fmt::Write as _;
+use std::sync::LazyLock;
+
+use ttf_parser::{Face, OutlineBuilder};
+
+/// Which of the embedded faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Style {
+    Regular,
+    Italic,
+    Bold,
+}
+
+/// One glyph of one face; also its name inside an SVG.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct GlyphId {
+    style: Style,
+    index: u16,
+}
+
+impl fmt::Display for GlyphId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let letter = match self.style {
+            Style::Regular => 'r',
+            Style::Italic => 'i',
+            Style::Bold => 'h',
+        };
+        write!(f, "{letter}{}", self.index)
+    }
+}
+
+static REGULAR: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::REGULAR));
+static ITALIC: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::ITALIC));
+static BOLD: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::BOLD));
+
+fn parse(bytes: &'static [u8]) -> Face<'static> {
+    Face::parse(bytes, 0).expect("the embedded font is a valid TrueType file")
+}
+
+fn face(style: Style) -> &'static Face<'static> {
+    match style {
+        Style::Regular => &REGULAR,
+        Style::Italic => &ITALIC,
+        Style::Bold => &BOLD,
+    }
+}
+
+/// Font units per em, the same for all embedded faces.
+pub(crate) fn units_per_em() -> f64 {
+    f64::from(REGULAR.units_per_em())
+}
+
+impl GlyphId {
+    /// The glyph of a character; an empty box if the face has none.
+    pub(crate) fn of(style: Style, c: char) -> Self {
+        let found = face(style).glyph_index(c);
+        Self {
+            style,
+            index: found.map_or(0, |g| g.0),
+        }
+    }
+
+    /// Advance width in em.
+    pub(crate) fn advance(self) -> f64 {
+        let units = face(self.style).glyph_hor_advance(ttf_parser::GlyphId(self.index));
+        f64::from(units.unwrap_or(0)) / units_per_em()
+    }
+
+    /// Outline in font units, y upward.
+    pub(crate) fn outline(self) -> String {
+        let mut path = Outline::default();
+        face(self.style).outline_glyph(ttf_parser::GlyphId(self.index), &mut path);
+        path.0
+    }
+}
+
+#[derive(Default)]
+struct Outline(String);
+
+impl Outline {
+    fn push(&mut self, command: char, numbers: &[f32]) {
+        self.0.push(command);
+        for (i, n) in numbers.iter().enumerate() {
+            let gap = if i > 0 { " " } else { "" };
+            write!(self.0, "{gap}{}", n.round()).expect("a String takes any text");
+        }
+    }
+}
+
+impl OutlineBuilder for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.push('M', &[x, y]);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.push('L', &[x, y]);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.push('Q', &[x1, y1, x, y]);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.push('C', &[x1, y1, x2, y2, x, y]);
+    }
+
+    fn close(&mut self) {
+        self.0.push('Z');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_have_equal_width_so_tick_labels_line_up() {
+        let widths: Vec<f64> = ('0'..='9')
+            .map(|c| GlyphId::of(Style::Regular, c).advance())
+            .collect();
+        assert!(widths.iter().all(|w| *w == widths[0]));
+    }
+
+    #[test]
+    fn every_character_of_the_markup_table_is_in_the_font() {
+        for (name, c) in super::super::markup::SYMBOLS {
+            for style in [Style::Regular, Style::Italic] {
+                assert_ne!(GlyphId::of(style, *c).index, 0, "\\{name}");
+            }
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! From markup to runs of characters with a style and a script level.
+
+use std::iter::Peekable;
+use std::str::Chars;
+
+use super::font::Style;
+
+/// Vertical place of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Script {
+    Base,
+    Sub,
+    Super,
+}
+
+/// Characters of one style at one script level.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) text: String,
+    pub(crate) style: Style,
+    pub(crate) script: Script,
+}
+
+/// `\name` and the character it stands for.
+pub(crate) const SYMBOLS: &[(&str, char)] = &[
+    ("alpha", 'α'),
+    ("beta", 'β'),
+    ("gamma", 'γ'),
+    ("delta", 'δ'),
+    ("epsilon", 'ε'),
+    ("eta", 'η'),
+    ("theta", 'θ'),
+    ("kappa", 'κ'),
+    ("lambda", 'λ'),
+    ("mu", 'μ'),
+    ("nu", 'ν'),
+    ("xi", 'ξ'),
+    ("pi", 'π'),
+    ("rho", 'ρ'),
+    ("sigma", 'σ'),
+    ("tau", 'τ'),
+    ("phi", 'φ'),
+    ("chi", 'χ'),
+    ("psi", 'ψ'),
+    ("omega", 'ω'),
+    ("Gamma", 'Γ'),
+    ("Delta", 'Δ'),
+    ("Theta", 'Θ'),
+    ("Lambda", 'Λ'),
+    ("Sigma", 'Σ'),
+    ("Phi", 'Φ'),
+    ("Psi", 'Ψ'),
+    ("Omega", 'Ω'),
+    ("times", '×'),
+    ("cdot", '·'),
+    ("pm", '±'),
+    ("leq", '≤'),
+    ("geq", '≥'),
+    ("approx", '≈'),
+    ("neq", '≠'),
+    ("infty", '∞'),
+    ("partial", '∂'),
+    ("sum", '∑'),
+    ("sqrt", '√'),
+    ("degree", '°'),
+    ("prime", '′'),
+    ("ell", 'ℓ'),
+];
+
+/// Splits markup into runs; malformed markup is shown as it was typed.
+pub(crate) fn parse(source: &str) -> Vec<Run> {
+    let mut parser = Parser {
+        rest: source.chars().peekable(),
+        math: false,
+        upright: false,
+        runs: Vec::new(),
+    };
+    while let Some(c) = parser.rest.next() {
+        parser.take(c, Script::Base);
+    }
+    parser.runs
+}
+
+struct Parser<'a> {
+    rest: Peekable<Chars<'a>>,
+    math: bool,
+    upright: bool,
+    runs: Vec<Run>,
+}
+
+impl Parser<'_> {
+    fn take(&mut self, c: char, script: Script) {
+        match c {
+            '$' => self.math = !self.math,
+            '\\' => self.command(script),
+            '_' if self.math => self.script(Script::Sub),
+            '^' if self.math => self.script(Script::Super),
+            '-' if self.math => self.push('−', script),
+            '{' | '}' if self.math => {}
+            _ => self.push(c, script),
+        }
+    }
+
+    fn push(&mut self, c: char, script: Script) {
+        let italic = self.math && !self.upright && is_variable(c);
+        let style = if italic {
+            Style::Italic
+        } else {
+            Style::Regular
+        };
+        match self.runs.last_mut() {
+            Some(run) if run.style == style && run.script == script => run.text.push(c),
+            _ => self.runs.push(Run {
+                text: c.to_string(),
+                style,
+                script,
+            }),
+        }
+    }
+
+    /// The argument of `_` or `^`: one character, one command or a group.
+    fn script(&mut self, script: Script) {
+        match self.rest.next() {
+            Some('{') => self.group(script),
+            Some(c) => self.take(c, script),
+            None => {}
+        }
+    }
+
+    fn group(&mut self, script: Script) {
+        while let Some(c) = self.rest.next() {
+            if c == '}' {
+                return;
+            }
+            self.take(c, script);
+        }
+    }
+
+    fn command(&mut self, script: Script) {
+        if let Some(c) = self.rest.next_if(|c| !c.is_ascii_alphabetic()) {
+            // A thin space inside numbers with units, or an escaped character.
+            return self.push(if c == ',' { '\u{2009}' } else { c }, script);
+        }
+        let mut name = String::new();
+        while let Some(c) = self.rest.next_if(char::is_ascii_alphabetic) {
+            name.push(c);
+        }
+        if name == "mathrm" {
+            return self.upright_group(script);
+        }
+        match SYMBOLS.iter().find(|(n, _)| *n == name) {
+            Some((_, symbol)) => self.push(*symbol, script),
+            None => format!("\\{name}")
+                .chars()
+                .for_each(|c| self.push(c, script)),
+        }
+    }
+
+    fn upright_group(&mut self, script: Script) {
+        if self.rest.next_if_eq(&'{').is_none() {
+            return;
+        }
+        let before = std::mem::replace(&mut self.upright, true);
+        self.group(script);
+        self.upright = before;
+    }
+}
+
+/// Latin and small Greek letters are variables, set in italics.
+fn is_variable(c: char) -> bool {
+    c.is_ascii_alphabetic() || ('α'..='ω').contains(&c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(text: &str, style: Style, script: Script) -> Run {
+        Run {
+            text: text.into(),
+            style,
+            script,
+        }
+    }
+
+    #[test]
+    fn subscripts_are_italic_unless_marked_upright() {
+        let runs = parse(r"$K_{\mathrm{eff}}$ of $v_0$");
+        let expected = vec![
+            run("K", Style::Italic, Script::Base),
+            run("eff", Style::Regular, Script::Sub),
+            run(" of ", Style::Regular, Script::Base),
+            run("v", Style::Italic, Script::Base),
+            run("0", Style::Regular, Script::Sub),
+        ];
+        assert_eq!(runs, expected);
+    }
+
+    #[test]
+    fn powers_of_ten_have_a_true_minus_sign() {
+        let runs = parse("$10^{-5}$");
+        assert_eq!(runs[1], run("−5", Style::Regular, Script::Super));
+    }
+
+    #[test]
+    fn file_names_outside_dollars_are_literal() {
+        assert_eq!(
+            parse("hertz_x^2-{a}"),
+            vec![run("hertz_x^2-{a}", Style::Regular, Script::Base)]
+        );
+    }
+
+    #[test]
+    fn greek_commands_become_letters() {
+        assert_eq!(
+            parse(r"$\alpha$"),
+            vec![run("α", Style::Italic, Script::Base)]
+        );
+        assert_eq!(
+            parse(r"$\Delta$"),
+            vec![run("Δ", Style::Regular, Script::Base)]
+        );
+    }
+
+    #[test]
+    fn malformed_markup_ends_quietly() {
+        for source in ["$x_", "$x^{", r"$\mathrm", r"\", "$", r"$\nosuch$", "$_^$"] {
+            parse(source);
+        }
+    }
+}
