@@ -11,10 +11,14 @@ pub mod chain;
 pub mod laws;
 pub mod material;
 pub mod motion;
+pub mod observe;
 pub mod sensor;
+pub mod system;
 pub mod theory;
+pub mod wave;
 
 pub use chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension};
 pub use material::{Material, Pair};
 pub use motion::Motion;
 pub use sensor::Sensor;
+pub use system::System;

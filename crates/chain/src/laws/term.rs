@@ -14,7 +14,7 @@ pub struct Closed {
     pub root: f64,
     /// Overlap rate δ̇ in m/s, positive while approaching.
     pub rate: f64,
-    /// Largest overlap since the contact was made, in m; never below `overlap`.
+    /// Largest overlap so far, in m; never below `overlap`.
     pub largest: f64,
 }
 

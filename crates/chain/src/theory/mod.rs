@@ -1,1 +1,7 @@
-//! Closed forms and exact waves.
+//! Theory.
+
+mod error;
+pub mod solitary;
+
+pub use error::TheoryError;
+use error::require_positive;

@@ -1,0 +1,9 @@
+//! What sensors on a chain see: signals, their maxima, times of flight.
+
+mod passage;
+mod signal;
+mod tracer;
+
+pub use passage::{Flank, Passage, PassageError, Passages};
+pub use signal::{Maximum, Signal, Stretch};
+pub use tracer::{Trace, Tracer};

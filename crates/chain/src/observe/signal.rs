@@ -1,0 +1,214 @@
+//! One sensor's signal as polynomials, with its maxima as roots of its rate.
+
+use crate::sensor::Sensor;
+use crate::wave::{Flow, Observer, Piece, bracketed_root};
+
+/// A local maximum of a signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Maximum {
+    /// When, in s.
+    pub time_s: f64,
+    /// How much, in the signal's unit.
+    pub value: f64,
+}
+
+/// A signal over one step: its values at five equidistant times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Start in s.
+    pub start_s: f64,
+    /// Length in s.
+    pub length_s: f64,
+    /// Values at θ = 0, 1/4, 1/2, 3/4, 1.
+    pub values: [f64; 5],
+}
+
+impl Stretch {
+    /// The quartic through the five values.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> f64 {
+        let s = 4.0 * (time_s - self.start_s) / self.length_s;
+        let [f0, f1, f2, f3, f4] = self.values;
+        // Newton's forward differences.
+        let (d1, d2) = (f1 - f0, f2 - 2.0 * f1 + f0);
+        let (d3, d4) = (
+            f3 - 3.0 * f2 + 3.0 * f1 - f0,
+            f4 - 4.0 * f3 + 6.0 * f2 - 4.0 * f1 + f0,
+        );
+        let (s1, s2, s3) = (s - 1.0, (s - 2.0) / 3.0, (s - 3.0) / 4.0);
+        f0 + s * (d1 + 0.5 * s1 * (d2 + s2 * (d3 + s3 * d4)))
+    }
+
+    /// End in s.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.length_s
+    }
+
+    /// Signs of the rate at the two ends, from one-sided five-point slopes.
+    fn end_slopes(&self) -> [f64; 2] {
+        let [f0, f1, f2, f3, f4] = self.values;
+        [
+            -25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4,
+            25.0 * f4 - 48.0 * f3 + 36.0 * f2 - 16.0 * f1 + 3.0 * f0,
+        ]
+    }
+}
+
+/// Follows one sensor through a shot.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    sensor: Sensor,
+    stretches: Vec<Stretch>,
+    maxima: Vec<Maximum>,
+    largest: f64,
+    /// End of the previous step: time, value, slope.
+    before: Option<(f64, f64, f64)>,
+}
+
+/// Stretches smaller than this fraction of the signal's largest value so far
+/// are not kept: they lie below anything that is picked.
+const KEPT: f64 = 1e-9;
+
+/// A force jump smaller than this fraction of the largest value is rounding.
+const JUMP: f64 = 1e-9;
+
+impl Signal {
+    /// Of a sensor.
+    #[must_use]
+    pub fn new(sensor: Sensor) -> Self {
+        Self {
+            sensor,
+            stretches: Vec::new(),
+            maxima: Vec::new(),
+            largest: 0.0,
+            before: None,
+        }
+    }
+
+    /// The sensor.
+    #[must_use]
+    pub fn sensor(&self) -> Sensor {
+        self.sensor
+    }
+
+    /// All local maxima so far, in order of time.
+    #[must_use]
+    pub fn maxima(&self) -> &[Maximum] {
+        &self.maxima
+    }
+
+    /// The signal so far; absent where it is 0.
+    #[must_use]
+    pub fn stretches(&self) -> &[Stretch] {
+        &self.stretches
+    }
+
+    /// The signal at a time, 0 where nothing was kept.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> f64 {
+        let after = self
+            .stretches
+            .partition_point(|stretch| stretch.start_s <= time_s);
+        match after.checked_sub(1).map(|i| self.stretches[i]) {
+            Some(stretch) if time_s <= stretch.end_s() => stretch.at(time_s),
+            _ => 0.0,
+        }
+    }
+
+    /// Adds the maxima of one step, and the one between it and the last.
+    fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
+        let [start_slope, end_slope] = stretch.end_slopes();
+        let [start, .., end] = stretch.values;
+        let floor = JUMP * self.largest;
+        if let Some((time_s, value, slope)) = self.before {
+            let rises = slope > 0.0 || start > value + floor;
+            let falls = start_slope <= 0.0 || start < value - floor;
+            if rises && falls {
+                self.maxima.push(Maximum {
+                    time_s,
+                    value: value.max(start),
+                });
+            }
+        }
+        for maximum in interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch) {
+            self.maxima.push(maximum);
+        }
+        self.before = Some((stretch.end_s(), end, end_slope));
+    }
+}
+
+impl Observer for Signal {
+    fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        if !piece.sees(self.sensor) {
+            self.before = None;
+            return Flow::Continue;
+        }
+        let values = std::array::from_fn(|i| piece.signal(self.sensor, 0.25 * i as f64));
+        let stretch = Stretch {
+            start_s: piece.start_s(),
+            length_s: piece.step_s(),
+            values,
+        };
+        let size = values
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        if size <= KEPT * self.largest || size == 0.0 {
+            self.before = None;
+            return Flow::Continue;
+        }
+        self.largest = self.largest.max(size);
+        self.look_for_maxima(piece, &stretch);
+        self.stretches.push(stretch);
+        Flow::Continue
+    }
+}
+
+/// Maxima inside one step: where the rate changes sign from + to −, found
+/// between the sampled values and refined on the equations of motion.
+fn interior_maxima(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    [start_slope, end_slope]: [f64; 2],
+    stretch: &Stretch,
+) -> Vec<Maximum> {
+    let values = stretch.values;
+    let slope = |i: usize| match i {
+        0 => start_slope,
+        4 => end_slope,
+        // Central five- and three-point slopes need only be right in sign.
+        2 => values[0] - 8.0 * values[1] + 8.0 * values[3] - values[4],
+        _ => values[i + 1] - values[i - 1],
+    };
+    let mut found = Vec::new();
+    let mut last = 0;
+    for i in 1..5 {
+        if slope(last) > 0.0 && slope(i) <= 0.0 {
+            let (low, high) = (0.25 * last as f64, 0.25 * i as f64);
+            found.push(refined(piece, sensor, low, high));
+        }
+        last = i;
+    }
+    found
+}
+
+/// The maximum in a bracket. Slopes of samples may misjudge the ends of the
+/// bracket by a little, so it is widened where the true rate disagrees.
+fn refined(piece: &Piece<'_>, sensor: Sensor, low: f64, high: f64) -> Maximum {
+    let falling = |theta: f64| -piece.signal_rate(sensor, theta);
+    let low = if falling(low) < 0.0 {
+        low
+    } else {
+        (low - 0.25).max(0.0)
+    };
+    let high = if falling(high) >= 0.0 {
+        high
+    } else {
+        (high + 0.25).min(1.0)
+    };
+    let theta = bracketed_root(falling, low, high, 1e-12);
+    Maximum {
+        time_s: piece.time_s(theta),
+        value: piece.signal(sensor, theta),
+    }
+}

@@ -1,0 +1,514 @@
+//! From a chain to columns, with every value checked on the way.
+
+use super::statics::{elastic_force, static_overlap, turning_time};
+use super::{Scales, SectionColumns, Spring, System, TermColumns};
+use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Section, Start};
+use crate::laws::{Columns, Nature};
+use crate::material::{Material, Pair};
+
+/// The shape that meets a contact from one side.
+#[derive(Clone, Copy)]
+struct Side {
+    radius_m: f64,
+    mass_kg: f64,
+    material: Material,
+}
+
+impl Side {
+    fn bead(bead: &Bead) -> Self {
+        Self {
+            radius_m: bead.radius_m,
+            mass_kg: bead.mass_kg,
+            material: bead.material,
+        }
+    }
+}
+
+pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
+    check_values(chain)?;
+    let near = near_side(chain);
+    let far = far_side(chain);
+    let pairs = pairs(chain, near, far);
+    let (sections, section_of) = sections(chain, &pairs)?;
+    let driven = matches!(chain.start, Start::Driven { .. });
+    let mut system = System {
+        mass_kg: masses(chain, near, far),
+        inverse_mass: Vec::new(),
+        offset_m: vec![f64::NEG_INFINITY; chain.beads.len() + 1],
+        static_force_n: vec![0.0; chain.beads.len() + 1],
+        sections,
+        section_of,
+        tension: chain.tension,
+        // A driven end carries the push itself.
+        spring: spring(&chain.push).filter(|_| !driven),
+        push_n: if driven { 0.0 } else { chain.push.force_n() },
+        slope_m_s2: chain.gravity_m_s2 * chain.incline_rad.sin(),
+        pendulum_per_s2: chain
+            .suspension_m
+            .map_or(0.0, |length| chain.gravity_m_s2 / length),
+        motion: match &chain.start {
+            Start::Driven { motion, .. } => Some(motion.clone()),
+            _ => None,
+        },
+        periodic: matches!(chain.far, FarEnd::Periodic { .. }),
+        has_striker: matches!(chain.start, Start::Striker { .. }),
+        stop_mass_kg: match chain.far {
+            FarEnd::Stop { mass_kg, .. } | FarEnd::PlaneStop { mass_kg, .. } => Some(mass_kg),
+            _ => None,
+        },
+        has_memory: false,
+        displacement_m: vec![0.0; chain.beads.len() + 2],
+        velocity_m_s: vec![0.0; chain.beads.len() + 2],
+        scales: Scales {
+            speed_m_s: 1.0,
+            time_s: 1.0,
+        },
+    };
+    system.has_memory = system
+        .sections
+        .iter()
+        .flat_map(SectionColumns::terms)
+        .any(|term| term.law.info().nature == Nature::ElasticPlastic);
+    system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
+    settle(chain, &mut system)?;
+    set_in_motion(chain, &mut system);
+    system.scales = scales(&system, &pairs);
+    Ok(system)
+}
+
+fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
+    match value.is_finite() && value > 0.0 {
+        true => Ok(()),
+        false => Err(ChainError::Value {
+            what: what(),
+            value,
+            expected: "positive and finite",
+        }),
+    }
+}
+
+fn finite(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
+    match value.is_finite() {
+        true => Ok(()),
+        false => Err(ChainError::Value {
+            what: what(),
+            value,
+            expected: "finite",
+        }),
+    }
+}
+
+fn at_least_zero(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
+    match value.is_finite() && value >= 0.0 {
+        true => Ok(()),
+        false => Err(ChainError::Value {
+            what: what(),
+            value,
+            expected: "0 or more, and finite",
+        }),
+    }
+}
+
+fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> {
+    positive(|| format!("radius of {}", name()), bead.radius_m)?;
+    positive(|| format!("mass of {}", name()), bead.mass_kg)
+}
+
+fn check_values(chain: &Chain) -> Result<(), ChainError> {
+    if chain.beads.is_empty() {
+        return Err(ChainError::Layout("a chain needs at least one bead".into()));
+    }
+    for (i, bead) in chain.beads.iter().enumerate() {
+        check_bead(bead, || format!("bead {}", i + 1))?;
+    }
+    check_start(chain)?;
+    check_far(&chain.far)?;
+    at_least_zero(|| "push on bead 1 in N".into(), chain.push.force_n())?;
+    if let Push::Spring { stiffness_n_m, .. } = chain.push {
+        at_least_zero(|| "stiffness of the push in N/m".into(), stiffness_n_m)?;
+    }
+    finite(|| "incline in rad".into(), chain.incline_rad)?;
+    at_least_zero(|| "gravity in m/s²".into(), chain.gravity_m_s2)?;
+    chain.suspension_m.map_or(Ok(()), |length| {
+        positive(|| "suspension in m".into(), length)
+    })?;
+    for gap in &chain.gaps {
+        contact_exists(chain, gap.contact, "a gap")?;
+        at_least_zero(|| format!("gap of contact {} in m", gap.contact), gap.gap_m)?;
+    }
+    for initial in &chain.initial {
+        if !(1..=chain.beads.len()).contains(&initial.bead) {
+            let what = format!(
+                "bead {} has an initial state but is not in the chain",
+                initial.bead
+            );
+            return Err(ChainError::Layout(what));
+        }
+        finite(
+            || format!("displacement of bead {}", initial.bead),
+            initial.displacement_m,
+        )?;
+        finite(
+            || format!("velocity of bead {}", initial.bead),
+            initial.velocity_m_s,
+        )?;
+    }
+    Ok(())
+}
+
+fn contact_exists(chain: &Chain, contact: usize, who: &str) -> Result<(), ChainError> {
+    match contact <= chain.beads.len() {
+        true => Ok(()),
+        false => Err(ChainError::Layout(format!(
+            "{who} names contact {contact}, but contacts are 0..={}",
+            chain.beads.len()
+        ))),
+    }
+}
+
+fn check_start(chain: &Chain) -> Result<(), ChainError> {
+    let periodic = matches!(chain.far, FarEnd::Periodic { .. });
+    if periodic && !matches!(chain.start, Start::Free) {
+        return Err(ChainError::Layout(
+            "a ring has no end to strike or drive".into(),
+        ));
+    }
+    match &chain.start {
+        Start::Striker { bead, speed_m_s } => {
+            check_bead(bead, || "the striker".into())?;
+            positive(|| "speed of the striker in m/s".into(), *speed_m_s)
+        }
+        Start::Driven { bead, .. } => positive(|| "radius of the driven end".into(), bead.radius_m),
+        Start::Free => Ok(()),
+    }
+}
+
+fn check_far(far: &FarEnd) -> Result<(), ChainError> {
+    match *far {
+        FarEnd::HalfBead { radius_m, .. } => {
+            positive(|| "radius of the half-bead".into(), radius_m)
+        }
+        FarEnd::Stop {
+            radius_m, mass_kg, ..
+        } => {
+            positive(|| "radius of the half-bead".into(), radius_m)?;
+            positive(|| "mass of the stop".into(), mass_kg)
+        }
+        FarEnd::PlaneStop { mass_kg, .. } => positive(|| "mass of the stop".into(), mass_kg),
+        FarEnd::Periodic { force_n } => {
+            at_least_zero(|| "static force of the ring".into(), force_n)
+        }
+        FarEnd::Plane { .. } | FarEnd::Free => Ok(()),
+    }
+}
+
+fn near_side(chain: &Chain) -> Option<Side> {
+    match &chain.start {
+        Start::Striker { bead, .. } => Some(Side::bead(bead)),
+        Start::Driven { bead, .. } => Some(Side {
+            mass_kg: f64::INFINITY,
+            ..Side::bead(bead)
+        }),
+        Start::Free => None,
+    }
+}
+
+fn far_side(chain: &Chain) -> Option<Side> {
+    let fixed = f64::INFINITY;
+    match chain.far {
+        FarEnd::HalfBead { radius_m, material } => Some(Side {
+            radius_m,
+            mass_kg: fixed,
+            material,
+        }),
+        FarEnd::Plane { material } => Some(Side {
+            radius_m: fixed,
+            mass_kg: fixed,
+            material,
+        }),
+        FarEnd::Stop {
+            radius_m,
+            material,
+            mass_kg,
+        } => Some(Side {
+            radius_m,
+            mass_kg,
+            material,
+        }),
+        FarEnd::PlaneStop { material, mass_kg } => Some(Side {
+            radius_m: f64::INFINITY,
+            mass_kg,
+            material,
+        }),
+        FarEnd::Periodic { .. } => chain.beads.first().map(Side::bead),
+        FarEnd::Free => None,
+    }
+}
+
+/// Product over sum, with the limit for an infinite partner.
+fn reduced(left: f64, right: f64) -> f64 {
+    match (left.is_infinite(), right.is_infinite()) {
+        (true, _) => right,
+        (_, true) => left,
+        _ => left * right / (left + right),
+    }
+}
+
+fn pair(left: Side, right: Side, material: Option<Material>) -> Pair {
+    Pair {
+        left: material.unwrap_or(left.material),
+        right: material.unwrap_or(right.material),
+        radius_m: reduced(left.radius_m, right.radius_m),
+        mass_kg: reduced(left.mass_kg, right.mass_kg),
+    }
+}
+
+/// The pair of every contact, `None` where a side is missing.
+fn pairs(chain: &Chain, near: Option<Side>, far: Option<Side>) -> Vec<Option<Pair>> {
+    let beads = chain.beads.len();
+    let side = |body: usize| match body {
+        0 => near,
+        body if body > beads => far,
+        body => chain.beads.get(body - 1).map(Side::bead),
+    };
+    let material = |contact: usize| {
+        chain
+            .sections
+            .iter()
+            .find(|s| s.contacts.contains(&contact))
+            .and_then(|s| s.material)
+    };
+    (0..=beads)
+        .map(|c| Some(pair(side(c)?, side(c + 1)?, material(c))))
+        .collect()
+}
+
+/// Sections in order with their columns, and the section of every contact.
+fn sections(
+    chain: &Chain,
+    pairs: &[Option<Pair>],
+) -> Result<(Vec<SectionColumns>, Vec<u32>), ChainError> {
+    let mut ordered: Vec<&Section> = chain.sections.iter().collect();
+    ordered.sort_by_key(|section| *section.contacts.start());
+    let mut section_of = vec![u32::MAX; pairs.len()];
+    let mut columns = Vec::new();
+    for section in ordered {
+        let (first, last) = (*section.contacts.start(), *section.contacts.end());
+        contact_exists(chain, last, "a section")?;
+        if let Some(c) = (first..=last).find(|&c| section_of[c] != u32::MAX) {
+            return Err(ChainError::Layout(format!(
+                "contact {c} is in two sections"
+            )));
+        }
+        section_of[first..=last].fill(columns.len() as u32);
+        columns.push(section_columns(section, pairs)?);
+    }
+    match (0..pairs.len()).find(|&c| section_of[c] == u32::MAX && pairs[c].is_some()) {
+        Some(c) => Err(ChainError::Layout(format!(
+            "contact {c} is in no section: it has no law"
+        ))),
+        None => Ok((columns, section_of)),
+    }
+}
+
+fn section_columns(
+    section: &Section,
+    pairs: &[Option<Pair>],
+) -> Result<SectionColumns, ChainError> {
+    let contacts = *section.contacts.start()..*section.contacts.end() + 1;
+    let (mut gated, mut ungated) = (Vec::new(), Vec::new());
+    for law in &section.laws {
+        let rows = contacts.clone().map(|contact| {
+            // A contact that does not exist never closes; any pair will do.
+            let any = pairs[contact].or_else(|| pairs.iter().flatten().next().copied());
+            let Some(pair) = any else {
+                return Ok(Vec::new());
+            };
+            law.coefficients(&pair)
+                .map_err(|error| ChainError::Law { contact, error })
+        });
+        let columns = Columns::from_rows(&rows.collect::<Result<Vec<_>, _>>()?);
+        let term = TermColumns {
+            law: law.clone(),
+            columns,
+        };
+        if law.info().gated {
+            gated.push(term)
+        } else {
+            ungated.push(term)
+        }
+    }
+    Ok(SectionColumns {
+        contacts,
+        gated,
+        ungated,
+    })
+}
+
+/// Masses of bodies 0..=N+1; infinite where nothing moves.
+fn masses(chain: &Chain, near: Option<Side>, far: Option<Side>) -> Vec<f64> {
+    let mass = |side: Option<Side>| side.map_or(f64::INFINITY, |side| side.mass_kg);
+    let far = if matches!(chain.far, FarEnd::Periodic { .. }) {
+        f64::INFINITY
+    } else {
+        mass(far)
+    };
+    std::iter::once(mass(near))
+        .chain(chain.beads.iter().map(|bead| bead.mass_kg))
+        .chain(std::iter::once(far))
+        .collect()
+}
+
+fn spring(push: &Push) -> Option<Spring> {
+    match *push {
+        Push::Spring {
+            force_n,
+            stiffness_n_m,
+        } => Some(Spring {
+            force_n,
+            stiffness_n_m,
+        }),
+        _ => None,
+    }
+}
+
+/// Load of every contact at rest in N: the push and the weight above it.
+fn loads(chain: &Chain, system: &System) -> Vec<f64> {
+    if let FarEnd::Periodic { force_n } = chain.far {
+        let mut loads = vec![force_n; system.contacts()];
+        loads[0] = 0.0;
+        return loads;
+    }
+    let driven = matches!(chain.start, Start::Driven { .. });
+    let mut load = chain.push.force_n();
+    let mut loads = vec![if driven { load } else { 0.0 }];
+    for bead in &chain.beads {
+        load += bead.mass_kg * system.slope_m_s2;
+        loads.push(load);
+    }
+    loads
+}
+
+/// Static overlap and force of every contact.
+fn settle(chain: &Chain, system: &mut System) -> Result<(), ChainError> {
+    let loads = loads(chain, system);
+    check_equilibrium(chain, system, &loads)?;
+    let exists = |c: usize| match c {
+        0 => !matches!(chain.start, Start::Free),
+        c if c == chain.beads.len() => !matches!(chain.far, FarEnd::Free),
+        _ => true,
+    };
+    for (c, &load) in loads.iter().enumerate().filter(|&(c, _)| exists(c)) {
+        let overlap = static_overlap(system, c, load)?;
+        system.offset_m[c] = overlap;
+        system.static_force_n[c] = elastic_force(system, c, overlap);
+    }
+    for gap in &chain.gaps {
+        if loads[gap.contact] == 0.0 && gap.gap_m > 0.0 && exists(gap.contact) {
+            system.offset_m[gap.contact] = -gap.gap_m;
+        }
+    }
+    Ok(())
+}
+
+fn check_equilibrium(chain: &Chain, system: &System, loads: &[f64]) -> Result<(), ChainError> {
+    let fail = |why: &str| Err(ChainError::Equilibrium(why.into()));
+    if matches!(chain.far, FarEnd::Periodic { .. })
+        && (chain.push.force_n() != 0.0 || system.slope_m_s2 != 0.0)
+    {
+        return fail("a ring can be neither pushed nor inclined");
+    }
+    if loads.iter().any(|&load| load < 0.0) {
+        return fail("the incline lets the chain slide away from the wall");
+    }
+    if chain.suspension_m.is_some() && loads.iter().any(|&load| load > 0.0) {
+        return fail("a hanging chain can be neither pushed nor inclined");
+    }
+    if matches!(chain.far, FarEnd::Free) && loads.last().is_some_and(|&load| load > 0.0) {
+        return fail("the chain is pushed or inclined, but nothing holds its far end");
+    }
+    Ok(())
+}
+
+fn set_in_motion(chain: &Chain, system: &mut System) {
+    if let Start::Striker { speed_m_s, .. } = chain.start {
+        system.velocity_m_s[0] = speed_m_s;
+    }
+    if let Some(motion) = &system.motion {
+        (system.displacement_m[0], system.velocity_m_s[0]) = motion.at(0.0);
+    }
+    for initial in &chain.initial {
+        system.displacement_m[initial.bead] += initial.displacement_m;
+        system.velocity_m_s[initial.bead] += initial.velocity_m_s;
+    }
+    if system.periodic {
+        let last = system.bodies() - 1;
+        system.displacement_m[last] = system.displacement_m[1];
+        system.velocity_m_s[last] = system.velocity_m_s[1];
+    }
+}
+
+/// The speed that moves the chain and the shortest time in which a pair of
+/// its bodies turns round at that speed.
+fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
+    let speed = characteristic_speed(system);
+    let time = pairs
+        .iter()
+        .enumerate()
+        .filter_map(|(c, pair)| pair.map(|pair| (c, pair.mass_kg)))
+        .map(|(c, mass)| statics_time(system, c, mass, speed))
+        .fold(f64::INFINITY, f64::min);
+    let time_s = if time.is_finite() && time > 0.0 {
+        time
+    } else {
+        1.0
+    };
+    Scales {
+        speed_m_s: speed,
+        time_s,
+    }
+}
+
+fn statics_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
+    let mass = if mass_kg.is_finite() {
+        mass_kg
+    } else {
+        system.mass_kg[1]
+    };
+    turning_time(system, contact, mass, speed_m_s)
+}
+
+fn characteristic_speed(system: &System) -> f64 {
+    let driven = system
+        .motion
+        .as_ref()
+        .map_or(0.0, |motion| motion.largest_speed_m_s());
+    let moving = system
+        .velocity_m_s
+        .iter()
+        .fold(driven, |most, v| most.max(v.abs()));
+    if moving > 0.0 {
+        return moving;
+    }
+    // Only displaced: the speed that the largest stored energy can give.
+    let displaced = system
+        .displacement_m
+        .iter()
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    let swinging = displaced * system.pendulum_per_s2.sqrt();
+    let stored = (0..system.contacts())
+        .map(|c| system.stored_energy(c, system.offset_m[c].max(0.0) + displaced))
+        .fold(0.0_f64, f64::max);
+    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
+    let released = if system.pendulum_per_s2 > 0.0 {
+        0.0
+    } else {
+        (2.0 * stored / lightest).sqrt()
+    };
+    let speed = swinging.max(released);
+    if speed.is_finite() && speed > 0.0 {
+        speed
+    } else {
+        1.0
+    }
+}

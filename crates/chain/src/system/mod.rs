@@ -1,0 +1,131 @@
+//! A chain made ready for the loop: one column of numbers a quantity.
+
+mod assemble;
+mod contact;
+mod statics;
+
+pub use statics::StaticContact;
+
+use crate::chain::{Chain, ChainError, Tension};
+use crate::laws::{Columns, Law};
+use crate::motion::Motion;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Overlaps below this are treated as 0, so that the double-exponential
+/// forerunner of a wave never reaches denormal numbers. In m (or the unit of
+/// length of a dimensionless chain).
+pub const FLUSH: f64 = 1e-150;
+
+/// One term of the force over the contacts of a section.
+#[derive(Clone, Debug)]
+pub(crate) struct TermColumns {
+    pub law: Arc<dyn Law>,
+    pub columns: Columns,
+}
+
+/// Consecutive contacts that share their laws.
+#[derive(Clone, Debug)]
+pub(crate) struct SectionColumns {
+    pub contacts: Range<usize>,
+    pub gated: Vec<TermColumns>,
+    pub ungated: Vec<TermColumns>,
+}
+
+impl SectionColumns {
+    /// All terms, gated ones first.
+    pub fn terms(&self) -> impl Iterator<Item = &TermColumns> {
+        self.gated.iter().chain(&self.ungated)
+    }
+}
+
+/// How bead 1's spring changes its push as bead 1 moves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spring {
+    pub force_n: f64,
+    pub stiffness_n_m: f64,
+}
+
+/// Characteristic scales of a chain in motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Speed in m/s of whatever sets the chain in motion.
+    pub speed_m_s: f64,
+    /// Contact time in s: overlap at which a pair stops, over the speed.
+    pub time_s: f64,
+}
+
+/// A chain at static equilibrium, ready to be set in motion.
+///
+/// Bodies are 0..=N+1: 0 the striker or driven end, N+1 the far end.
+#[derive(Clone, Debug)]
+pub struct System {
+    pub(crate) mass_kg: Vec<f64>,
+    pub(crate) inverse_mass: Vec<f64>,
+    /// Static overlap in m, minus the gap where open, −∞ where no contact is.
+    pub(crate) offset_m: Vec<f64>,
+    pub(crate) static_force_n: Vec<f64>,
+    pub(crate) sections: Vec<SectionColumns>,
+    pub(crate) section_of: Vec<u32>,
+    pub(crate) tension: Tension,
+    pub(crate) spring: Option<Spring>,
+    pub(crate) push_n: f64,
+    pub(crate) slope_m_s2: f64,
+    pub(crate) pendulum_per_s2: f64,
+    pub(crate) motion: Option<Motion>,
+    pub(crate) periodic: bool,
+    pub(crate) has_striker: bool,
+    pub(crate) stop_mass_kg: Option<f64>,
+    pub(crate) has_memory: bool,
+    pub(crate) displacement_m: Vec<f64>,
+    pub(crate) velocity_m_s: Vec<f64>,
+    pub(crate) scales: Scales,
+}
+
+impl System {
+    /// Solves the static equilibrium and lays the chain out in columns.
+    ///
+    /// # Errors
+    /// See [`ChainError`].
+    pub fn new(chain: &Chain) -> Result<Self, ChainError> {
+        assemble::assemble(chain)
+    }
+
+    /// Number of bodies, N + 2.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.mass_kg.len()
+    }
+
+    /// Number of beads N.
+    #[must_use]
+    pub fn beads(&self) -> usize {
+        self.mass_kg.len() - 2
+    }
+
+    /// Number of contacts, N + 1; the last is the wall's.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.offset_m.len()
+    }
+
+    /// Characteristic speed and time.
+    #[must_use]
+    pub fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    /// Whether bodies without contact fly on straight lines at constant speed.
+    pub(crate) fn flies_free(&self) -> bool {
+        self.slope_m_s2 == 0.0
+            && self.pendulum_per_s2 == 0.0
+            && self.push_n == 0.0
+            && !self.periodic
+            && self.motion.is_none()
+            && self.static_force_n.iter().all(|&force| force == 0.0)
+            && self
+                .sections
+                .iter()
+                .all(|section| section.ungated.is_empty())
+    }
+}

@@ -1,0 +1,107 @@
+//! Rest: static overlaps from loads, and what follows from the elastic terms.
+
+use super::System;
+use crate::chain::ChainError;
+use crate::laws::Closed;
+
+/// One contact at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticContact {
+    /// Static overlap in m, minus the gap where open.
+    pub overlap_m: f64,
+    /// Load in N.
+    pub force_n: f64,
+    /// Slope of the elastic force there in N/m: the stiffness that small waves see.
+    pub stiffness_n_m: f64,
+}
+
+impl System {
+    /// A contact at rest.
+    #[must_use]
+    pub fn static_contact(&self, contact: usize) -> StaticContact {
+        let overlap = self.offset_m[contact];
+        StaticContact {
+            overlap_m: overlap,
+            force_n: self.static_force_n[contact],
+            stiffness_n_m: if overlap > 0.0 {
+                stiffness(self, contact, overlap)
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
+/// Slope of the elastic force by a central difference whose step balances
+/// rounding (1e-16) and curvature: right to about 1e-10.
+fn stiffness(system: &System, contact: usize, overlap: f64) -> f64 {
+    let step = 1e-5 * overlap;
+    let rise = elastic_force(system, contact, overlap + step)
+        - elastic_force(system, contact, overlap - step);
+    rise / (2.0 * step)
+}
+
+/// Force at rest of one contact in N: what all its terms give at zero rate.
+pub(super) fn elastic_force(system: &System, contact: usize, overlap: f64) -> f64 {
+    system.unclipped_force(contact, Closed::new(overlap.max(0.0), 0.0))
+}
+
+/// Smallest bracket [0, upper] in which a rising function passes a level.
+fn bracket(rising: impl Fn(f64) -> f64, level: f64) -> Option<f64> {
+    let mut upper = 1e-300_f64;
+    while rising(upper) < level {
+        upper *= 16.0;
+        if upper > 1e300 {
+            return None;
+        }
+    }
+    Some(upper)
+}
+
+/// Where a rising function passes a level, to the last bit that bisection
+/// on the floating-point grid can tell.
+fn invert(rising: impl Fn(f64) -> f64, level: f64) -> Option<f64> {
+    let mut high = bracket(&rising, level)?;
+    let mut low = if high <= 1e-300 { 0.0 } else { high / 16.0 };
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return Some(high);
+        }
+        if rising(middle) < level {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+}
+
+/// Overlap at which the elastic terms of a contact carry a load.
+pub(super) fn static_overlap(
+    system: &System,
+    contact: usize,
+    load_n: f64,
+) -> Result<f64, ChainError> {
+    if load_n == 0.0 {
+        return Ok(0.0);
+    }
+    invert(|overlap| elastic_force(system, contact, overlap), load_n).ok_or_else(|| {
+        ChainError::Equilibrium(format!(
+            "contact {contact} must carry {load_n} N, but none of its laws is elastic"
+        ))
+    })
+}
+
+/// Time in s, overlap over speed, in which a pair that meets at a speed is
+/// stopped by the elastic terms; under preload no longer than 1/ω of the pair.
+pub(super) fn turning_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
+    let kinetic = 0.5 * mass_kg * speed_m_s * speed_m_s;
+    let energy = |overlap| system.stored_energy(contact, overlap);
+    let turning = invert(energy, kinetic).map_or(f64::INFINITY, |overlap| overlap / speed_m_s);
+    let preloaded = system.static_contact(contact).stiffness_n_m;
+    if preloaded > 0.0 {
+        turning.min((mass_kg / preloaded).sqrt())
+    } else {
+        turning
+    }
+}

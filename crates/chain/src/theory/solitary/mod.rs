@@ -1,0 +1,8 @@
+//! The exact solitary wave of a touching lattice: shape and dimensional wave.
+
+mod grid;
+mod shape;
+mod wave;
+
+pub use shape::{SolitaryShape, kinetic_share_by_virial};
+pub use wave::SolitaryWave;

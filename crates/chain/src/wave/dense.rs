@@ -1,0 +1,251 @@
+//! A finished step as a continuous function of time.
+
+use super::energy::{Budget, Meter};
+use super::state::{Mode, State};
+use super::table::{DEGREE, Table};
+use crate::chain::Tension;
+use crate::laws::Closed;
+use crate::sensor::Sensor;
+use crate::system::{FLUSH, System};
+use std::ops::Range;
+
+/// One step of a shot. `θ` runs from 0 to 1 within it; forces are those of
+/// the contacts' modes during the step, so that at a change of mode the end
+/// of one piece and the start of the next are the two one-sided limits.
+#[derive(Clone, Debug)]
+pub struct Piece<'a> {
+    pub(super) system: &'a System,
+    pub(super) table: &'a Table,
+    /// State at the start of the step.
+    pub(super) state: &'a State,
+    pub(super) step_s: f64,
+    pub(super) accelerations: &'a [Vec<f64>],
+    pub(super) window: Range<usize>,
+    /// Since when bodies outside the window fly or rest.
+    pub(super) asleep_since_s: &'a [f64],
+    pub(super) frozen: bool,
+    pub(super) meter: Option<&'a Meter>,
+}
+
+impl Piece<'_> {
+    /// Time at which the step starts, in s.
+    #[must_use]
+    pub fn start_s(&self) -> f64 {
+        self.state.time_s
+    }
+
+    /// Length of the step in s.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// Time at `theta`, in s.
+    #[must_use]
+    pub fn time_s(&self, theta: f64) -> f64 {
+        self.state.time_s + theta * self.step_s
+    }
+
+    /// The chain.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        self.system
+    }
+
+    /// Energy terms at the start of the step, when a budget is kept.
+    #[must_use]
+    pub fn budget(&self) -> Option<Budget> {
+        self.meter
+            .map(|meter| meter.budget(self.system, self.state))
+    }
+
+    /// Whether a body is in the part of the chain that moves.
+    #[must_use]
+    pub fn is_awake(&self, body: usize) -> bool {
+        self.window.contains(&body)
+    }
+
+    /// Displacement in m and velocity in m/s of a body.
+    #[must_use]
+    pub fn body(&self, body: usize, theta: f64) -> (f64, f64) {
+        let time = self.time_s(theta);
+        if body == 0
+            && let Some(motion) = &self.system.motion
+        {
+            return motion.at(time);
+        }
+        let (x, v) = (self.state.x[body], self.state.v[body]);
+        if !self.is_awake(body) {
+            return (x + v * (time - self.asleep_since_s[body]), v);
+        }
+        let h = self.step_s;
+        let (mut moved, mut sped) = (0.0, 0.0);
+        for (j, a) in self.accelerations.iter().enumerate() {
+            sped += polynomial(&self.table.dense_velocity[j], theta) * a[body];
+            moved += polynomial(&self.table.dense_position[j], theta) * a[body];
+        }
+        (x + h * theta * v + h * h * moved, v + h * sped)
+    }
+
+    /// Overlap in m (negative across a gap) and overlap rate in m/s of a contact.
+    #[must_use]
+    pub fn overlap(&self, contact: usize, theta: f64) -> (f64, f64) {
+        let (left, before) = self.body(contact, theta);
+        let (right, after) = self.body(contact + 1, theta);
+        (
+            self.system.offset_m[contact] - (right - left),
+            before - after,
+        )
+    }
+
+    /// Dynamic force of a contact in N: its force less the static one.
+    #[must_use]
+    pub fn force(&self, contact: usize, theta: f64) -> f64 {
+        let (overlap, rate) = self.overlap(contact, theta);
+        self.force_at(contact, overlap, rate) - self.system.static_force_n[contact]
+    }
+
+    /// Force before any cut of a contact taken as closed, in N.
+    pub(super) fn closed_force(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
+        self.system
+            .unclipped_force(contact, self.closed(contact, overlap, rate))
+    }
+
+    fn closed(&self, contact: usize, overlap: f64, rate: f64) -> Closed {
+        let overlap = if overlap > FLUSH { overlap } else { 0.0 };
+        let largest = self.state.largest[contact].max(overlap);
+        Closed {
+            overlap,
+            root: overlap.sqrt(),
+            rate,
+            largest,
+        }
+    }
+
+    /// Total force in N at an overlap and a rate under this step's mode.
+    fn force_at(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
+        let closed = self.closed(contact, overlap, rate);
+        let mode = match self.frozen {
+            true => self.state.mode[contact],
+            false if overlap > FLUSH || (overlap >= 0.0 && rate > 0.0) => Mode::Closed,
+            false => Mode::Open,
+        };
+        let force = match mode {
+            Mode::Closed => self.system.unclipped_force(contact, closed),
+            Mode::Open => self.system.ungated_force(contact, closed),
+            Mode::Cut => 0.0,
+        };
+        let smooth = self.frozen && mode == Mode::Closed;
+        match self.system.tension {
+            Tension::Clipped if !smooth => force.max(0.0),
+            _ => force,
+        }
+    }
+
+    /// Acceleration of a body in m/s², from the forces at that time rather
+    /// than from a slope of the dense output, which would lose an order.
+    fn acceleration(&self, body: usize, theta: f64) -> f64 {
+        let (system, last) = (self.system, self.system.bodies() - 1);
+        if system.periodic && body == last {
+            return self.acceleration(1, theta);
+        }
+        let side = |contact: Option<usize>| {
+            contact
+                .filter(|&c| c < last)
+                .map_or(0.0, |c| self.force(c, theta))
+        };
+        let before = if system.periodic && body == 1 {
+            Some(last - 1)
+        } else {
+            body.checked_sub(1)
+        };
+        let mut a = (side(before) - side(Some(body))) * system.inverse_mass[body];
+        let x = self.body(body, theta).0;
+        if body == 0 && system.has_striker {
+            a += system.slope_m_s2;
+        }
+        if body == 1
+            && let Some(spring) = system.spring
+        {
+            a += (-spring.stiffness_n_m * x).max(-spring.force_n) * system.inverse_mass[1];
+        }
+        if body > 0 && body < last {
+            a - system.pendulum_per_s2 * x
+        } else {
+            a
+        }
+    }
+
+    /// Rate of change of a contact's force in N/s, by a central difference
+    /// along the motion whose step balances rounding and curvature.
+    #[must_use]
+    pub fn force_rate(&self, contact: usize, theta: f64) -> f64 {
+        let (overlap, rate) = self.overlap(contact, theta);
+        let change = self.acceleration(contact, theta) - self.acceleration(contact + 1, theta);
+        let step = 1e-4 * self.step_s;
+        let after = self.force_at(contact, overlap + rate * step, rate + change * step);
+        let before = self.force_at(contact, overlap - rate * step, rate - change * step);
+        (after - before) / (2.0 * step)
+    }
+
+    /// A sensor's signal.
+    #[must_use]
+    pub fn signal(&self, sensor: Sensor, theta: f64) -> f64 {
+        match sensor {
+            Sensor::Bead(n) => 0.5 * (self.force(self.before(n), theta) + self.force(n, theta)),
+            Sensor::Contact(c) => self.force(c, theta),
+            Sensor::Position(i) => self.body(i, theta).0,
+            Sensor::Velocity(i) => self.body(i, theta).1,
+            Sensor::BeadPlusWall(n) => {
+                self.signal(Sensor::Bead(n), theta) + self.force(self.system.contacts() - 1, theta)
+            }
+        }
+    }
+
+    /// Rate of change of a sensor's signal, per s.
+    #[must_use]
+    pub fn signal_rate(&self, sensor: Sensor, theta: f64) -> f64 {
+        match sensor {
+            Sensor::Bead(n) => {
+                0.5 * (self.force_rate(self.before(n), theta) + self.force_rate(n, theta))
+            }
+            Sensor::Contact(c) => self.force_rate(c, theta),
+            Sensor::Position(i) => self.body(i, theta).1,
+            Sensor::Velocity(i) => self.acceleration(i, theta),
+            Sensor::BeadPlusWall(n) => {
+                self.signal_rate(Sensor::Bead(n), theta)
+                    + self.force_rate(self.system.contacts() - 1, theta)
+            }
+        }
+    }
+
+    /// The contact on the striker's side of a bead.
+    fn before(&self, bead: usize) -> usize {
+        if bead == 1 && self.system.periodic {
+            self.system.contacts() - 1
+        } else {
+            bead - 1
+        }
+    }
+
+    /// Whether anything a sensor sees is in the part of the chain that moves.
+    #[must_use]
+    pub fn sees(&self, sensor: Sensor) -> bool {
+        match sensor {
+            Sensor::Bead(n) => (self.before(n)..=n + 1).any(|i| self.is_awake(i)),
+            Sensor::Contact(c) => self.is_awake(c) || self.is_awake(c + 1),
+            Sensor::Position(_) | Sensor::Velocity(_) => true,
+            Sensor::BeadPlusWall(n) => {
+                self.sees(Sensor::Bead(n)) || self.is_awake(self.system.bodies() - 1)
+            }
+        }
+    }
+}
+
+/// c_1 θ + c_2 θ² + …
+fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
+    coefficients
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| theta * (sum + c))
+}

@@ -1,0 +1,224 @@
+//! One force pass: from positions and velocities to accelerations.
+
+use super::state::State;
+use crate::chain::Tension;
+use crate::laws::Contacts;
+use crate::system::{FLUSH, System};
+use std::ops::Range;
+
+/// Whether gates keep the mode they had when the step began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gates {
+    /// Yes: the step ends where a mode changes.
+    Frozen,
+    /// No: every pass looks at the gate afresh.
+    Instant,
+}
+
+/// Columns of one force pass, kept between passes.
+#[derive(Clone, Debug)]
+pub(crate) struct Pass {
+    /// Overlap, negative across a gap.
+    pub gap: Vec<f64>,
+    pub overlap: Vec<f64>,
+    pub root: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub largest: Vec<f64>,
+    /// Sum of the gated terms as if closed and uncut.
+    pub closed_force: Vec<f64>,
+    /// Dynamic force of contact c at index c + 1; 0 at both ends.
+    pub dynamic: Vec<f64>,
+    /// Gates of the last pass, as in [`State`].
+    pub passing: Vec<f64>,
+    pub touching: Vec<f64>,
+    pub scratch: Vec<f64>,
+}
+
+impl Pass {
+    pub fn new(system: &System) -> Self {
+        let contacts = || vec![0.0; system.contacts()];
+        Self {
+            gap: contacts(),
+            overlap: contacts(),
+            root: contacts(),
+            rate: contacts(),
+            largest: contacts(),
+            closed_force: contacts(),
+            dynamic: vec![0.0; system.contacts() + 2],
+            passing: contacts(),
+            touching: contacts(),
+            scratch: contacts(),
+        }
+    }
+
+    /// Accelerations in m/s² of the bodies of a window at positions `x` and
+    /// velocities `v`; contacts at the window's edges carry no dynamic force.
+    pub fn accelerate(
+        &mut self,
+        system: &System,
+        state: &State,
+        gates: Gates,
+        bodies: Range<usize>,
+        (x, v): (&[f64], &[f64]),
+        a: &mut [f64],
+    ) {
+        let contacts = bodies.start..bodies.end - 1;
+        self.kinematics(system, contacts.clone(), x, v);
+        self.memory(system, state, contacts.clone());
+        match gates {
+            Gates::Frozen => {
+                self.passing[contacts.clone()].copy_from_slice(&state.passing[contacts.clone()]);
+                self.touching[contacts.clone()].copy_from_slice(&state.touching[contacts.clone()]);
+            }
+            Gates::Instant => self.look_at_gates(contacts.clone()),
+        }
+        self.add_terms(system, contacts.clone());
+        self.subtract_static(system, contacts, gates);
+        self.push_bodies(system, bodies, x, a);
+    }
+
+    /// Overlaps, their roots and their rates.
+    fn kinematics(&mut self, system: &System, contacts: Range<usize>, x: &[f64], v: &[f64]) {
+        let n = contacts.len();
+        let (first, end) = (contacts.start, contacts.end);
+        let offset = &system.offset_m[contacts.clone()];
+        let (left, right) = (&x[first..end], &x[first + 1..=end]);
+        let (before, after) = (&v[first..end], &v[first + 1..=end]);
+        let gap = &mut self.gap[contacts.clone()][..n];
+        let overlap = &mut self.overlap[contacts.clone()][..n];
+        let root = &mut self.root[contacts.clone()][..n];
+        let rate = &mut self.rate[contacts][..n];
+        for c in 0..n {
+            let depth = offset[c] - (right[c] - left[c]);
+            gap[c] = depth;
+            overlap[c] = if depth > FLUSH { depth } else { 0.0 };
+            root[c] = overlap[c].sqrt();
+            rate[c] = before[c] - after[c];
+        }
+    }
+
+    /// Largest overlaps, where a law asks for them.
+    fn memory(&mut self, system: &System, state: &State, contacts: Range<usize>) {
+        if !system.has_memory {
+            return;
+        }
+        for c in contacts {
+            self.largest[c] = state.largest[c].max(self.overlap[c]);
+        }
+    }
+
+    /// Closed ⇔ δ > 0, or δ = 0 and approaching.
+    fn look_at_gates(&mut self, contacts: Range<usize>) {
+        for c in contacts {
+            let closed = self.gap[c] > FLUSH || (self.gap[c] >= 0.0 && self.rate[c] > 0.0);
+            self.passing[c] = f64::from(u8::from(closed));
+            self.touching[c] = self.passing[c];
+        }
+    }
+
+    /// Sums of the terms; those that act across gaps go to `scratch`.
+    fn add_terms(&mut self, system: &System, contacts: Range<usize>) {
+        self.closed_force[contacts.clone()].fill(0.0);
+        self.scratch[contacts.clone()].fill(0.0);
+        for section in &system.sections {
+            let part =
+                section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);
+            if part.is_empty() {
+                continue;
+            }
+            let first = part.start - section.contacts.start;
+            let seen = Contacts {
+                overlap: &self.overlap[part.clone()],
+                root: &self.root[part.clone()],
+                rate: &self.rate[part.clone()],
+                largest: &self.largest[part.clone()],
+            };
+            for term in &section.gated {
+                let force = &mut self.closed_force[part.clone()];
+                term.law.add_forces(&term.columns, first, seen, force);
+            }
+            for term in &section.ungated {
+                let force = &mut self.scratch[part.clone()];
+                term.law.add_forces(&term.columns, first, seen, force);
+            }
+        }
+    }
+
+    /// Gates and cuts the sums, and takes the static force away.
+    fn subtract_static(&mut self, system: &System, contacts: Range<usize>, gates: Gates) {
+        let n = contacts.len();
+        let dynamic = &mut self.dynamic[contacts.start + 1..=contacts.end][..n];
+        let closed = &self.closed_force[contacts.clone()][..n];
+        let across = &self.scratch[contacts.clone()][..n];
+        let passing = &self.passing[contacts.clone()][..n];
+        let rest = &system.static_force_n[contacts.clone()][..n];
+        match system.tension {
+            Tension::Allowed => {
+                for c in 0..n {
+                    let force = if passing[c] > 0.0 { closed[c] } else { 0.0 };
+                    dynamic[c] = force + across[c] - rest[c];
+                }
+            }
+            Tension::Clipped => {
+                let touching = &self.touching[contacts][..n];
+                for c in 0..n {
+                    // A frozen closed gate keeps its smooth force until the
+                    // step has been ended where that force passes 0.
+                    let smooth = gates == Gates::Frozen && passing[c] > 0.0;
+                    let force = if passing[c] > 0.0 { closed[c] } else { 0.0 } + across[c];
+                    let cut = touching[c] > passing[c];
+                    let force = if cut {
+                        0.0
+                    } else if smooth {
+                        force
+                    } else {
+                        force.max(0.0)
+                    };
+                    dynamic[c] = force - rest[c];
+                }
+            }
+        }
+    }
+
+    /// Newton's second law for the bodies of a window.
+    fn push_bodies(&mut self, system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
+        self.dynamic[bodies.start] = 0.0;
+        self.dynamic[bodies.end] = 0.0;
+        let last = system.bodies() - 1;
+        if system.periodic {
+            self.dynamic[1] = self.dynamic[last];
+        }
+        let (left, right) = (
+            &self.dynamic[bodies.clone()],
+            &self.dynamic[bodies.start + 1..=bodies.end],
+        );
+        let inverse_mass = &system.inverse_mass[bodies.clone()];
+        let out = &mut a[bodies.clone()];
+        for i in 0..out.len() {
+            out[i] = (left[i] - right[i]) * inverse_mass[i];
+        }
+        if system.periodic {
+            a[last] = a[1];
+        }
+        push_ends(system, bodies, x, a);
+    }
+}
+
+/// What acts on single bodies beside contacts: the striker's weight, the
+/// spring on bead 1, threads.
+fn push_ends(system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
+    if bodies.start == 0 && system.has_striker {
+        a[0] += system.slope_m_s2;
+    }
+    if let Some(spring) = system.spring.filter(|_| bodies.start <= 1) {
+        // Against the force at rest; a spring never pulls.
+        let change = (-spring.stiffness_n_m * x[1]).max(-spring.force_n);
+        a[1] += change * system.inverse_mass[1];
+    }
+    if system.pendulum_per_s2 > 0.0 {
+        let last = system.bodies() - 1;
+        for i in bodies.start.max(1)..bodies.end.min(last) {
+            a[i] -= system.pendulum_per_s2 * x[i];
+        }
+    }
+}

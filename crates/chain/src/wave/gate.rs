@@ -1,0 +1,225 @@
+//! Openings and closings of contacts within a step.
+
+use super::dense::Piece;
+use super::forces::Pass;
+use super::state::{Mode, State};
+use crate::chain::Tension;
+use crate::laws::Closed;
+use crate::system::System;
+use std::ops::Range;
+
+/// What a contact is about to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Change {
+    /// To another mode, as its overlap passes 0.
+    Overlap(Mode),
+    /// To another mode, as its force passes 0.
+    Force(Mode),
+    /// From loading to unloading, where a law remembers the largest overlap.
+    Turn,
+}
+
+/// A change located in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Event {
+    pub contact: usize,
+    /// Where in the step, 0 to 1.
+    pub theta: f64,
+    change: Change,
+}
+
+/// Looks for changes of mode at the end of a step.
+#[derive(Clone, Debug)]
+pub(super) struct Watch {
+    /// Velocity change in m/s that is within a step's error.
+    slight_speed: f64,
+    /// Overlap in m that counts as 0 when a step was made to end there.
+    landing: f64,
+    speed: f64,
+    /// Time of the last change of each contact's mode and how many fell on it.
+    last: Vec<(f64, u8)>,
+}
+
+/// A located change must be this far, in steps, from the step's start to be
+/// worth a step of its own.
+const AT_START: f64 = 1e-9;
+
+impl Watch {
+    pub fn new(system: &System, tolerance: f64) -> Self {
+        let scales = system.scales();
+        Self {
+            slight_speed: 0.01 * tolerance * scales.speed_m_s,
+            landing: 0.1 * tolerance * scales.speed_m_s * scales.time_s,
+            speed: scales.speed_m_s,
+            last: vec![(-1.0, 0); system.contacts()],
+        }
+    }
+
+    /// The change a contact has made by the end of a step, judged from the
+    /// force pass there.
+    fn change(&self, system: &System, state: &State, pass: &Pass, c: usize) -> Option<Change> {
+        let gap = pass.gap[c];
+        let clipped = system.tension == Tension::Clipped;
+        match state.mode[c] {
+            Mode::Open => (gap > 0.0).then_some(Change::Overlap(Mode::Closed)),
+            _ if gap < 0.0 => Some(Change::Overlap(Mode::Open)),
+            Mode::Closed if clipped && pass.closed_force[c] < 0.0 => Some(Change::Force(Mode::Cut)),
+            Mode::Cut if pass.closed_force[c] > 0.0 => Some(Change::Force(Mode::Closed)),
+            Mode::Closed if system.has_memory => {
+                let loading = state.v[c] - state.v[c + 1] > 1e-9 * self.speed;
+                (loading && pass.rate[c] < -1e-9 * self.speed).then_some(Change::Turn)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a change left unlocated could alter a velocity by more than
+    /// the step's own error.
+    fn matters(&self, system: &System, pass: &Pass, c: usize, step_s: f64, change: Change) -> bool {
+        let depth = match change {
+            Change::Overlap(_) => pass.gap[c].abs(),
+            Change::Force(_) | Change::Turn => pass.gap[c].max(0.0),
+        };
+        let closed = Closed {
+            largest: pass.largest[c].max(depth),
+            ..Closed::new(depth, pass.rate[c])
+        };
+        let force = match change {
+            Change::Force(_) => pass.closed_force[c],
+            _ => system.unclipped_force(c, closed),
+        };
+        let inverse_mass = system.inverse_mass[c].max(system.inverse_mass[c + 1]);
+        force.abs() * step_s * inverse_mass > self.slight_speed
+    }
+
+    /// The first change in a step that must end the step, if any.
+    pub fn first(&self, piece: &Piece<'_>, pass: &Pass, contacts: Range<usize>) -> Option<Event> {
+        let (system, state) = (piece.system, piece.state);
+        contacts
+            .filter_map(|contact| {
+                let change = self.change(system, state, pass, contact)?;
+                let matters = self.matters(system, pass, contact, piece.step_s, change);
+                if !matters || self.has_landed(pass, contact, change) {
+                    return None;
+                }
+                let theta = locate(piece, contact, change);
+                let spent = change == Change::Turn || self.changed_at(contact, state.time_s) >= 2;
+                let again = theta < AT_START && spent;
+                (!again).then_some(Event {
+                    contact,
+                    theta,
+                    change,
+                })
+            })
+            .min_by(|a, b| a.theta.total_cmp(&b.theta))
+    }
+
+    fn changed_at(&self, contact: usize, time_s: f64) -> u8 {
+        let (time, count) = self.last[contact];
+        if time == time_s { count } else { 0 }
+    }
+
+    /// Whether the end of the step is at the change, as near as can be asked.
+    fn has_landed(&self, pass: &Pass, contact: usize, change: Change) -> bool {
+        // How near a force or a rate can be brought to 0 is the step's error,
+        // which `matters` knows.
+        matches!(change, Change::Overlap(_)) && pass.gap[contact].abs() <= self.landing
+    }
+
+    /// Sets the modes at the end of an accepted step; `aimed` is the change
+    /// that the step was made to end at. Tells whether any mode changed.
+    pub fn settle(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        pass: &Pass,
+        contacts: Range<usize>,
+        aimed: Option<Event>,
+    ) -> bool {
+        let mut changed = false;
+        for contact in contacts {
+            let found = self.change(system, state, pass, contact);
+            let aimed = aimed.filter(|event| event.contact == contact && found.is_none());
+            let landed = aimed
+                .map(|event| event.change)
+                .filter(|&change| match change {
+                    Change::Overlap(_) => pass.gap[contact].abs() <= self.landing,
+                    Change::Force(_) => true,
+                    Change::Turn => false,
+                });
+            if let Some(Change::Overlap(mode) | Change::Force(mode)) = found.or(landed) {
+                self.set(state, contact, mode);
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    /// Makes a change that falls on the start of a step.
+    pub fn apply(&mut self, state: &mut State, event: Event) {
+        if let Change::Overlap(mode) | Change::Force(mode) = event.change {
+            self.set(state, event.contact, mode);
+        }
+    }
+
+    fn set(&mut self, state: &mut State, contact: usize, mode: Mode) {
+        let count = self.changed_at(contact, state.time_s) + 1;
+        self.last[contact] = (state.time_s, count);
+        state.set(contact, mode);
+    }
+}
+
+impl Event {
+    /// Whether the step cannot be shortened to end at the change.
+    pub fn is_at_start(&self) -> bool {
+        self.theta < AT_START
+    }
+}
+
+/// Where in a step a change happens: bisection with secant steps on the
+/// dense output, to the resolution at which the redone step decides anyway.
+fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
+    // Negative before the change, positive after it.
+    let signed = |theta: f64| {
+        let (overlap, rate) = piece.overlap(contact, theta);
+        match change {
+            Change::Overlap(Mode::Closed) => overlap,
+            Change::Overlap(_) => -overlap,
+            Change::Force(Mode::Closed) => piece.closed_force(contact, overlap, rate),
+            Change::Force(_) => -piece.closed_force(contact, overlap, rate),
+            Change::Turn => -rate,
+        }
+    };
+    if signed(0.0) >= 0.0 {
+        return 0.0;
+    }
+    bracketed_root(signed, 0.0, 1.0, 1e-13)
+}
+
+/// A root of a function that is negative at `low` and not at `high`
+/// (the Illinois variant of false position).
+pub(crate) fn bracketed_root(
+    f: impl Fn(f64) -> f64,
+    mut low: f64,
+    mut high: f64,
+    width: f64,
+) -> f64 {
+    let (mut f_low, mut f_high) = (f(low), f(high));
+    for _ in 0..200 {
+        if high - low <= width || f_high <= 0.0 {
+            break;
+        }
+        let guess = (low * f_high - high * f_low) / (f_high - f_low);
+        let inside = guess > low && guess < high;
+        let middle = if inside { guess } else { 0.5 * (low + high) };
+        let value = f(middle);
+        if value < 0.0 {
+            (low, f_low) = (middle, value);
+            f_high *= 0.5;
+        } else {
+            (high, f_high) = (middle, value);
+            f_low *= 0.5;
+        }
+    }
+    high
+}

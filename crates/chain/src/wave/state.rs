@@ -1,0 +1,67 @@
+//! Where a shot stands: positions, velocities, gates.
+
+use crate::system::System;
+
+/// What a contact does while a step lasts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mode {
+    /// The bodies do not touch.
+    Open,
+    /// They touch and the laws act.
+    Closed,
+    /// They touch, but the laws would pull and the cut forbids it.
+    Cut,
+}
+
+/// State of a chain between two steps.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub time_s: f64,
+    pub x: Vec<f64>,
+    pub v: Vec<f64>,
+    pub mode: Vec<Mode>,
+    /// 1 where the laws' force acts, 0 elsewhere.
+    pub passing: Vec<f64>,
+    /// 1 where the bodies touch, 0 elsewhere.
+    pub touching: Vec<f64>,
+    /// Largest overlap so far; followed only if a law remembers it.
+    pub largest: Vec<f64>,
+}
+
+impl State {
+    /// The start of a shot. Contacts without a gap count as closed: their
+    /// force is 0 until they are pressed.
+    pub fn start(system: &System) -> Self {
+        let contacts = system.contacts();
+        let mut state = Self {
+            time_s: 0.0,
+            x: system.displacement_m.clone(),
+            v: system.velocity_m_s.clone(),
+            mode: vec![Mode::Open; contacts],
+            passing: vec![0.0; contacts],
+            touching: vec![0.0; contacts],
+            largest: vec![0.0; contacts],
+        };
+        for contact in 0..contacts {
+            let overlap = state.overlap(system, contact);
+            state.largest[contact] = overlap.max(system.offset_m[contact]).max(0.0);
+            let leaving = overlap == 0.0 && state.v[contact] < state.v[contact + 1];
+            if overlap >= 0.0 && !leaving {
+                state.set(contact, Mode::Closed);
+            }
+        }
+        state
+    }
+
+    /// Overlap δ of a contact in m, negative across a gap.
+    pub fn overlap(&self, system: &System, contact: usize) -> f64 {
+        system.offset_m[contact] - (self.x[contact + 1] - self.x[contact])
+    }
+
+    /// Changes a contact's mode.
+    pub fn set(&mut self, contact: usize, mode: Mode) {
+        self.mode[contact] = mode;
+        self.passing[contact] = f64::from(u8::from(mode == Mode::Closed));
+        self.touching[contact] = f64::from(u8::from(mode != Mode::Open));
+    }
+}

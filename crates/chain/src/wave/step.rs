@@ -1,0 +1,82 @@
+//! Stages of one step: weighted sums of accelerations.
+
+use std::ops::Range;
+
+/// Velocities and positions of a stage from those at the start of the step:
+/// V = v + h Σ w_j A_j, X = x + h c v + h² Σ u_j A_j.
+pub(super) fn stage(
+    bodies: Range<usize>,
+    (h, node): (f64, f64),
+    (position, velocity): (&[f64], &[f64]),
+    (x, v): (&[f64], &[f64]),
+    a: &[Vec<f64>],
+    (x_out, v_out): (&mut [f64], &mut [f64]),
+) {
+    let start = (&x[bodies.clone()], &v[bodies.clone()]);
+    let out = (&mut x_out[bodies.clone()], &mut v_out[bodies.clone()]);
+    let weights = (position, velocity);
+    match velocity.len() {
+        1 => combine::<1>(bodies, (h, node), weights, start, a, out),
+        2 => combine::<2>(bodies, (h, node), weights, start, a, out),
+        3 => combine::<3>(bodies, (h, node), weights, start, a, out),
+        4 => combine::<4>(bodies, (h, node), weights, start, a, out),
+        5 => combine::<5>(bodies, (h, node), weights, start, a, out),
+        6 => combine::<6>(bodies, (h, node), weights, start, a, out),
+        _ => combine::<7>(bodies, (h, node), weights, start, a, out),
+    }
+}
+
+/// The sum with a number of stages known at compile time, so that it unrolls.
+fn combine<const S: usize>(
+    bodies: Range<usize>,
+    (h, node): (f64, f64),
+    (position, velocity): (&[f64], &[f64]),
+    (x, v): (&[f64], &[f64]),
+    a: &[Vec<f64>],
+    (x_out, v_out): (&mut [f64], &mut [f64]),
+) {
+    let n = bodies.len();
+    let a: [&[f64]; S] = std::array::from_fn(|j| &a[j][bodies.clone()][..n]);
+    let moved: [f64; S] = std::array::from_fn(|j| h * h * position[j]);
+    let sped: [f64; S] = std::array::from_fn(|j| h * velocity[j]);
+    let (x, v) = (&x[..n], &v[..n]);
+    let (x_out, v_out) = (&mut x_out[..n], &mut v_out[..n]);
+    let drift = h * node;
+    for i in 0..n {
+        let (mut dx, mut dv) = (0.0, 0.0);
+        for j in 0..S {
+            dx += moved[j] * a[j][i];
+            dv += sped[j] * a[j][i];
+        }
+        x_out[i] = x[i] + (drift * v[i] + dx);
+        v_out[i] = v[i] + dv;
+    }
+}
+
+/// The largest error estimate of a step, in units of the scales, and the
+/// body that has it. NaN where any estimate is NaN.
+pub(super) fn error_norm(
+    bodies: Range<usize>,
+    h: f64,
+    [velocity, position]: &[Vec<f64>; 2],
+    a: &[Vec<f64>],
+    (speed, length): (f64, f64),
+) -> (f64, usize) {
+    let (mut worst, mut at) = (0.0_f64, bodies.start);
+    for i in bodies {
+        let (mut dx, mut dv) = (0.0, 0.0);
+        for (j, a) in a.iter().enumerate() {
+            dx += position[j] * a[i];
+            dv += velocity[j] * a[i];
+        }
+        let error = (h * dv / speed).abs().max((h * h * dx / length).abs());
+        // Written so that NaN is kept.
+        if !(error <= worst) {
+            (worst, at) = (error, i);
+            if worst.is_nan() {
+                break;
+            }
+        }
+    }
+    (worst, at)
+}

@@ -1,0 +1,80 @@
+//! The paper's chain, for tests.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
+use hertzchain_chain::observe::{Passage, Passages};
+use hertzchain_chain::wave::{DormandPrince, Limits, Method, Outcome, run};
+use hertzchain_chain::*;
+use std::sync::Arc;
+
+pub const STEEL: Material = Material {
+    young_modulus_pa: 213e9,
+    poisson_ratio: 0.3,
+    shear_viscosity_pa_s: 3.2e4,
+    bulk_viscosity_pa_s: 3.2e4,
+};
+
+pub const BALL: Bead = Bead {
+    radius_m: 6.35e-3,
+    mass_kg: 8.54e-3,
+    material: STEEL,
+};
+
+pub fn hertz() -> Arc<dyn Law> {
+    law(ElasticHertz { stiffness: None })
+}
+
+pub fn viscoelastic() -> Arc<dyn Law> {
+    law(DampingViscoelastic {
+        relaxation_time_s: None,
+        stiffness: None,
+    })
+}
+
+pub fn cubic() -> Arc<dyn Law> {
+    law(DampingCubic {
+        coefficient_kg_s_m2: 77.0,
+    })
+}
+
+/// `beads` equal balls between an equal striker and a fixed half-bead.
+pub fn row(beads: usize, speed_m_s: f64, laws: Vec<Arc<dyn Law>>) -> Chain {
+    Chain {
+        beads: vec![BALL; beads],
+        start: Start::Striker {
+            bead: BALL,
+            speed_m_s,
+        },
+        initial: vec![],
+        push: Push::None,
+        far: FarEnd::HalfBead {
+            radius_m: BALL.radius_m,
+            material: STEEL,
+        },
+        sections: vec![Section {
+            contacts: 0..=beads,
+            laws,
+            material: None,
+        }],
+        gaps: vec![],
+        incline_rad: 0.0,
+        gravity_m_s2: 9.80665,
+        suspension_m: None,
+        tension: Tension::Allowed,
+    }
+}
+
+pub fn shoot_with(chain: &Chain, method: &dyn Method) -> (Passage, Outcome) {
+    let system = System::new(chain).unwrap();
+    let mut passages = Passages::new(7.min(system.beads()), system.contacts() - 1, true);
+    let limits = Limits {
+        budget: true,
+        ..Limits::until(1.0)
+    };
+    let outcome = run(&system, method, limits, &mut [&mut passages]).unwrap();
+    (passages.passage().unwrap(), outcome)
+}
+
+pub fn shoot(chain: &Chain, tolerance: f64) -> (Passage, Outcome) {
+    shoot_with(chain, &DormandPrince { tolerance })
+}
