@@ -6,7 +6,7 @@ from integrate import row
 
 YOUNG, POISSON, RADIUS, MASS = 213e9, 0.3, 6.35e-3, 8.54e-3
 ETA, CUBIC, BEADS, SENSOR = 3.2e4, 77.0, 40, 7
-GRAVITY = 9.81  # m/s^2
+GRAVITY = 9.80665  # m/s^2
 
 # Effective values of the paper's table: Y, (factor, exponent) of eta and of nu over the impact speed in m/s.
 OILS = {
