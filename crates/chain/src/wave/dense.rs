@@ -19,6 +19,8 @@ pub struct Piece<'a> {
     /// State at the start of the step.
     pub(super) state: &'a State,
     pub(super) step_s: f64,
+    /// Positions and velocities at the end of the step.
+    pub(super) end: (&'a [f64], &'a [f64]),
     pub(super) accelerations: &'a [Vec<f64>],
     pub(super) window: Range<usize>,
     /// Since when bodies outside the window fly or rest.
@@ -65,6 +67,12 @@ impl Piece<'_> {
         self.window.contains(&body)
     }
 
+    /// Whether a contact is open during the step (with fixed steps: at its start).
+    #[must_use]
+    pub fn is_open(&self, contact: usize) -> bool {
+        self.state.mode[contact] == Mode::Open
+    }
+
     /// Displacement in m and velocity in m/s of a body.
     #[must_use]
     pub fn body(&self, body: usize, theta: f64) -> (f64, f64) {
@@ -78,6 +86,18 @@ impl Piece<'_> {
         if !self.is_awake(body) {
             return (x + v * (time - self.asleep_since_s[body]), v);
         }
+        if theta == 0.0 {
+            return (x, v);
+        }
+        if theta == 1.0 {
+            return (self.end.0[body], self.end.1[body]);
+        }
+        self.interpolated(body, theta)
+    }
+
+    /// Displacement and velocity of an awake body within the step.
+    fn interpolated(&self, body: usize, theta: f64) -> (f64, f64) {
+        let (x, v) = (self.state.x[body], self.state.v[body]);
         let h = self.step_s;
         let (mut moved, mut sped) = (0.0, 0.0);
         for (j, a) in self.accelerations.iter().enumerate() {

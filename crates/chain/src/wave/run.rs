@@ -436,6 +436,7 @@ impl<'a> Wave<'a> {
             table: self.table,
             state: &self.state,
             step_s: h,
+            end: (&self.x, &self.v),
             accelerations: &self.a,
             window: self.window.bodies.clone(),
             asleep_since_s: &self.window.asleep_since_s,

@@ -10,6 +10,6 @@ mod stepper;
 
 pub use elastic::{ElasticCollision, reduced_mass_kg};
 pub use restitution::{
-    ContactEnd, Restitution, restitution, restitution_by_series, restitution_coefficients,
-    viscoelastic_parameter,
+    ContactEnd, Rebound, ViscoelasticCollision, rebound, restitution_by_series,
+    restitution_coefficients,
 };

@@ -15,17 +15,19 @@ pub(super) fn extrapolated_step(
     let mut row: Vec<State> = Vec::with_capacity(COLUMNS);
     let mut correction = f64::INFINITY;
     for column in 0..COLUMNS {
-        let mut better = midpoints(rates, start, h, 2 * (column + 1));
-        for (lower, older) in row.iter_mut().rev().enumerate() {
-            let ratio = (column + 1) as f64 / (column - lower) as f64;
-            let last = better;
-            better = extrapolate(&last, older, ratio * ratio);
-            *older = last;
-            correction = distance(&better, &last);
+        let mut best = midpoints(rates, start, h, 2 * (column + 1));
+        let mut next = Vec::with_capacity(COLUMNS);
+        next.push(best);
+        for (order, older) in row.iter().enumerate() {
+            let ratio = (column + 1) as f64 / (column - order) as f64;
+            let better = extrapolate(&best, older, ratio * ratio);
+            correction = distance(&better, &best);
+            best = better;
+            next.push(best);
         }
-        row.insert(0, better);
+        row = next;
     }
-    let best = row.first().copied().unwrap_or(*start);
+    let best = row.last().copied().unwrap_or(*start);
     (best, correction)
 }
 

@@ -1,0 +1,49 @@
+//! When bodies let go of each other.
+
+use crate::wave::{Flow, Observer, Piece};
+
+/// Notes when body 0 first separates from bead 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Separation {
+    pressed: bool,
+    first: Option<(f64, f64)>,
+}
+
+impl Separation {
+    /// Time in s of the first separation and the velocity of body 0 then in
+    /// m/s, negative away from the chain.
+    #[must_use]
+    pub fn first(&self) -> Option<(f64, f64)> {
+        self.first
+    }
+}
+
+impl Observer for Separation {
+    fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        if self.first.is_none() {
+            if self.pressed && piece.is_open(0) {
+                self.first = Some((piece.start_s(), piece.body(0, 0.0).1));
+            }
+            self.pressed |= !piece.is_open(0);
+        }
+        Flow::Continue
+    }
+}
+
+/// Ends a shot when no contact is closed or closing: from then on every body
+/// flies alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Apart;
+
+impl Observer for Apart {
+    fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        let flying = |contact: usize| {
+            let (overlap, rate) = piece.overlap(contact, 1.0);
+            overlap < 0.0 && rate <= 0.0
+        };
+        match (0..piece.system().contacts()).all(flying) {
+            true => Flow::Finished,
+            false => Flow::Continue,
+        }
+    }
+}
