@@ -134,7 +134,7 @@ fn band_gap_of_a_mass_dimer_lies_between_the_two_single_bead_frequencies() {
     // Closed forms on both sides: rounding.
     assert!((edges.acoustic_top_hz - single(4.0)).abs() < 1e-15);
     assert!((edges.optical_bottom_hz - single(1.0)).abs() < 1e-15);
-    let top = (2.0 * 3.0 * (1.0 + 0.25) as f64).sqrt() / (2.0 * PI);
+    let top = 7.5f64.sqrt() / (2.0 * PI);
     assert!((edges.optical_top_hz - top).abs() < 1e-15);
 }
 

@@ -91,8 +91,8 @@ fn both_forms_become_exact_for_wide_waves() {
         (wave.speed_squared() - exact.speed_squared()).abs() / (exponent - 1.0)
     };
     for form in [LongWaveForm::Displacement, LongWaveForm::Strain] {
-        // First order in n - 1: a tenth, with room for the next order.
-        assert!(error(form, 1.05) < 0.15 * error(form, 1.5));
+        // First order in n - 1: a fifth, with room for the next order.
+        assert!(error(form, 1.02) < 0.25 * error(form, 1.1));
     }
 }
 

@@ -56,7 +56,7 @@ impl UniformChain {
             Ends::FreeFixed | Ends::FixedFree => PI * (2.0 * j + 1.0) / (2.0 * n + 1.0),
             Ends::FixedFixed => PI * (j + 1.0) / (n + 1.0),
             // Every wave number but 0 (and π) comes twice.
-            Ends::Periodic => 2.0 * PI * ((index + 1) / 2) as f64 / n,
+            Ends::Periodic => 2.0 * PI * index.div_ceil(2) as f64 / n,
         };
         self.angular_frequency_rad_s(wavenumber)
     }

@@ -117,7 +117,7 @@ impl<'shape> SolitaryWave<'shape> {
         self.stiffness * self.peak_overlap_m.powf(self.shape.exponent())
     }
 
-    /// Peak of a bead sensor, the mean of a bead's two contact forces, N.
+    /// Bead sensor's signal as the wave's centre passes the bead, N: its peak up to n = 1.75.
     pub fn peak_sensor_force_n(&self) -> f64 {
         self.peak_force_n() * self.shape.sensor(0.0)
     }
@@ -169,7 +169,7 @@ impl<'shape> SolitaryWave<'shape> {
         self.shape.force_width_beads() / self.speed_beads_s()
     }
 
-    /// Full width at half maximum of a bead sensor's signal in time, s.
+    /// Full width of a bead sensor's signal in time at half its central value, s.
     pub fn sensor_width_s(&self) -> f64 {
         self.shape.sensor_width_beads() / self.speed_beads_s()
     }

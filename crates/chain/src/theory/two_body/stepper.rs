@@ -61,9 +61,14 @@ fn advanced(from: &State, rates: &State, step: f64) -> State {
     result
 }
 
+/// Largest difference, relative for entries above 1; NaN counts as infinite.
 fn distance(a: &State, b: &State) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
+    let gap = |(x, y): (&f64, &f64)| (x - y).abs() / x.abs().max(1.0);
+    let worse = |worst: f64, gap: f64| if gap <= worst { worst } else { gap };
+    let largest = a.iter().zip(b).map(gap).fold(0.0, worse);
+    if largest.is_nan() {
+        f64::INFINITY
+    } else {
+        largest
+    }
 }
