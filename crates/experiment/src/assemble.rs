@@ -1,0 +1,235 @@
+//! From what a file says to a chain for one impact speed.
+
+use crate::finding::Problem;
+use crate::spec::{Far, Near, Shape, Spec};
+use hertzchain_chain::{Bead, Chain, FarEnd, Gap, Initial, Material, Section, Start};
+
+/// A chain and what is odd about it.
+pub(crate) type Assembled = (Chain, Vec<Problem>);
+
+/// The chain of an experiment, hit at this speed.
+pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Problem> {
+    let speed_m_s = striker_speed(spec, speed_m_s)?;
+    let (materials, mut oddities) = materials(spec, speed_m_s)?;
+    let beads = beads(spec, &materials)?;
+    let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
+        return Err(Problem::new(
+            &(0..0),
+            "the chain has no beads",
+            "expected at least one",
+        ));
+    };
+    let start = start(spec, speed_m_s, first, &materials)?;
+    let far = far(&spec.far, last, &materials);
+    oddities.extend(inelastic(spec));
+    let chain = Chain {
+        start,
+        far,
+        initial: initial(spec),
+        push: spec.push,
+        sections: sections(spec, &materials, beads.len())?,
+        gaps: gaps(spec),
+        incline_rad: spec.incline_rad,
+        gravity_m_s2: spec.gravity_m_s2,
+        suspension_m: spec.suspension_m,
+        tension: spec.tension,
+        beads,
+    };
+    Ok((chain, oddities))
+}
+
+/// The speed of the shot: the one asked for, else the file's.
+fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Problem> {
+    let wrong = |message: String, label: &str| Problem::new(&spec.near_span(), message, label);
+    match (&spec.near, asked_m_s) {
+        (Near::Striker { .. }, Some(speed)) if speed > 0.0 && speed.is_finite() => Ok(Some(speed)),
+        (Near::Striker { .. }, Some(speed)) => {
+            let message = format!("a shot at {speed} m/s was asked for");
+            Err(wrong(message, "expected a positive, finite speed"))
+        }
+        (Near::Striker { speed_m_s, .. }, None) => Ok(Some(*speed_m_s)),
+        (_, Some(speed)) => {
+            let message = format!("a shot at {speed} m/s was asked for, but there is no striker");
+            Err(wrong(message, "expected [striker]"))
+        }
+        (_, None) => Ok(None),
+    }
+}
+
+impl Spec {
+    /// Where the file tells what sets the chain in motion.
+    fn near_span(&self) -> std::ops::Range<usize> {
+        match &self.near {
+            Near::Striker { shape, .. } | Near::Driven { shape, .. } => shape.span.clone(),
+            Near::Free => 0..0,
+        }
+    }
+
+    /// Whether something of the chain is made of a material.
+    fn uses(&self, index: usize) -> bool {
+        let of = |shape: &Shape| shape.material == Some(index);
+        let parts = self.groups.iter().flat_map(|group| &group.cell);
+        let near = match &self.near {
+            Near::Striker { shape, .. } | Near::Driven { shape, .. } => of(shape),
+            Near::Free => false,
+        };
+        let far = match &self.far {
+            Far::HalfBead { shape, .. } | Far::Plane { shape, .. } => of(shape),
+            Far::Periodic { .. } | Far::Free => false,
+        };
+        let mut sections = self.sections.iter().map(|section| section.material);
+        near || far
+            || parts.into_iter().any(|part| part.material == Some(index))
+            || sections.any(|material| material == Some(index))
+    }
+}
+
+/// Every material at this speed; those without use only cost a warning.
+fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Problem>), Problem> {
+    let mut materials = Vec::new();
+    let mut oddities = Vec::new();
+    for (index, material) in spec.materials.0.iter().enumerate() {
+        if spec.uses(index) {
+            let (values, oddity) = material.at(speed)?;
+            materials.push(values);
+            oddities.extend(oddity);
+        } else {
+            materials.push(Material::RIGID);
+            let message = format!("nothing is made of `{}`", material.name);
+            oddities.push(Problem::new(
+                &material.span,
+                message,
+                "this material is not used",
+            ));
+        }
+    }
+    Ok((materials, oddities))
+}
+
+fn beads(spec: &Spec, materials: &[Material]) -> Result<Vec<Bead>, Problem> {
+    let mut beads = Vec::new();
+    for group in &spec.groups {
+        group.append(materials, &mut beads);
+    }
+    beads.truncate(spec.bead_count());
+    Ok(beads)
+}
+
+fn start(
+    spec: &Spec,
+    speed_m_s: Option<f64>,
+    first: &Bead,
+    materials: &[Material],
+) -> Result<Start, Problem> {
+    match (&spec.near, speed_m_s) {
+        (Near::Striker { shape, .. }, Some(speed_m_s)) => Ok(Start::Striker {
+            bead: body_0(spec, shape, first, materials)?,
+            speed_m_s,
+        }),
+        (Near::Driven { shape, motion }, _) => Ok(Start::Driven {
+            bead: Bead {
+                radius_m: shape.radius_m.unwrap_or(first.radius_m),
+                mass_kg: first.mass_kg,
+                material: material_of(shape, materials).unwrap_or(first.material),
+            },
+            motion: motion.clone(),
+        }),
+        _ => Ok(Start::Free),
+    }
+}
+
+fn material_of(shape: &Shape, materials: &[Material]) -> Option<Material> {
+    materials.get(shape.material?).copied()
+}
+
+/// The striker: what the file leaves out is as in bead 1; another size or
+/// material has another mass, which then needs a density.
+fn body_0(
+    spec: &Spec,
+    shape: &Shape,
+    first: &Bead,
+    materials: &[Material],
+) -> Result<Bead, Problem> {
+    let radius_m = shape.radius_m.unwrap_or(first.radius_m);
+    let like_bead_1 =
+        shape.radius_m.is_none_or(|r| r == first.radius_m) && shape.material.is_none();
+    let index = shape
+        .material
+        .or_else(|| spec.groups.first()?.cell.first()?.material);
+    let density = index.and_then(|i| spec.materials.0.get(i)?.density_kg_m3);
+    let mass_kg = match (shape.mass_kg, density) {
+        (Some(mass), _) => mass,
+        (None, _) if like_bead_1 => first.mass_kg,
+        (None, Some(density)) => crate::spec::sphere_mass_kg(radius_m, density),
+        (None, None) => {
+            let message = "the striker has no mass";
+            let label = "it differs from bead 1: expected `mass = \"8.54 g\"`, or a density in its \
+                         material";
+            return Err(Problem::new(&shape.span, message, label));
+        }
+    };
+    Ok(Bead {
+        radius_m,
+        mass_kg,
+        material: material_of(shape, materials).unwrap_or(first.material),
+    })
+}
+
+fn far(far: &Far, last: &Bead, materials: &[Material]) -> FarEnd {
+    let material = |shape: &Shape| material_of(shape, materials).unwrap_or(last.material);
+    let radius_m = |shape: &Shape| shape.radius_m.unwrap_or(last.radius_m);
+    match far {
+        Far::HalfBead { shape, stop_kg } => match stop_kg {
+            None => FarEnd::HalfBead {
+                radius_m: radius_m(shape),
+                material: material(shape),
+            },
+            Some(mass_kg) => FarEnd::Stop {
+                radius_m: radius_m(shape),
+                material: material(shape),
+                mass_kg: *mass_kg,
+            },
+        },
+        Far::Plane { shape, stop_kg } => match stop_kg {
+            None => FarEnd::Plane {
+                material: material(shape),
+            },
+            Some(mass_kg) => FarEnd::PlaneStop {
+                material: material(shape),
+                mass_kg: *mass_kg,
+            },
+        },
+        Far::Periodic { force_n } => FarEnd::Periodic { force_n: *force_n },
+        Far::Free => FarEnd::Free,
+    }
+}
+
+fn sections(spec: &Spec, materials: &[Material], beads: usize) -> Result<Vec<Section>, Problem> {
+    let section = |section: &crate::spec::SectionSpec| {
+        let laws = section.laws.iter().map(|law| law.build());
+        Ok(Section {
+            contacts: section.from..=section.last(beads),
+            laws: laws.collect::<Result<_, _>>()?,
+            material: section.material.and_then(|m| materials.get(m).copied()),
+        })
+    };
+    spec.sections.iter().map(section).collect()
+}
+
+/// A warning for sections that nothing pushes apart.
+fn inelastic(spec: &Spec) -> impl Iterator<Item = Problem> {
+    let inelastic = spec.sections.iter().filter(|section| !section.is_elastic());
+    inelastic.map(|section| {
+        let message = "no law of these contacts pushes the beads apart";
+        Problem::new(&section.span, message, "an elastic law is missing")
+            .help("add \"elastic_hertz\" to `laws`")
+    })
+}
+
+fn gaps(spec: &Spec) -> Vec<Gap> {
+    spec.gaps.iter().map(|(gap, _)| *gap).collect()
+}
+
+fn initial(spec: &Spec) -> Vec<Initial> {
+    spec.initial.iter().map(|(initial, _)| *initial).collect()
+}

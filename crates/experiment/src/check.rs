@@ -1,0 +1,253 @@
+//! A document against the declared keys: every mistake of form at once.
+
+use crate::document::{Entry, Node, Value};
+use crate::finding::Problem;
+use crate::keys::{Fields, Key, Kind, Limits, Need, Variants};
+use crate::laws;
+use crate::nearest;
+use crate::value::{Expected, Units};
+
+/// Checks tables and collects what is wrong.
+#[derive(Debug)]
+pub(crate) struct Check {
+    pub(crate) units: Units,
+    pub(crate) problems: Vec<Problem>,
+}
+
+/// The keys of a power law of the striker's speed.
+pub(crate) const POWER_LAW: [&str; 2] = ["prefactor", "exponent"];
+
+impl Check {
+    /// Checks a table against its keys; `tag` is a deciding key already read.
+    pub(crate) fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
+        if !matches!(node.value, Value::Table(_)) {
+            let message = format!("{} is {}", fields.title, node.kind());
+            self.add(Problem::new(&node.span, message, "expected a table"));
+            return;
+        }
+        for entry in node.entries() {
+            match fields.key(&entry.key) {
+                Some(key) => self.value(key, &entry.node),
+                None if tag == Some(entry.key.as_str()) => {}
+                None => self.unknown(entry, fields, tag),
+            }
+        }
+        for key in fields.keys {
+            self.needed(key, node, fields);
+        }
+    }
+
+    fn add(&mut self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
+    fn unknown(&mut self, entry: &Entry, fields: &Fields, tag: Option<&str>) {
+        let known: Vec<&str> = fields.keys.iter().map(|key| key.name).chain(tag).collect();
+        let message = format!("{} has no key `{}`", fields.title, entry.key);
+        let label = format!("expected one of: {}", known.join(", "));
+        let label = if known.is_empty() {
+            "expected nothing here".to_owned()
+        } else {
+            label
+        };
+        let near = nearest::of(&entry.key, known);
+        self.add(Problem::new(&entry.key_span, message, label).nearest(near));
+    }
+
+    fn needed(&mut self, key: &Key, node: &Node, fields: &Fields) {
+        let needed = match key.need {
+            Need::Always => true,
+            Need::InSi => self.units == Units::Si,
+            Need::Never => false,
+        };
+        if needed && node.get(key.name).is_none() {
+            let message = format!("{} has no `{}`", fields.title, key.name);
+            let label = format!("expected {}: {}", example(key), key.about);
+            self.add(Problem::new(&node.span, message, label));
+        }
+    }
+
+    fn value(&mut self, key: &'static Key, node: &Node) {
+        match &key.kind {
+            Kind::Quantity(unit, limits) => self.quantity(key.name, unit, *limits, node),
+            Kind::Scaled(unit, limits) => self.scaled(key.name, unit, *limits, node),
+            Kind::Quantities(unit) => self.each(key, node, |check, member| {
+                check.quantity(key.name, unit, Limits::ANY, member);
+            }),
+            Kind::Count { least, most } => self.count(key.name, *least, *most, node),
+            Kind::Counts => self.each(key, node, |check, member| {
+                check.count(key.name, 0, i64::MAX, member);
+            }),
+            Kind::Choice(options) => self.choice(key.name, options, node),
+            Kind::Text => self.kind(key, node, "text in quotes", node.text().is_some()),
+            Kind::Flag => {
+                let fits = matches!(node.value, Value::Flag(_));
+                self.kind(key, node, "true or false", fits);
+            }
+            Kind::Table(fields) => self.table(node, fields, None),
+            Kind::Tables(fields) => self.each(key, node, |check, member| {
+                check.table(member, fields, None);
+            }),
+            Kind::Named(fields) => self.named(key, node, fields),
+            Kind::Variants(variants) => self.variants(node, variants),
+            Kind::Laws => self.each(key, node, |check, member| {
+                let mut problems = laws::check(member, check.units);
+                check.problems.append(&mut problems);
+            }),
+        }
+    }
+
+    fn kind(&mut self, key: &Key, node: &Node, expected: &str, fits: bool) {
+        if !fits {
+            let message = format!("`{}` is {}", key.name, node.kind());
+            self.add(Problem::new(
+                &node.span,
+                message,
+                format!("expected {expected}"),
+            ));
+        }
+    }
+
+    fn each(&mut self, key: &Key, node: &Node, mut check: impl FnMut(&mut Self, &Node)) {
+        match &node.value {
+            Value::List(members) if members.is_empty() && !matches!(key.kind, Kind::Counts) => {
+                let message = format!("`{}` is empty", key.name);
+                self.add(Problem::new(
+                    &node.span,
+                    message,
+                    "expected at least one member",
+                ));
+            }
+            Value::List(members) => members.iter().for_each(|member| check(self, member)),
+            _ => {
+                let expected = match key.kind {
+                    Kind::Tables(fields) => format!("a list of tables, written {}", fields.title),
+                    _ => "a list in [ ]".to_owned(),
+                };
+                self.kind(key, node, &expected, false);
+            }
+        }
+    }
+
+    fn quantity(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
+        let expected = Expected {
+            name,
+            unit,
+            limits,
+            units: self.units,
+        };
+        self.problems.extend(expected.read(node).err());
+    }
+
+    fn scaled(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
+        if !matches!(node.value, Value::Table(_)) {
+            return self.quantity(name, unit, limits, node);
+        }
+        for (part, unit) in POWER_LAW.into_iter().zip([unit, "1"]) {
+            match node.get(part) {
+                Some(value) => self.quantity(part, unit, Limits::ANY, value),
+                None => {
+                    let message = format!("`{name}` has no `{part}`");
+                    let label = "expected { prefactor = …, exponent = … }, a power law of the \
+                                 striker's speed in m/s";
+                    self.add(Problem::new(&node.span, message, label));
+                }
+            }
+        }
+        for entry in node.entries() {
+            if !POWER_LAW.contains(&entry.key.as_str()) {
+                let message = format!("a power law has no key `{}`", entry.key);
+                let problem =
+                    Problem::new(&entry.key_span, message, "expected prefactor, exponent");
+                self.add(problem.nearest(nearest::of(&entry.key, POWER_LAW)));
+            }
+        }
+    }
+
+    fn count(&mut self, name: &str, least: i64, most: i64, node: &Node) {
+        if let Err(problem) = whole(name, least, most, node) {
+            self.add(problem);
+        }
+    }
+
+    fn choice(&mut self, name: &str, options: &[&str], node: &Node) {
+        if node.text().is_some_and(|text| options.contains(&text)) {
+            return;
+        }
+        let message = match node.text() {
+            Some(text) => format!("`{name}` has no option \"{text}\""),
+            None => format!("`{name}` is {}", node.kind()),
+        };
+        let label = format!("expected one of: \"{}\"", options.join("\", \""));
+        let near = node
+            .text()
+            .and_then(|text| nearest::of(text, options.iter().copied()));
+        self.add(Problem::new(&node.span, message, label).nearest(near));
+    }
+
+    fn named(&mut self, key: &Key, node: &Node, fields: &'static Fields) {
+        self.kind(
+            key,
+            node,
+            "tables with names",
+            matches!(node.value, Value::Table(_)),
+        );
+        for entry in node.entries() {
+            self.table(&entry.node, fields, None);
+        }
+    }
+
+    fn variants(&mut self, node: &Node, variants: &'static Variants) {
+        let options: Vec<&str> = variants.options.iter().map(|(name, _)| *name).collect();
+        let Some(tag) = node.get(variants.tag) else {
+            let message = format!("{} has no `{}`", variants.title, variants.tag);
+            let label = format!("expected {} = one of: {}", variants.tag, options.join(", "));
+            return self.add(Problem::new(&node.span, message, label));
+        };
+        self.choice(variants.tag, &options, tag);
+        if let Some(fields) = tag.text().and_then(|tag| variants.fields(tag)) {
+            self.table(node, fields, Some(variants.tag));
+        }
+    }
+}
+
+/// A whole number within limits.
+pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i64, Problem> {
+    let words = match most {
+        i64::MAX => format!("expected a whole number from {least}"),
+        _ => format!("expected a whole number from {least} to {most}"),
+    };
+    let problem = |message: String| Problem::new(&node.span, message, words.clone());
+    let Value::Number(number) = &node.value else {
+        return Err(problem(format!("`{name}` is {}", node.kind())));
+    };
+    let value = number.value;
+    // Whole numbers beyond 2^53 are not told apart by a double.
+    if value.fract() != 0.0 || value.abs() > 9e15 || !value.is_finite() {
+        let message = format!("`{name}` = {value} is not a whole number, or is too large");
+        return Err(problem(message));
+    }
+    let found = value as i64;
+    if (least..=most).contains(&found) {
+        Ok(found)
+    } else {
+        Err(problem(format!("`{name}` = {found} is out of range")))
+    }
+}
+
+/// A key with a value, as an example of what is missing.
+fn example(key: &Key) -> String {
+    let name = key.name;
+    match &key.kind {
+        Kind::Quantity("1", _) | Kind::Scaled("1", _) => format!("`{name} = 0.3`"),
+        Kind::Quantity(unit, _) | Kind::Scaled(unit, _) => {
+            let dimension = crate::units::parse_unit(unit).map(|unit| unit.dimension);
+            let example = dimension.map_or_else(|_| String::new(), |d| d.example());
+            format!("`{name} = \"{example}\"`")
+        }
+        Kind::Tables(_) => format!("a table [[{name}]]"),
+        Kind::Count { .. } => format!("`{name} = 1`"),
+        Kind::Laws => "`laws = [\"elastic_hertz\"]`".to_owned(),
+        _ => format!("`{name} = \"…\"`"),
+    }
+}

@@ -1,0 +1,284 @@
+//! An experiment: a file that has been read, checked and understood.
+
+use crate::apply::apply;
+use crate::assemble;
+use crate::check::Check;
+use crate::document::{self, Node, Value};
+use crate::finding::{Finding, Mistakes, Problem, Source, Warning};
+use crate::keys::ROOT;
+use crate::reading::{Pick, Reading};
+use crate::spec::{Far, Liquid, Near, SectionSpec, Solver, Spec};
+use crate::value::Units;
+use crate::view::View;
+use hertzchain_chain::{Chain, Sensor};
+use miette::NamedSource;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A described experiment, valid and in SI.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    source: Source,
+    folder: PathBuf,
+    tree: Node,
+    /// What the file says, before any reading.
+    written: Spec,
+    /// What holds in the reading.
+    spec: Spec,
+}
+
+/// Why an experiment file can't be used.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The file can't be read at all.
+    #[error("{path} can't be read: {error}")]
+    Unreadable {
+        /// File.
+        path: String,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The file has mistakes.
+    #[error(transparent)]
+    Mistakes(#[from] Mistakes),
+}
+
+/// Larger files are a mistake.
+const MOST_BYTES: u64 = 16 << 20;
+
+impl Experiment {
+    /// Reads an experiment file.
+    ///
+    /// # Errors
+    /// An unreadable file, or every mistake found in it.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
+        let path = path.as_ref();
+        let unreadable = |error| OpenError::Unreadable {
+            path: path.display().to_string(),
+            error,
+        };
+        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
+            let error = std::io::Error::other("an experiment file has at most 16 MiB");
+            return Err(unreadable(error));
+        }
+        let text = std::fs::read_to_string(path).map_err(unreadable)?;
+        Ok(Self::from_text(&path.display().to_string(), &text)?)
+    }
+
+    /// Reads an experiment from text. `name` is used in messages, and its
+    /// folder is where files named in the text are looked for.
+    ///
+    /// # Errors
+    /// Every mistake found in the text.
+    pub fn from_text(name: &str, text: &str) -> Result<Self, Mistakes> {
+        let source = Arc::new(NamedSource::new(name, text.to_owned()).with_language("toml"));
+        let tree = document::parse(text).map_err(|problems| Mistakes::new(problems, &source))?;
+        let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
+        Self::from_tree(source, folder, tree, None)
+    }
+
+    /// The experiment of a tree, in a reading or the tree's own.
+    pub(crate) fn from_tree(
+        source: Source,
+        folder: PathBuf,
+        tree: Node,
+        reading: Option<&Reading>,
+    ) -> Result<Self, Mistakes> {
+        let units = units(&tree);
+        let mut check = Check {
+            units,
+            problems: Vec::new(),
+        };
+        check.table(&tree, &ROOT, None);
+        if !check.problems.is_empty() {
+            return Err(Mistakes::new(check.problems, &source));
+        }
+        let root = View {
+            node: &tree,
+            fields: &ROOT,
+            units,
+        };
+        let written = Spec::read(&root, &folder).map_err(|p| Mistakes::one(p, &source))?;
+        let reading = *reading.unwrap_or(&written.reading);
+        let experiment = Self {
+            spec: written.clone(),
+            source,
+            folder,
+            tree,
+            written,
+        };
+        experiment.with_reading(&reading)
+    }
+
+    /// This experiment in another reading.
+    ///
+    /// # Errors
+    /// When the reading leaves something outside the chain.
+    pub fn with_reading(&self, reading: &Reading) -> Result<Self, Mistakes> {
+        let spec = apply(&self.written, reading);
+        spec.check_layout().map_err(|p| self.mistake(p))?;
+        let experiment = Self {
+            spec,
+            ..self.clone()
+        };
+        experiment.chain(None)?;
+        Ok(experiment)
+    }
+
+    /// The chain, hit at this speed in m/s or at the file's own, and what is
+    /// odd about it. Materials may depend on the speed.
+    ///
+    /// # Errors
+    /// A speed without a striker, not positive or not finite; numbers that
+    /// leave their limits at this speed; laws that can't be built.
+    pub fn chain(&self, speed_m_s: Option<f64>) -> Result<(Chain, Vec<Warning>), Mistakes> {
+        let (chain, oddities) =
+            assemble::chain(&self.spec, speed_m_s).map_err(|p| self.mistake(p))?;
+        let warnings = oddities.into_iter().map(|p| p.warning(&self.source));
+        Ok((chain, warnings.collect()))
+    }
+
+    fn mistake(&self, problem: Problem) -> Mistakes {
+        Mistakes::one(problem, &self.source)
+    }
+
+    /// The experiment of a changed tree, in the present reading.
+    pub(crate) fn with_tree(&self, tree: Node) -> Result<Self, Mistakes> {
+        let reading = self.spec.reading;
+        Self::from_tree(
+            self.source.clone(),
+            self.folder.clone(),
+            tree,
+            Some(&reading),
+        )
+    }
+
+    pub(crate) fn tree(&self) -> &Node {
+        &self.tree
+    }
+
+    /// A mistake that concerns the whole file.
+    pub(crate) fn finding(&self, problem: Problem) -> Finding {
+        problem.mistake(&self.source)
+    }
+
+    /// Name of the file or preset.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.source.name()
+    }
+
+    /// The file's text, as provenance.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        self.source.inner()
+    }
+
+    /// What the experiment is.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.spec.title
+    }
+
+    /// Unit system of the file.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.spec.units
+    }
+
+    /// Speed of the striker in m/s; `None` without a striker.
+    #[must_use]
+    pub fn speed_m_s(&self) -> Option<f64> {
+        match self.spec.near {
+            Near::Striker { speed_m_s, .. } => Some(speed_m_s),
+            Near::Driven { .. } | Near::Free => None,
+        }
+    }
+
+    /// Number of beads N in the reading.
+    #[must_use]
+    pub fn beads(&self) -> usize {
+        self.spec.bead_count()
+    }
+
+    /// Whether bead N leans on something, so that there is a wall signal.
+    #[must_use]
+    pub fn has_wall(&self) -> bool {
+        matches!(self.spec.far, Far::HalfBead { .. } | Far::Plane { .. })
+    }
+
+    /// The sensor bead n of the ToF.
+    #[must_use]
+    pub fn sensor_bead(&self) -> usize {
+        self.spec.sensors.bead
+    }
+
+    /// All sensors: the sensor bead, the wall if there is one, the paper's
+    /// channel if asked for, then those the file lists.
+    #[must_use]
+    pub fn sensors(&self) -> Vec<Sensor> {
+        let sensors = &self.spec.sensors;
+        let wall = self.has_wall().then(|| Sensor::Contact(self.beads()));
+        let channel = sensors
+            .channel
+            .then_some(Sensor::BeadPlusWall(sensors.bead));
+        let first = [Some(Sensor::Bead(sensors.bead)), wall, channel];
+        let mut all: Vec<Sensor> = first.into_iter().flatten().collect();
+        let lists = [
+            (&sensors.beads, Sensor::Bead as fn(usize) -> Sensor),
+            (&sensors.contacts, Sensor::Contact),
+            (&sensors.positions, Sensor::Position),
+            (&sensors.velocities, Sensor::Velocity),
+        ];
+        for (list, sensor) in lists {
+            let more = list.iter().map(|(index, _)| sensor(*index));
+            let fresh: Vec<Sensor> = more.filter(|s| !all.contains(s)).collect();
+            all.extend(fresh);
+        }
+        all
+    }
+
+    /// Solver, accuracy, step and duration.
+    #[must_use]
+    pub fn solver(&self) -> Solver {
+        self.spec.solver
+    }
+
+    /// Seed of all randomness.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.spec.seed
+    }
+
+    /// The choices that the paper leaves open.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        self.spec.reading
+    }
+
+    /// Where a pulse is timed.
+    #[must_use]
+    pub fn pick(&self) -> Pick {
+        self.spec.reading.pick
+    }
+
+    /// The liquid of the wet contacts, if the file tells.
+    #[must_use]
+    pub fn liquid(&self) -> Option<&Liquid> {
+        self.spec.liquid.as_ref()
+    }
+
+    /// Sections of contacts with their laws, in the reading.
+    #[must_use]
+    pub fn sections(&self) -> &[SectionSpec] {
+        &self.spec.sections
+    }
+}
+
+/// The unit system, before anything else is read.
+fn units(tree: &Node) -> Units {
+    match tree.get("units").map(|node| &node.value) {
+        Some(Value::Text(text)) if text == "dimensionless" => Units::Dimensionless,
+        _ => Units::Si,
+    }
+}

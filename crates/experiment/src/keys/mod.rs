@@ -1,0 +1,132 @@
+//! The keys of an experiment file, declared once: the check of a file, its
+//! reading, the JSON Schema and the parameter paths all go by these tables.
+
+mod tables;
+
+pub(crate) use tables::{MOST_BEADS, ROOT};
+
+/// The keys of one table.
+#[derive(Debug)]
+pub(crate) struct Fields {
+    /// The table as written in a file: "[striker]".
+    pub(crate) title: &'static str,
+    pub(crate) keys: &'static [Key],
+}
+
+/// One key.
+#[derive(Debug)]
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) need: Need,
+    /// What it means, in a few words.
+    pub(crate) about: &'static str,
+}
+
+/// Whether a key must be there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Need {
+    Always,
+    /// In SI files; a dimensionless one has a default.
+    InSi,
+    Never,
+}
+
+/// What a key's value is.
+#[derive(Debug)]
+pub(crate) enum Kind {
+    /// A quantity in this SI unit; "1" for a plain number.
+    Quantity(&'static str, Limits),
+    /// A quantity, or a power law of the striker's speed.
+    Scaled(&'static str, Limits),
+    /// Quantities in this SI unit.
+    Quantities(&'static str),
+    /// A whole number up to a largest one.
+    Count {
+        least: i64,
+        most: i64,
+    },
+    /// Whole numbers from 0.
+    Counts,
+    Choice(&'static [&'static str]),
+    Text,
+    Flag,
+    Table(&'static Fields),
+    /// `[[name]]`
+    Tables(&'static Fields),
+    /// `[name.anything]`
+    Named(&'static Fields),
+    Variants(&'static Variants),
+    /// Rows of the contact-law registry.
+    Laws,
+}
+
+/// A table whose keys depend on the value of one of them.
+#[derive(Debug)]
+pub(crate) struct Variants {
+    pub(crate) title: &'static str,
+    /// The deciding key.
+    pub(crate) tag: &'static str,
+    pub(crate) options: &'static [(&'static str, Fields)],
+}
+
+/// Values that a quantity may have, in SI.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+    /// Whether the ends themselves are accepted.
+    pub(crate) closed: bool,
+    /// The range in words: "positive".
+    pub(crate) words: &'static str,
+}
+
+impl Limits {
+    pub(crate) const ANY: Self = Self::new(f64::MIN, f64::MAX, true, "finite");
+    pub(crate) const POSITIVE: Self = Self::new(0.0, f64::INFINITY, false, "positive");
+    pub(crate) const NOT_NEGATIVE: Self = Self::new(0.0, f64::MAX, true, "0 or more");
+
+    pub(crate) const fn new(least: f64, most: f64, closed: bool, words: &'static str) -> Self {
+        Self {
+            least,
+            most,
+            closed,
+            words,
+        }
+    }
+
+    pub(crate) fn hold(&self, value: f64) -> bool {
+        let inside = value > self.least && value < self.most;
+        let end = value == self.least || value == self.most;
+        inside || (self.closed && end)
+    }
+}
+
+impl Fields {
+    pub(crate) fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+impl Variants {
+    /// The keys that go with a value of the tag.
+    pub(crate) fn fields(&self, tag: &str) -> Option<&'static Fields> {
+        let option = self.options.iter().find(|(name, _)| *name == tag);
+        option.map(|(_, fields)| fields)
+    }
+}
+
+impl Key {
+    const fn new(name: &'static str, kind: Kind, about: &'static str) -> Self {
+        Self {
+            name,
+            kind,
+            need: Need::Never,
+            about,
+        }
+    }
+
+    const fn needed(self, need: Need) -> Self {
+        Self { need, ..self }
+    }
+}

@@ -1,0 +1,442 @@
+//! Every table of an experiment file.
+
+use super::{Fields, Key, Kind, Limits, Need, Variants};
+use crate::reading;
+use std::f64::consts::FRAC_PI_2;
+
+/// Longest chain: what fits into memory with all that a shot needs.
+pub(crate) const MOST_BEADS: i64 = 2_000_000;
+
+const fn positive(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(unit, Limits::POSITIVE), about)
+}
+
+const fn not_negative(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(unit, Limits::NOT_NEGATIVE), about)
+}
+
+const fn any(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(unit, Limits::ANY), about)
+}
+
+const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
+    let most = MOST_BEADS;
+    Key::new(name, Kind::Count { least, most }, about)
+}
+
+const fn text(name: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Text, about)
+}
+
+const MATERIAL_NAME: Key = text("material", "name of a material");
+
+const POISSON: Limits = Limits::new(-1.0, 1.0, false, "between -1 and 1");
+const ACCURACY: Limits = Limits::new(1e-13, 1e-2, true, "between 1e-13 and 1e-2");
+const INCLINE: Limits = Limits::new(0.0, FRAC_PI_2, true, "between 0 and 90 deg");
+const RATIO: Limits = Limits::new(0.0, 100.0, false, "positive and below 100");
+
+static MATERIAL: Fields = Fields {
+    title: "[materials.NAME]",
+    keys: &[
+        Key::new(
+            "young_modulus",
+            Kind::Scaled("Pa", Limits::POSITIVE),
+            "Young modulus Y",
+        )
+        .needed(Need::Always),
+        Key::new(
+            "poisson_ratio",
+            Kind::Scaled("1", POISSON),
+            "Poisson ratio ν",
+        )
+        .needed(Need::Always),
+        Key::new(
+            "shear_viscosity",
+            Kind::Scaled("Pa s", Limits::NOT_NEGATIVE),
+            "shear viscosity η1; default 0",
+        ),
+        Key::new(
+            "bulk_viscosity",
+            Kind::Scaled("Pa s", Limits::NOT_NEGATIVE),
+            "bulk viscosity η2; default: as shear_viscosity",
+        ),
+        positive("density", "kg/m^3", "density, for beads without a mass"),
+    ],
+};
+
+static STRIKER: Fields = Fields {
+    title: "[striker]",
+    keys: &[
+        positive("speed", "m/s", "speed toward the chain at first touch").needed(Need::Always),
+        positive("radius", "m", "radius; default: as bead 1"),
+        positive(
+            "mass",
+            "kg",
+            "mass; default: as bead 1, or from the material's density",
+        ),
+        MATERIAL_NAME,
+    ],
+};
+
+const DRIVEN_RADIUS: Key = positive(
+    "radius",
+    "m",
+    "radius of the driven body; default: as bead 1",
+);
+const AMPLITUDE: Key = any("amplitude", "m", "largest displacement").needed(Need::Always);
+
+static DRIVEN: Variants = Variants {
+    title: "[driven]",
+    tag: "motion",
+    options: &[
+        (
+            "sine",
+            Fields {
+                title: "[driven] with motion = \"sine\"",
+                keys: &[
+                    AMPLITUDE,
+                    positive("frequency", "Hz", "frequency").needed(Need::Always),
+                    DRIVEN_RADIUS,
+                    MATERIAL_NAME,
+                ],
+            },
+        ),
+        (
+            "pulse",
+            Fields {
+                title: "[driven] with motion = \"pulse\"",
+                keys: &[
+                    AMPLITUDE,
+                    positive("duration", "s", "duration of the push").needed(Need::Always),
+                    DRIVEN_RADIUS,
+                    MATERIAL_NAME,
+                ],
+            },
+        ),
+        (
+            "table",
+            Fields {
+                title: "[driven] with motion = \"table\"",
+                keys: &[
+                    Key::new("times", Kind::Quantities("s"), "times, increasing"),
+                    Key::new("positions", Kind::Quantities("m"), "positions, one a time"),
+                    text(
+                        "file",
+                        "CSV file with columns time_s,position_m, beside this file",
+                    ),
+                    DRIVEN_RADIUS,
+                    MATERIAL_NAME,
+                ],
+            },
+        ),
+    ],
+};
+
+static CELL: Fields = Fields {
+    title: "a member of cell",
+    keys: &[
+        number_of("count", 1, "beads alike in a row; default 1"),
+        positive("radius", "m", "radius").needed(Need::InSi),
+        positive("mass", "kg", "mass; default: from the material's density"),
+        MATERIAL_NAME.needed(Need::InSi),
+    ],
+};
+
+static BEADS: Fields = Fields {
+    title: "[[beads]]",
+    keys: &[
+        number_of("count", 1, "beads in the group; default 1"),
+        positive("radius", "m", "radius"),
+        Key::new(
+            "radius_ratio",
+            Kind::Quantity("1", RATIO),
+            "radius of a bead over that of the one before, for tapered chains",
+        ),
+        positive("mass", "kg", "mass; default: from the material's density"),
+        MATERIAL_NAME,
+        number_of("repeat", 1, "repetitions of the cell"),
+        Key::new(
+            "cell",
+            Kind::Tables(&CELL),
+            "beads of a unit cell, in order",
+        ),
+    ],
+};
+
+static SECTION: Fields = Fields {
+    title: "[[contacts]]",
+    keys: &[
+        number_of("from", 0, "first contact; default 0, before bead 1"),
+        number_of("to", 0, "last contact; default the wall contact"),
+        Key::new("laws", Kind::Laws, "contact laws whose forces add").needed(Need::Always),
+        text(
+            "material",
+            "effective material of both sides, in place of the beads' own",
+        ),
+        Key::new(
+            "wet",
+            Kind::Flag,
+            "whether the contacts are wet, for readings",
+        ),
+    ],
+};
+
+const HALF_BEAD_RADIUS: Key =
+    positive("radius", "m", "radius of the half-bead; default: as bead N");
+const STOP_MASS: Key = positive("mass", "kg", "mass of the stop").needed(Need::Always);
+
+static FAR_END: Variants = Variants {
+    title: "[far_end]",
+    tag: "kind",
+    options: &[
+        (
+            "half-bead",
+            Fields {
+                title: "[far_end] with kind = \"half-bead\"",
+                keys: &[HALF_BEAD_RADIUS, MATERIAL_NAME],
+            },
+        ),
+        (
+            "plane",
+            Fields {
+                title: "[far_end] with kind = \"plane\"",
+                keys: &[MATERIAL_NAME],
+            },
+        ),
+        (
+            "stop",
+            Fields {
+                title: "[far_end] with kind = \"stop\"",
+                keys: &[STOP_MASS, HALF_BEAD_RADIUS, MATERIAL_NAME],
+            },
+        ),
+        (
+            "plane-stop",
+            Fields {
+                title: "[far_end] with kind = \"plane-stop\"",
+                keys: &[STOP_MASS, MATERIAL_NAME],
+            },
+        ),
+        (
+            "periodic",
+            Fields {
+                title: "[far_end] with kind = \"periodic\"",
+                keys: &[not_negative(
+                    "force",
+                    "N",
+                    "static force around the ring; default 0",
+                )],
+            },
+        ),
+        (
+            "free",
+            Fields {
+                title: "[far_end] with kind = \"free\"",
+                keys: &[],
+            },
+        ),
+    ],
+};
+
+static NEAR_END: Variants = Variants {
+    title: "[near_end]",
+    tag: "push",
+    options: &[
+        (
+            "constant",
+            Fields {
+                title: "[near_end] with push = \"constant\"",
+                keys: &[not_negative("force", "N", "force on bead 1").needed(Need::Always)],
+            },
+        ),
+        (
+            "spring",
+            Fields {
+                title: "[near_end] with push = \"spring\"",
+                keys: &[
+                    not_negative("force", "N", "force on bead 1 at rest").needed(Need::Always),
+                    not_negative("stiffness", "N/m", "stiffness of the spring")
+                        .needed(Need::Always),
+                ],
+            },
+        ),
+    ],
+};
+
+static TRACK: Fields = Fields {
+    title: "[track]",
+    keys: &[
+        Key::new(
+            "incline",
+            Kind::Quantity("rad", INCLINE),
+            "incline, the wall below; default 0",
+        ),
+        not_negative("gravity", "m/s^2", "gravity; default 9.80665 m/s^2"),
+    ],
+};
+
+static SUSPENSION: Fields = Fields {
+    title: "[suspension]",
+    keys: &[
+        positive("length", "m", "length of the threads on which beads hang").needed(Need::Always),
+    ],
+};
+
+static GAP: Fields = Fields {
+    title: "[[gaps]]",
+    keys: &[
+        number_of("contact", 0, "contact").needed(Need::Always),
+        not_negative("gap", "m", "gap before the shot").needed(Need::Always),
+    ],
+};
+
+static INITIAL: Fields = Fields {
+    title: "[[initial]]",
+    keys: &[
+        number_of("bead", 1, "bead").needed(Need::Always),
+        any("displacement", "m", "displacement from rest; default 0"),
+        any("velocity", "m/s", "velocity; default 0"),
+    ],
+};
+
+static SENSORS: Fields = Fields {
+    title: "[sensors]",
+    keys: &[
+        number_of(
+            "bead",
+            1,
+            "sensor bead n of the ToF; default 7, or 1 in a chain below 8",
+        ),
+        Key::new("beads", Kind::Counts, "further bead sensors"),
+        Key::new("contacts", Kind::Counts, "contacts whose force is wanted"),
+        Key::new("positions", Kind::Counts, "bodies whose position is wanted"),
+        Key::new(
+            "velocities",
+            Kind::Counts,
+            "bodies whose velocity is wanted",
+        ),
+        Key::new(
+            "channel",
+            Kind::Flag,
+            "one channel that adds sensor bead and wall",
+        ),
+    ],
+};
+
+static SOLVER: Fields = Fields {
+    title: "[solver]",
+    keys: &[
+        Key::new(
+            "method",
+            Kind::Choice(crate::spec::METHODS),
+            "default adaptive",
+        ),
+        Key::new(
+            "accuracy",
+            Kind::Quantity("1", ACCURACY),
+            "relative; default 1e-6",
+        ),
+        positive("step", "s", "step of a fixed-step method"),
+        positive(
+            "duration",
+            "s",
+            "default: until the reflected pulse has passed the sensor",
+        ),
+    ],
+};
+
+static LIQUID: Fields = Fields {
+    title: "[liquid]",
+    keys: &[
+        text("name", "name of the liquid"),
+        positive("kinematic_viscosity", "m^2/s", "kinematic viscosity"),
+        positive("density", "kg/m^3", "density"),
+    ],
+};
+
+static READING: Fields = Fields {
+    title: "[reading]",
+    keys: reading::KEYS,
+};
+
+/// The whole file.
+pub(crate) static ROOT: Fields = Fields {
+    title: "an experiment file",
+    keys: &[
+        text("title", "what the experiment is"),
+        Key::new(
+            "units",
+            Kind::Choice(&["SI", "dimensionless"]),
+            "default SI",
+        ),
+        Key::new(
+            "tension",
+            Kind::Choice(&["allowed", "clipped"]),
+            "whether contacts may pull",
+        ),
+        Key::new(
+            "seed",
+            Kind::Count {
+                least: 0,
+                most: i64::MAX,
+            },
+            "seed of all randomness",
+        ),
+        Key::new(
+            "materials",
+            Kind::Named(&MATERIAL),
+            "what bodies are made of",
+        ),
+        Key::new(
+            "striker",
+            Kind::Table(&STRIKER),
+            "the ball that hits the chain",
+        ),
+        Key::new(
+            "driven",
+            Kind::Variants(&DRIVEN),
+            "prescribed motion of body 0",
+        ),
+        Key::new("beads", Kind::Tables(&BEADS), "groups of beads, in order").needed(Need::Always),
+        Key::new(
+            "contacts",
+            Kind::Tables(&SECTION),
+            "sections of contacts with their laws",
+        )
+        .needed(Need::InSi),
+        Key::new(
+            "far_end",
+            Kind::Variants(&FAR_END),
+            "what bead N leans on; default half-bead",
+        ),
+        Key::new("near_end", Kind::Variants(&NEAR_END), "what pushes bead 1"),
+        Key::new("track", Kind::Table(&TRACK), "incline and gravity"),
+        Key::new(
+            "suspension",
+            Kind::Table(&SUSPENSION),
+            "threads of a cradle",
+        ),
+        Key::new("gaps", Kind::Tables(&GAP), "gaps before the shot"),
+        Key::new(
+            "initial",
+            Kind::Tables(&INITIAL),
+            "deviations of beads from rest",
+        ),
+        Key::new(
+            "sensors",
+            Kind::Table(&SENSORS),
+            "where the chain is watched",
+        ),
+        Key::new("solver", Kind::Table(&SOLVER), "how the motion is computed"),
+        Key::new(
+            "liquid",
+            Kind::Table(&LIQUID),
+            "the liquid of wet contacts, for reports",
+        ),
+        Key::new(
+            "reading",
+            Kind::Table(&READING),
+            "choices that the paper leaves open",
+        ),
+    ],
+};

@@ -1,0 +1,185 @@
+//! Contact laws of a file, by the registry's declarations.
+
+use crate::document::{Node, Value};
+use crate::finding::Problem;
+use crate::keys::Limits;
+use crate::nearest;
+use crate::units;
+use crate::value::{Expected, Units};
+use hertzchain_chain::laws::{LAWS, Law, Parameter, Row, Source, find};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// One law with the values a file gives, in SI.
+#[derive(Clone, Debug)]
+pub struct LawSpec {
+    /// Its row in the registry.
+    pub row: &'static Row,
+    /// Parameter values by name, in SI.
+    pub given: Vec<(&'static str, f64)>,
+    pub(crate) span: Range<usize>,
+}
+
+impl LawSpec {
+    /// Name of the law.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.row.info.name
+    }
+
+    /// The law itself.
+    pub(crate) fn build(&self) -> Result<Arc<dyn Law>, Problem> {
+        let problem = |e: hertzchain_chain::laws::LawError| {
+            Problem::new(&self.span, format!("law `{}` can't be used", e.law), e.what)
+        };
+        self.row.build(&self.given).map_err(problem)
+    }
+}
+
+/// Everything wrong with one member of `laws`.
+pub(crate) fn check(node: &Node, units: Units) -> Vec<Problem> {
+    let row = match row_of(node) {
+        Ok(row) => row,
+        Err(problem) => return vec![problem],
+    };
+    let mut problems = unknown_parameters(node, row);
+    for parameter in row.info.parameters {
+        match (node.get(parameter.name), parameter.source) {
+            (Some(value), _) => {
+                let read = expected(parameter, row, node, units, |e| e.read(value));
+                problems.extend(read.err());
+            }
+            (None, Source::Required) => problems.push(missing(parameter, row, node, units)),
+            (None, _) => {}
+        }
+    }
+    problems
+}
+
+/// One member of `laws`, already checked.
+pub(crate) fn read(node: &Node, units: Units) -> Result<LawSpec, Problem> {
+    let row = row_of(node)?;
+    let mut given = Vec::new();
+    for parameter in row.info.parameters {
+        if let Some(value) = node.get(parameter.name) {
+            let si = expected(parameter, row, node, units, |e| e.read(value))?;
+            given.push((parameter.name, si.value));
+        }
+    }
+    Ok(LawSpec {
+        row,
+        given,
+        span: node.span.clone(),
+    })
+}
+
+/// The registry row that a member of `laws` names.
+pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
+    let name = match &node.value {
+        Value::Text(_) => node,
+        Value::Table(_) => node.get("law").ok_or_else(|| {
+            let label = "expected { law = \"name\", parameter = value, … }";
+            Problem::new(&node.span, "this law has no name", label)
+        })?,
+        _ => node,
+    };
+    let Some(text) = name.text() else {
+        let message = format!("a law is {}", name.kind());
+        return Err(Problem::new(
+            &name.span,
+            message,
+            "expected a law's name in quotes",
+        ));
+    };
+    find(text).ok_or_else(|| {
+        let names: Vec<&str> = LAWS.iter().map(|row| row.info.name).collect();
+        let near = nearest::of(text, names.iter().copied());
+        let label = format!("expected one of: {}", names.join(", "));
+        Problem::new(&name.span, format!("there is no law `{text}`"), label).nearest(near)
+    })
+}
+
+fn unknown_parameters(node: &Node, row: &Row) -> Vec<Problem> {
+    let known: Vec<&str> = row.info.parameters.iter().map(|p| p.name).collect();
+    let strange = |key: &str| key != "law" && !known.contains(&key);
+    let entries = node.entries().iter().filter(|entry| strange(&entry.key));
+    entries
+        .map(|entry| {
+            let message = format!("law `{}` has no parameter `{}`", row.info.name, entry.key);
+            let label = format!("expected one of: {}", known.join(", "));
+            let near = nearest::of(&entry.key, known.iter().copied());
+            Problem::new(&entry.key_span, message, label).nearest(near)
+        })
+        .collect()
+}
+
+fn missing(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> Problem {
+    let unit = unit(parameter, row, node, units);
+    let message = format!("law `{}` needs `{}`", row.info.name, parameter.name);
+    let value = match (units, unit.as_str()) {
+        (Units::Si, "1") | (Units::Dimensionless, _) => "…".to_owned(),
+        (Units::Si, unit) => format!("\"… {unit}\""),
+    };
+    let label = format!(
+        "expected {{ law = \"{}\", {} = {value} }}: {}",
+        row.info.name, parameter.name, parameter.meaning
+    );
+    Problem::new(&node.span, message, label)
+}
+
+/// Calls with what a parameter must be; a law's unit may depend on another
+/// of its parameters.
+fn expected<T>(
+    parameter: &Parameter,
+    row: &Row,
+    node: &Node,
+    units: Units,
+    call: impl FnOnce(Expected<'_>) -> T,
+) -> T {
+    let unit = unit(parameter, row, node, units);
+    let words = match parameter.least {
+        least if least == 0.0 => "0 or more",
+        least if least == 1.0 => "1 or more",
+        _ => "above the law's least value",
+    };
+    call(Expected {
+        name: parameter.name,
+        unit: &unit,
+        limits: Limits::new(parameter.least, f64::MAX, true, words),
+        units,
+    })
+}
+
+/// A parameter's unit with `{other}` replaced by the other's value.
+pub(crate) fn unit(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> String {
+    let mut unit = parameter.unit.to_owned();
+    for other in row.info.parameters {
+        let place = format!("{{{}}}", other.name);
+        if unit.contains(&place) {
+            unit = unit.replace(&place, &exponent(other, node, units));
+        }
+    }
+    unit
+}
+
+/// The value of an exponent for a unit; 1 when the file has none.
+fn exponent(parameter: &Parameter, node: &Node, units: Units) -> String {
+    let fallback = match parameter.source {
+        Source::Default(value) => value,
+        _ => 1.0,
+    };
+    let plain = Expected {
+        name: parameter.name,
+        unit: "1",
+        limits: Limits::ANY,
+        units,
+    };
+    let value = node.get(parameter.name).and_then(|n| plain.read(n).ok());
+    // Nine decimals are more than dimensions are compared to, and keep the
+    // exponent a ratio of small whole numbers.
+    let value = value.map_or(fallback, |si| si.value);
+    let text = format!("{:.9}", value.clamp(-1e6, 1e6));
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    debug_assert!(units::parse_unit(&format!("m^{short}")).is_ok());
+    short.to_owned()
+}

@@ -1,0 +1,144 @@
+//! What stands at the two ends of the chain.
+
+use super::Materials;
+use crate::finding::Problem;
+use crate::motion_file;
+use crate::view::View;
+use hertzchain_chain::{Motion, Push};
+use std::ops::Range;
+use std::path::Path;
+
+/// Shape and material of body 0 or of a half-bead, as far as given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Shape {
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) mass_kg: Option<f64>,
+    /// Index of the material.
+    pub(crate) material: Option<usize>,
+    pub(crate) span: Range<usize>,
+}
+
+/// What sets the chain in motion.
+#[derive(Clone, Debug)]
+pub(crate) enum Near {
+    Striker { shape: Shape, speed_m_s: f64 },
+    Driven { shape: Shape, motion: Motion },
+    Free,
+}
+
+/// What bead N leans on.
+#[derive(Clone, Debug)]
+pub(crate) enum Far {
+    /// Fixed, or on a stop of this mass.
+    HalfBead {
+        shape: Shape,
+        stop_kg: Option<f64>,
+    },
+    /// Fixed, or on a stop of this mass.
+    Plane {
+        shape: Shape,
+        stop_kg: Option<f64>,
+    },
+    Periodic {
+        force_n: f64,
+    },
+    Free,
+}
+
+fn shape(table: &View<'_>, materials: &Materials, keys: [&str; 2]) -> Result<Shape, Problem> {
+    let number = |key: &str| match table.fields.key(key) {
+        Some(_) => table.quantity(key),
+        None => Ok(None),
+    };
+    Ok(Shape {
+        radius_m: number(keys[0])?,
+        mass_kg: number(keys[1])?,
+        material: materials.find(table)?,
+        span: table.span(),
+    })
+}
+
+/// What sets the chain in motion.
+pub(crate) fn near(root: &View<'_>, materials: &Materials, folder: &Path) -> Result<Near, Problem> {
+    match (root.table("striker"), root.variant("driven")) {
+        (Some(_), Some((_, driven))) => {
+            let message = "there are a striker and a driven end";
+            Err(Problem::new(
+                &driven.span(),
+                message,
+                "expected one of the two",
+            ))
+        }
+        (Some(striker), None) => Ok(Near::Striker {
+            shape: shape(&striker, materials, ["radius", "mass"])?,
+            speed_m_s: striker.needed("speed")?,
+        }),
+        (None, Some((tag, table))) => Ok(Near::Driven {
+            shape: shape(&table, materials, ["radius", ""])?,
+            motion: motion(tag, &table, folder)?,
+        }),
+        (None, None) if root.has("initial") => Ok(Near::Free),
+        (None, None) => {
+            let message = "nothing sets the chain in motion";
+            let label = "expected [striker], [driven] or [[initial]]";
+            Err(Problem::new(&root.span_of("beads"), message, label))
+        }
+    }
+}
+
+fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, Problem> {
+    match tag {
+        "sine" => Ok(Motion::Sine {
+            amplitude_m: table.needed("amplitude")?,
+            frequency_hz: table.needed("frequency")?,
+        }),
+        "pulse" => Ok(Motion::Pulse {
+            amplitude_m: table.needed("amplitude")?,
+            duration_s: table.needed("duration")?,
+        }),
+        _ => motion_file::table(table, folder),
+    }
+}
+
+/// What pushes bead 1.
+pub(crate) fn push(root: &View<'_>) -> Result<Push, Problem> {
+    let Some((tag, table)) = root.variant("near_end") else {
+        return Ok(Push::None);
+    };
+    let force_n = table.needed("force")?;
+    Ok(match tag {
+        "spring" => Push::Spring {
+            force_n,
+            stiffness_n_m: table.needed("stiffness")?,
+        },
+        _ => Push::Constant { force_n },
+    })
+}
+
+/// What bead N leans on; a half-bead like bead N when the file is silent.
+pub(crate) fn far(root: &View<'_>, materials: &Materials) -> Result<Far, Problem> {
+    let Some((tag, table)) = root.variant("far_end") else {
+        return Ok(Far::HalfBead {
+            shape: Shape::default(),
+            stop_kg: None,
+        });
+    };
+    let half_bead = |stop_kg| -> Result<Far, Problem> {
+        let shape = shape(&table, materials, ["radius", ""])?;
+        Ok(Far::HalfBead { shape, stop_kg })
+    };
+    let plane = |stop_kg| -> Result<Far, Problem> {
+        let shape = shape(&table, materials, ["", ""])?;
+        Ok(Far::Plane { shape, stop_kg })
+    };
+    match tag {
+        "half-bead" => half_bead(None),
+        "stop" => half_bead(Some(table.needed("mass")?)),
+        "plane" => plane(None),
+        "plane-stop" => plane(Some(table.needed("mass")?)),
+        "periodic" => Ok(Far::Periodic {
+            force_n: table.quantity("force")?.unwrap_or(0.0),
+        }),
+        _ => Ok(Far::Free),
+    }
+}

@@ -1,0 +1,155 @@
+//! Materials of a file; their numbers may depend on the striker's speed.
+
+use crate::finding::Problem;
+use crate::nearest;
+use crate::view::{Scaled, View};
+use hertzchain_chain::Material;
+use std::ops::Range;
+
+/// One material as written.
+#[derive(Clone, Debug)]
+pub(crate) struct MaterialSpec {
+    pub(crate) name: String,
+    pub(crate) span: Range<usize>,
+    pub(crate) density_kg_m3: Option<f64>,
+    /// Largest Poisson ratio; a reading bounds it.
+    pub(crate) largest_poisson_ratio: f64,
+    /// Whether a reading takes the bulk viscosity away.
+    pub(crate) without_bulk_viscosity: bool,
+    young_modulus: Scaled,
+    poisson_ratio: Scaled,
+    shear_viscosity: Option<Scaled>,
+    bulk_viscosity: Option<Scaled>,
+}
+
+/// All materials of a file.
+#[derive(Clone, Debug)]
+pub(crate) struct Materials(pub(crate) Vec<MaterialSpec>);
+
+impl Materials {
+    pub(crate) fn read(root: &View<'_>) -> Result<Self, Problem> {
+        let named = root.named("materials").into_iter();
+        let specs = named.map(|(name, span, table)| MaterialSpec::read(name, span, &table));
+        Ok(Self(specs.collect::<Result<_, _>>()?))
+    }
+
+    /// The material that a table names.
+    pub(crate) fn find(&self, table: &View<'_>) -> Result<Option<usize>, Problem> {
+        let Some(name) = table.text("material") else {
+            return Ok(None);
+        };
+        let at = self.0.iter().position(|material| material.name == name);
+        at.map(Some).ok_or_else(|| self.unknown(table, name))
+    }
+
+    fn unknown(&self, table: &View<'_>, name: &str) -> Problem {
+        let known: Vec<&str> = self.0.iter().map(|m| m.name.as_str()).collect();
+        let label = match known.is_empty() {
+            true => format!("expected a table [materials.{name}]"),
+            false => format!("expected one of: {}", known.join(", ")),
+        };
+        let message = format!("there is no material `{name}`");
+        Problem::new(&table.span_of("material"), message, label).nearest(nearest::of(name, known))
+    }
+}
+
+impl MaterialSpec {
+    fn read(name: &str, span: Range<usize>, table: &View<'_>) -> Result<Self, Problem> {
+        let needed = |key: &str| {
+            table.scaled(key)?.ok_or_else(|| {
+                let message = format!("material `{name}` has no `{key}`");
+                Problem::new(&span, message, "expected it in this table")
+            })
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            density_kg_m3: table.quantity("density")?,
+            largest_poisson_ratio: f64::INFINITY,
+            without_bulk_viscosity: false,
+            young_modulus: needed("young_modulus")?,
+            poisson_ratio: needed("poisson_ratio")?,
+            shear_viscosity: table.scaled("shear_viscosity")?,
+            bulk_viscosity: table.scaled("bulk_viscosity")?,
+            span,
+        })
+    }
+
+    /// The material at a striker speed, and what is odd about it.
+    pub(crate) fn at(
+        &self,
+        speed_m_s: Option<f64>,
+    ) -> Result<(Material, Option<Problem>), Problem> {
+        let positive = |v: f64| v > 0.0;
+        let not_negative = |v: f64| v >= 0.0;
+        let young_modulus_pa = self
+            .young_modulus
+            .at(speed_m_s, "Young modulus", positive)?;
+        let inside = |v: f64| -1.0 < v && v < 1.0;
+        let bounded = |v: f64| inside(v.min(self.largest_poisson_ratio));
+        let printed = self.poisson_ratio.at(speed_m_s, "Poisson ratio", bounded)?;
+        let poisson_ratio = printed.min(self.largest_poisson_ratio);
+        let viscosity = |given: &Option<Scaled>| {
+            let value = |s: &Scaled| s.at(speed_m_s, "viscosity", not_negative);
+            given.as_ref().map(value).transpose()
+        };
+        let shear_viscosity_pa_s = viscosity(&self.shear_viscosity)?.unwrap_or(0.0);
+        let bulk = viscosity(&self.bulk_viscosity)?.unwrap_or(shear_viscosity_pa_s);
+        let material = Material {
+            young_modulus_pa,
+            poisson_ratio,
+            shear_viscosity_pa_s,
+            bulk_viscosity_pa_s: if self.without_bulk_viscosity {
+                0.0
+            } else {
+                bulk
+            },
+        };
+        Ok((material, self.beyond_half(poisson_ratio, speed_m_s)))
+    }
+
+    /// A warning when ν exceeds 1/2.
+    fn beyond_half(&self, poisson_ratio: f64, speed_m_s: Option<f64>) -> Option<Problem> {
+        let at = match speed_m_s {
+            Some(speed) if self.poisson_ratio.exponent != 0.0 => format!(" at {speed} m/s"),
+            _ => String::new(),
+        };
+        let message = format!(
+            "the Poisson ratio of `{}` is {poisson_ratio:.4}{at}",
+            self.name
+        );
+        (poisson_ratio > 0.5).then(|| {
+            Problem::new(&self.poisson_ratio.span, message, "no solid is above 1/2")
+                .help("taken as an effective number; it must stay below 1")
+        })
+    }
+}
+
+impl Scaled {
+    /// The value at a speed; what is in the way is a problem.
+    fn at(
+        &self,
+        speed_m_s: Option<f64>,
+        name: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> Result<f64, Problem> {
+        let value = match (speed_m_s, self.exponent == 0.0) {
+            (_, true) => self.prefactor,
+            (Some(speed), false) => self.prefactor * speed.powf(self.exponent),
+            (None, false) => {
+                let label = "expected a number, or a [striker] with a speed";
+                let message = format!("{name} depends on a striker's speed and there is none");
+                return Err(Problem::new(&self.span, message, label));
+            }
+        };
+        if holds(value) && value.is_finite() {
+            return Ok(value);
+        }
+        let at = speed_m_s.map_or(String::new(), |speed| format!(" at {speed} m/s"));
+        let message = format!("{name} is {value}{at}");
+        let label = match name {
+            "Poisson ratio" => "expected a value between -1 and 1",
+            _ => "expected a positive, finite value",
+        };
+        Err(Problem::new(&self.span, message, label))
+    }
+}
