@@ -209,7 +209,8 @@ def integrate(chain, velocity, t_end, rtol=1e-12, displacement=None, scale=None)
     mode[(overlap == 0) & (rate < 0)] = OPEN
     t, pieces, count = 0.0, [], 0
     while t < t_end:
-        solver = DOP853(chain.rhs(mode), t, y, t_end, rtol=rtol, atol=atol)
+        # A quarter of a contact time at most, so that no contact closes and opens again unseen within a step.
+        solver = DOP853(chain.rhs(mode), t, y, t_end, rtol=rtol, atol=atol, max_step=size / speed)
         while solver.status == "running":
             solver.step()
             t, y, dense = solver.t, solver.y, solver.dense_output()
