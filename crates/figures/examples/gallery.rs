@@ -6,7 +6,10 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hertzchain_figures::{Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, Series};
+use hertzchain_figures::{
+    Animation, Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, Series,
+    Verdict, VerdictMatrix,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "gallery".into()));
@@ -18,10 +21,36 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("space_time", space_time()),
         ("energy", energy()),
         ("residuals", residuals()),
+        ("verdicts", verdicts()),
+        ("verdicts_many", verdicts_many()),
+        ("rig", paper_rig().figure()),
+        (
+            "rig_dry_long",
+            RigDrawing {
+                beads: 1000,
+                sensor_bead: Some(500),
+                wet_contacts: None,
+                preload_n: None,
+                incline_deg: 0.0,
+                stop_mass_kg: None,
+                ..paper_rig()
+            }
+            .figure(),
+        ),
+        (
+            "rig_bare",
+            RigDrawing {
+                beads: 6,
+                bead_radius_m: 0.005,
+                ..RigDrawing::default()
+            }
+            .figure(),
+        ),
     ];
     for (name, figure) in pictures {
         write(&folder, name, &figure)?;
     }
+    fs::write(folder.join("animation.html"), animation().html())?;
     Ok(())
 }
 
@@ -70,7 +99,7 @@ fn signals() -> Figure {
             signal(t, scale, split) + 0.004 * scale * (t * 1.7).sin()
         });
         let model = map(&t, |t| signal(t, scale, split));
-        Chart::new(r"Time (\mus)", "Force (N)")
+        Chart::new("Time (µs)", "Force (N)")
             .title(name)
             .with(
                 Series::line("virtual rig", &t, &data)
@@ -121,9 +150,8 @@ fn tof() -> Figure {
             )
     };
     let x_label = "Impact speed $v_0$ (m/s)";
-    let inset = add(Chart::new("$v_0$ (m/s)", r"ToF (\mus)").x_log().y_log());
-    Figure::single_column(68.0)
-        .panel(add(Chart::new(x_label, r"Time of flight (\mus)")).inset(inset))
+    let inset = add(Chart::new("$v_0$ (m/s)", "ToF (µs)").x_log().y_log());
+    Figure::single_column(68.0).panel(add(Chart::new(x_label, "Time of flight (µs)")).inset(inset))
 }
 
 fn ratios() -> Figure {
@@ -181,11 +209,11 @@ fn space_time() -> Figure {
         .colour(Colour::BLACK)
         .dash(Dash::Dashed)
         .width(0.7);
-    let signed = Chart::new(r"Time (\mus)", "Bead")
+    let signed = Chart::new("Time (µs)", "Bead")
         .title("dry")
         .heat(heat(ColourMap::Diverging, "Velocity (m/s)"))
         .with(theory);
-    let positive = Chart::new(r"Time (\mus)", "Bead")
+    let positive = Chart::new("Time (µs)", "Bead")
         .title("pump oil")
         .heat(heat(ColourMap::Sequential, "Velocity (m/s)"));
     Figure::double_column(62.0)
@@ -201,11 +229,11 @@ fn energy() -> Figure {
     let elastic = map(&t, |t| lost_at(t) + 0.3 + 0.1 * (t / 20.0).sin().powi(2));
     let total = map(&t, |_| 1.0);
     let zero = map(&t, |_| 0.0);
-    let chart = Chart::new(r"Time (\mus)", "Share of the initial energy")
+    let chart = Chart::new("Time (µs)", "Share of the initial energy")
         .with(Series::band("dissipated", &t, &zero, &lost).colour(Colour::VERMILION))
         .with(Series::band("elastic", &t, &lost, &elastic).colour(Colour::BLUE))
         .with(Series::band("kinetic", &t, &elastic, &total).colour(Colour::GREY));
-    let residual = Chart::new(r"Time (\mus)", "Residual")
+    let residual = Chart::new("Time (µs)", "Residual")
         .y_log()
         .with(Series::line(
             "",
@@ -264,4 +292,104 @@ fn residuals() -> Figure {
         .letters()
         .panel(long)
         .panel(decades)
+}
+
+const CLAIMS: [&str; 8] = [
+    "The time of flight falls strictly with the impact speed",
+    "Dry incident ToF follows a power law: $R^2$ of the log–log fit",
+    "The reflected ToF is longer than the incident one at every speed",
+    "Pump oil shortens the ToF below 1.1 m/s and lengthens it above",
+    "Gear oil always shortens the ToF",
+    "Motor oil always lengthens the ToF",
+    "The returning pulse in motor oil at 0.3993 m/s is split",
+    "Model and signals overlap at the peaks",
+];
+
+fn verdict(i: usize) -> Verdict {
+    match (i * i + i / 3) % 7 {
+        0 | 1 | 4 => Verdict::Holds,
+        2 => Verdict::InPart,
+        3 => Verdict::NotDecidable,
+        _ => Verdict::Fails,
+    }
+}
+
+fn verdicts() -> Figure {
+    let columns = [
+        "default",
+        "preload 0.24 N",
+        "incline 1°",
+        "contact 6 dry",
+        "all contacts wet",
+        "clipped",
+        "stop 4.5 kg",
+    ];
+    claims_table(&columns)
+}
+
+fn verdicts_many() -> Figure {
+    let names: Vec<String> = (1..=28)
+        .map(|i| format!("reading {i}, as bounded at 1/2"))
+        .collect();
+    let columns: Vec<&str> = names.iter().map(String::as_str).collect();
+    claims_table(&columns)
+}
+
+fn claims_table(columns: &[&str]) -> Figure {
+    let row = |table: VerdictMatrix, (i, claim): (usize, &&str)| {
+        let cells: Vec<Verdict> = (0..columns.len()).map(|c| verdict(i + 3 * c)).collect();
+        table.row(claim, &cells)
+    };
+    CLAIMS
+        .iter()
+        .enumerate()
+        .fold(VerdictMatrix::new(columns), row)
+        .figure()
+}
+
+fn paper_rig() -> RigDrawing {
+    RigDrawing {
+        beads: 40,
+        bead_radius_m: 6.35e-3,
+        bead_material: "AISI 316".into(),
+        striker_radius_m: Some(6.35e-3),
+        striker_label: "speed $v_0$".into(),
+        sensor_bead: Some(7),
+        wet_contacts: Some((7, 40)),
+        liquid: "motor oil".into(),
+        preload_n: Some(0.24),
+        incline_deg: 0.5,
+        wall_sensor: true,
+        stop_mass_kg: Some(4.5),
+        actuator: true,
+        photogate: true,
+        recorder: "charge amplifiers, summed; 16-bit ADC".into(),
+        ..RigDrawing::default()
+    }
+}
+
+/// Forty beads with a pulse running down and back.
+fn animation() -> Animation {
+    let (beads, radius_m) = (41_u32, 6.35e-3);
+    let times_s = grid(0.0, 1.3e-3, 1500);
+    let slid = |bead: f64, t_us: f64| {
+        let down = 1.0 + ((t_us / 16.0 - bead) / 1.1).tanh();
+        let back = 1.0 + ((t_us / 16.0 + bead - 82.0) / 1.1).tanh();
+        12e-6 * down - 9e-6 * back
+    };
+    let path = |i: u32| {
+        let bead = f64::from(i);
+        map(&times_s, |t| 2.0 * radius_m * bead + slid(bead, t * 1e6))
+    };
+    let force = |i: u32| {
+        let contact = f64::from(i) + 0.5;
+        map(&times_s, |t| 90.0 * velocity(contact, t * 1e6).abs())
+    };
+    let positions_m: Vec<Vec<f64>> = (0..beads).map(path).collect();
+    let forces_n: Vec<Vec<f64>> = (0..beads).map(force).collect();
+    Animation::new(&times_s, &positions_m, &forces_n, &[radius_m])
+        .title("Pump oil, 1 m/s")
+        .mark(0, "striker")
+        .mark(7, "sensor bead 7")
+        .wet(7, 40)
 }

@@ -63,7 +63,7 @@ impl Panel {
 /// use hertzchain_figures::{Chart, Figure, Series};
 /// let speed_m_s = [0.1, 0.2, 0.5, 1.0];
 /// let tof_us = [1020.0, 890.0, 741.0, 645.0];
-/// let chart = Chart::new("Impact speed $v_0$ (m/s)", r"ToF (\mus)")
+/// let chart = Chart::new("Impact speed $v_0$ (m/s)", "ToF (µs)")
 ///     .x_log()
 ///     .with(Series::points("dry", &speed_m_s, &tof_us));
 /// let svg = Figure::single_column(60.0).panel(chart).svg();
@@ -276,7 +276,7 @@ impl Grid {
         match panel {
             Panel::Chart(chart) => {
                 let prepared = Prepared::new(chart, Style::JOURNAL, self.frame.0, self.frame.1);
-                prepared.margins(chart, self.frame.0)
+                prepared.margins(chart, self.frame)
             }
             Panel::Matrix(_) | Panel::Rig(_) => Side::default(),
         }
@@ -316,6 +316,6 @@ impl Grid {
     /// Room between the heading and the frame.
     fn above(&self, index: usize) -> f64 {
         let top = self.down.get(index / self.columns).map_or(0.0, |s| s.top);
-        (top - HEADING).clamp(0.0, 12.0)
+        (top - HEADING - 0.55 * Style::JOURNAL.small).clamp(0.0, 12.0)
     }
 }

@@ -5,6 +5,7 @@ use super::legend::{LegendBox, band_paint, line_paint, marker_of};
 use super::occupancy::{Occupancy, places};
 use super::plot::Plot;
 use super::prepare::{Prepared, occupancy};
+use super::series::Series;
 use super::{inset, markers, references, strokes};
 use crate::axis::{Scale, Ticks};
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
@@ -161,11 +162,11 @@ impl Prepared {
         {
             inset::draw(svg, inner, &area);
         }
-        self.draw_legend(svg, chart, plot, &mut taken);
-        self.draw_notes(svg, chart, plot, &mut taken);
         for reference in &chart.references {
             references::draw_label(svg, plot, &self.style, reference, &mut taken);
         }
+        self.draw_legend(svg, chart, plot, &mut taken);
+        self.draw_notes(svg, chart, plot, &mut taken);
     }
 
     fn draw_legend(&self, svg: &mut Svg, chart: &Chart, plot: &Plot, taken: &mut Occupancy) {
@@ -176,13 +177,8 @@ impl Prepared {
         let inner = plot.frame.grown(-self.style.tick - 1.0);
         let places = places(&inner, legend.width(), legend.height());
         if let Some((place, cost)) = taken.freest(&places) {
-            legend.draw(
-                svg,
-                chart,
-                &self.style,
-                &place,
-                cost > 0 || chart.heat.is_some(),
-            );
+            let veil = cost > 0 || chart.heat.is_some() || chart.series.iter().any(Series::is_band);
+            legend.draw(svg, chart, &self.style, &place, veil);
             taken.mark_rect(&place, 9);
         }
     }

@@ -22,10 +22,11 @@ pub(crate) fn place(chart: &Chart, frame: &Rect, taken: &mut Occupancy) -> Optio
 
 /// Draws the inset with all its labels within `area`.
 pub(crate) fn draw(svg: &mut Svg, inset: &Chart, area: &Rect) {
-    let guess = Prepared::new(inset, Style::INSET, 0.7 * area.width(), 0.7 * area.height());
-    let frame = area.inside(guess.margins(inset, 0.7 * area.width()));
+    let size = (0.7 * area.width(), 0.7 * area.height());
+    let guess = Prepared::new(inset, Style::INSET, size.0, size.1);
+    let frame = area.inside(guess.margins(inset, size));
     let prepared = Prepared::new(inset, Style::INSET, frame.width(), frame.height());
-    let frame = area.inside(prepared.margins(inset, frame.width()));
+    let frame = area.inside(prepared.margins(inset, (frame.width(), frame.height())));
     svg.rect(area, &Paint::fill(Colour::WHITE));
     prepared.draw(svg, inset, &frame);
 }

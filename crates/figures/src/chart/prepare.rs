@@ -58,7 +58,7 @@ impl Prepared {
     }
 
     /// Room for tick labels, axis labels and colour bar around the frame.
-    pub(crate) fn margins(&self, chart: &Chart, frame_width: f64) -> Side {
+    pub(crate) fn margins(&self, chart: &Chart, frame: (f64, f64)) -> Side {
         let style = &self.style;
         let line = |text: &str| TextLine::new(text, style.label);
         let mut side = Side {
@@ -78,7 +78,7 @@ impl Prepared {
             if !chart.x.label.is_empty() {
                 side.bottom += line(&chart.x.label).height() + 1.5;
             }
-            let (left, right) = self.overhang(frame_width);
+            let (left, right) = self.overhang(frame.0);
             side.left = side.left.max(left);
             side.right = side.right.max(right);
         }
@@ -88,7 +88,7 @@ impl Prepared {
         side.right += chart
             .heat
             .as_ref()
-            .map_or(0.0, |h| heat::bar_width(h, style));
+            .map_or(0.0, |h| heat::bar_width(h, style, frame.1));
         side
     }
 
@@ -154,7 +154,7 @@ pub(crate) fn y_scale(chart: &Chart, style: &Style) -> Scale {
         extent.add(layer.y.0);
         extent.add(layer.y.1);
     }
-    let pad = if chart.heat.is_some() {
+    let pad = if chart.heat.is_some() || areas_only(chart) {
         0.0
     } else {
         1.5 * style.pad
@@ -174,6 +174,11 @@ fn add_y(extent: &mut Extent, series: &Series, x: &Scale) {
     }
 }
 
+/// Stacked areas fill their frame.
+fn areas_only(chart: &Chart) -> bool {
+    !chart.series.is_empty() && chart.series.iter().all(Series::is_band)
+}
+
 fn chosen(axis: &Axis) -> Option<Scale> {
     axis.range
         .and_then(|(from, to)| Scale::fixed(from, to, axis.log))
@@ -184,7 +189,11 @@ fn with_headroom(chart: &Chart, style: &Style, plot: Plot) -> Scale {
     let legend = LegendBox::new(chart, style, 0.9 * plot.frame.width());
     let needed = legend.height() + 4.0;
     let height = plot.frame.height();
-    if chart.legend == Legend::Off || legend.is_empty() || needed > 0.4 * height {
+    if chart.legend == Legend::Off
+        || legend.is_empty()
+        || needed > 0.4 * height
+        || areas_only(chart)
+    {
         return plot.y;
     }
     let mut taken = occupancy(chart, style, &plot);

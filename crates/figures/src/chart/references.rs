@@ -53,30 +53,39 @@ pub(crate) fn draw_label(
         return;
     };
     taken.mark_rect(&place, 4);
-    let angle = if reference.vertical { 90.0 } else { 0.0 };
+    let angle = if place.height() > place.width() {
+        90.0
+    } else {
+        0.0
+    };
     line.draw_turned(svg, place.centre(), Anchor::MIDDLE, Colour::grey(70), angle);
 }
 
-/// Both sides of the line, at its ends and along it.
+/// Both sides of the line, at its ends and along it; beside a vertical line
+/// the text is turned, or level where that is freer.
 fn places(plot: &Plot, line: &TextLine, vertical: bool, start: Point) -> Vec<Rect> {
     let (frame, gap) = (plot.frame, 6.0);
     let (long, thick) = (line.width(), line.size());
-    let along = |share: f64, length: f64| gap + share * (length - long - 2.0 * gap).max(0.0);
-    let mut found = Vec::new();
-    for share in [1.0, 0.0, 0.5, 0.75, 0.25] {
+    let along =
+        |share: f64, length: f64, own: f64| gap + share * (length - own - 2.0 * gap).max(0.0);
+    let (mut turned, mut level) = (Vec::new(), Vec::new());
+    for share in [1.0, 0.0, 0.5, 0.75, 0.25, 0.875, 0.125, 0.625, 0.375] {
         for side in [-1.0, 1.0] {
             let offset = side * 0.8 * thick - 0.5 * thick;
-            found.push(if vertical {
-                let y = frame.y0 + along(1.0 - share, frame.height());
-                Rect::sized(start.x + offset, y, thick, long)
+            let x = frame.x0 + along(share, frame.width(), long);
+            let y = |own: f64| frame.y0 + along(1.0 - share, frame.height(), own);
+            if vertical {
+                turned.push(Rect::sized(start.x + offset, y(long), thick, long));
+                let left = start.x + if side < 0.0 { -long - 3.0 } else { 3.0 };
+                level.push(Rect::sized(left, y(thick), long, thick));
             } else {
-                let x = frame.x0 + along(share, frame.width());
-                Rect::sized(x, start.y + offset, long, thick)
-            });
+                level.push(Rect::sized(x, start.y + offset, long, thick));
+            }
         }
     }
-    found.retain(|r| r.y0 >= frame.y0 && r.y1 <= frame.y1 && r.x0 >= frame.x0 && r.x1 <= frame.x1);
-    found
+    turned.append(&mut level);
+    turned.retain(|r| r.y0 >= frame.y0 && r.y1 <= frame.y1 && r.x0 >= frame.x0 && r.x1 <= frame.x1);
+    turned
 }
 
 /// Marks the line as taken, though less so than data.

@@ -85,11 +85,6 @@ impl Rect {
     pub(crate) fn contains(&self, p: Point) -> bool {
         (self.x0..=self.x1).contains(&p.x) && (self.y0..=self.y1).contains(&p.y)
     }
-
-    /// Whether both share some area.
-    pub(crate) fn overlaps(&self, other: &Self) -> bool {
-        self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
-    }
 }
 
 /// The part of a segment that lies inside `rect` (Liang and Barsky's parametric

@@ -11,7 +11,7 @@ pub use colour::Colour;
 pub use colour_map::ColourMap;
 pub(crate) use geometry::{Point, Rect, Side, clip_segment};
 pub(crate) use path::PathData;
-pub(crate) use svg::{Paint, Svg, fmt};
+pub(crate) use svg::{Paint, Svg, escape, fmt};
 
 /// Points per millimetre.
 pub(crate) const PT_PER_MM: f64 = 72.0 / 25.4;

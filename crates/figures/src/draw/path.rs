@@ -34,10 +34,6 @@ impl PathData {
         self.push('Q', &[c.x, c.y, p.x, p.y])
     }
 
-    pub(crate) fn curve_to(&mut self, a: Point, b: Point, p: Point) -> &mut Self {
-        self.push('C', &[a.x, a.y, b.x, b.y, p.x, p.y])
-    }
-
     /// Circular arc to `p`; `large` and `sweep` as in SVG.
     pub(crate) fn arc_to(&mut self, radius: f64, large: bool, sweep: bool, p: Point) -> &mut Self {
         let flags = [f64::from(u8::from(large)), f64::from(u8::from(sweep))];

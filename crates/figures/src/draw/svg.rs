@@ -123,7 +123,6 @@ pub(crate) struct Svg {
     glyphs: BTreeMap<GlyphId, String>,
     gradients: Vec<(Colour, String)>,
     texts: usize,
-    clips: usize,
 }
 
 impl Svg {
@@ -150,17 +149,13 @@ impl Svg {
         self.path(PathData::new().circle(centre, radius), paint);
     }
 
-    /// Everything drawn until [`Svg::close`] is cut at `rect`.
-    pub(crate) fn open_clip(&mut self, rect: &Rect) {
-        self.clips += 1;
-        let (n, mut d) = (self.clips, PathData::new());
-        d.rect(rect);
-        let d = d.as_str();
-        let _ = writeln!(
-            self.defs,
-            "<clipPath id=\"c{n}\"><path d=\"{d}\"/></clipPath>"
-        );
-        let _ = writeln!(self.body, "<g clip-path=\"url(#c{n})\">");
+    /// Everything drawn until [`Svg::close`] is moved and scaled.
+    pub(crate) fn open_scaled(&mut self, origin: Point, scale: f64) {
+        self.body.push_str("<g transform=\"translate(");
+        fmt(&mut self.body, origin.x);
+        self.body.push(' ');
+        fmt(&mut self.body, origin.y);
+        let _ = writeln!(self.body, ") scale({scale:.6})\">");
     }
 
     pub(crate) fn close(&mut self) {

@@ -1,7 +1,7 @@
 //! The colour bar beside a map.
 
 use super::HeatMap;
-use crate::axis::{Room, Scale, ticks};
+use crate::axis::{Room, Scale, Ticks, ticks};
 use crate::chart::Style;
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
 use crate::png_image::rgb_png;
@@ -9,18 +9,33 @@ use crate::text::{Anchor, TextLine};
 
 const GAP: f64 = 6.0;
 const BAR: f64 = 8.0;
-/// Width kept for the numbers, in font sizes.
-const NUMBERS: f64 = 3.2;
 
 /// Room right of the frame for bar, numbers and label.
-pub(crate) fn width(map: &HeatMap, style: &Style) -> f64 {
+pub(crate) fn width(map: &HeatMap, style: &Style, height: f64) -> f64 {
     let label = TextLine::new(&map.label, style.label);
     let label_height = if map.label.is_empty() {
         0.0
     } else {
-        label.height()
+        label.height() + 3.0
     };
-    GAP + BAR + 3.0 + NUMBERS * style.small + label_height
+    GAP + BAR + 3.0 + numbers(map, style, height).1 + label_height
+}
+
+/// The ticks of a bar of the given height, and the width of the widest number.
+fn numbers(map: &HeatMap, style: &Style, height: f64) -> (Ticks, f64) {
+    let (lo, hi) = map.range();
+    let room = Room {
+        length: height,
+        font: style.small,
+        side_by_side: false,
+    };
+    let found = ticks(&Scale { lo, hi, log: false }, &room);
+    let widths = found
+        .major
+        .iter()
+        .map(|t| TextLine::new(&t.label, style.small).width());
+    let widest = widths.fold(0.0, f64::max);
+    (found, widest)
 }
 
 /// Draws bar, ticks, numbers and label right of `frame`.
@@ -33,9 +48,9 @@ pub(crate) fn draw_bar(svg: &mut Svg, map: &HeatMap, frame: &Rect, style: &Style
     if let Some(png) = rgb_png(1, 256, &shades, None) {
         svg.image(&bar, &png);
     }
-    draw_ticks(svg, map, &bar, style);
+    let widest = draw_ticks(svg, map, &bar, style);
     let label = TextLine::new(&map.label, style.label).fitted(frame.height());
-    let x = bar.x1 + 3.0 + NUMBERS * style.small + label.ascent();
+    let x = bar.x1 + 6.0 + widest + label.ascent();
     label.draw_turned(
         svg,
         Point::new(x, bar.centre().y),
@@ -45,21 +60,17 @@ pub(crate) fn draw_bar(svg: &mut Svg, map: &HeatMap, frame: &Rect, style: &Style
     );
 }
 
-fn draw_ticks(svg: &mut Svg, map: &HeatMap, bar: &Rect, style: &Style) {
+/// Returns the width of the widest number.
+fn draw_ticks(svg: &mut Svg, map: &HeatMap, bar: &Rect, style: &Style) -> f64 {
     let (lo, hi) = map.range();
     let scale = Scale { lo, hi, log: false };
-    let room = Room {
-        length: bar.height(),
-        font: style.small,
-        side_by_side: false,
-    };
-    let found = ticks(&scale, &room);
+    let (found, widest) = numbers(map, style, bar.height());
     let mut path = PathData::new();
     path.rect(bar);
     for tick in &found.major {
         let y = bar.y1 - scale.share(tick.value).unwrap_or(0.0) * bar.height();
         path.segment(Point::new(bar.x1 - 2.5, y), Point::new(bar.x1, y));
-        let line = TextLine::new(&tick.label, style.small).fitted(NUMBERS * style.small);
+        let line = TextLine::new(&tick.label, style.small);
         line.draw(
             svg,
             Point::new(bar.x1 + 2.5, y),
@@ -73,4 +84,5 @@ fn draw_ticks(svg: &mut Svg, map: &HeatMap, bar: &Rect, style: &Style) {
         let at = Point::new(bar.x0, bar.y0 - 0.6 * style.small);
         factor.draw(svg, at, Anchor::LEFT, Colour::BLACK);
     }
+    widest
 }

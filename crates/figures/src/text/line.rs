@@ -2,7 +2,7 @@
 
 use super::font::{GlyphId, Style, units_per_em};
 use super::markup::{Run, Script, parse};
-use crate::draw::{Colour, Point, Rect, Svg, fmt};
+use crate::draw::{Colour, Point, Svg, fmt};
 
 /// Size of sub- and superscripts relative to the base.
 const SCRIPT_SIZE: f64 = 0.7;
@@ -43,10 +43,6 @@ impl Anchor {
     pub(crate) const MIDDLE: Self = Self {
         across: 0.5,
         up: 0.5,
-    };
-    pub(crate) const TOP: Self = Self {
-        across: 0.5,
-        up: 1.0,
     };
 }
 
@@ -168,18 +164,6 @@ impl TextLine {
             self.size *= width.max(0.0) / self.width();
         }
         self
-    }
-
-    /// The area the line covers when drawn horizontally at `at`.
-    pub(crate) fn bounds(&self, at: Point, anchor: Anchor) -> Rect {
-        let x = at.x - anchor.across * self.width();
-        let baseline = at.y + anchor.up * CAP_HEIGHT * self.size;
-        Rect {
-            x0: x,
-            y0: baseline - self.ascent(),
-            x1: x + self.width(),
-            y1: baseline + self.descent(),
-        }
     }
 
     pub(crate) fn draw(&self, svg: &mut Svg, at: Point, anchor: Anchor, colour: Colour) {

@@ -145,6 +145,8 @@ impl Parser<'_> {
         while let Some(c) = self.rest.next_if(char::is_ascii_alphabetic) {
             name.push(c);
         }
+        // As in TeX, a space only ends the name: `\mu s` is a microsecond.
+        self.rest.next_if_eq(&' ');
         if name == "mathrm" {
             return self.upright_group(script);
         }

@@ -28,12 +28,12 @@ pub(crate) fn wrap(markup: &str, size: f64, width: f64, max_lines: usize) -> Vec
         .collect()
 }
 
-/// Words of markup; a formula between dollar signs is never torn apart.
+/// Words of markup; formulas between dollar signs and no-break spaces hold together.
 fn words(markup: &str) -> Vec<String> {
     let (mut found, mut math) = (vec![String::new()], false);
     for c in markup.chars() {
         math ^= c == '$';
-        if c.is_whitespace() && !math {
+        if c.is_whitespace() && c != '\u{a0}' && !math {
             found.push(String::new());
         } else if let Some(word) = found.last_mut() {
             word.push(c);

@@ -1,4 +1,0 @@
-//! stub
-/// v
-#[derive(Debug, Clone, Copy)]
-pub struct Animation;

@@ -1,0 +1,287 @@
+//! A shot as a moving picture: one HTML file that needs nothing else.
+
+mod encode;
+
+use encode::{base64_f32, base64_u16, json_text, quantised, resampled};
+
+use crate::draw::ColourMap;
+
+/// Largest number of values stored per quantity; beyond, frames and then beads are left out.
+const MOST_VALUES: usize = 1_500_000;
+const MOST_FRAMES: usize = 1200;
+const FEWEST_FRAMES: usize = 300;
+
+const PAGE: &str = include_str!("page.html");
+const SCRIPT: &str = include_str!("player.js");
+
+/// Beads in motion and the force running down their contacts.
+///
+/// Positions are drawn with displacements multiplied by a stated factor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Animation {
+    title: String,
+    times_s: Vec<f64>,
+    positions_m: Vec<Vec<f64>>,
+    forces_n: Vec<Vec<f64>>,
+    radii_m: Vec<f64>,
+    marks: Vec<(usize, String)>,
+    wet_contacts: Option<(usize, usize)>,
+    exaggeration: Option<f64>,
+}
+
+impl Animation {
+    /// `positions_m[bead][time]` and `forces_n[contact][time]` at ascending
+    /// `times_s`; contact c lies between bead c and c + 1. `radii_m` has one
+    /// entry per bead. What is missing counts as zero.
+    #[must_use]
+    pub fn new(
+        times_s: &[f64],
+        positions_m: &[Vec<f64>],
+        forces_n: &[Vec<f64>],
+        radii_m: &[f64],
+    ) -> Self {
+        Self {
+            title: String::from("Beads in motion"),
+            times_s: times_s.to_vec(),
+            positions_m: positions_m.to_vec(),
+            forces_n: forces_n.to_vec(),
+            radii_m: radii_m.to_vec(),
+            marks: Vec::new(),
+            wet_contacts: None,
+            exaggeration: None,
+        }
+    }
+
+    /// Heading of the page; plain text.
+    #[must_use]
+    pub fn title(mut self, title: &str) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Names a bead, such as the striker or the sensor bead; plain text.
+    #[must_use]
+    pub fn mark(mut self, bead: usize, name: &str) -> Self {
+        self.marks.push((bead, name.into()));
+        self
+    }
+
+    /// First and last contact that is drawn with oil.
+    #[must_use]
+    pub fn wet(mut self, first: usize, last: usize) -> Self {
+        self.wet_contacts = Some((first, last));
+        self
+    }
+
+    /// Factor on displacements; by default a round one that makes them visible.
+    #[must_use]
+    pub fn exaggeration(mut self, factor: f64) -> Self {
+        self.exaggeration = Some(factor).filter(|f| f.is_finite() && *f > 0.0);
+        self
+    }
+
+    /// The page.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let title = crate::draw::escape(&self.title);
+        let script = SCRIPT.replace("\"@DATA@\"", &self.data());
+        PAGE.replace("@TITLE@", &title).replace("@SCRIPT@", &script)
+    }
+
+    /// All numbers and names as one JavaScript object.
+    fn data(&self) -> String {
+        let stride = self.stride();
+        let beads: Vec<usize> = (0..self.positions_m.len()).step_by(stride).collect();
+        let grid = self.frame_times(beads.len());
+        let moved = self.displacements(&beads, &grid);
+        let forces = self.sampled_forces(stride, &grid);
+        let factor = self
+            .exaggeration
+            .unwrap_or_else(|| self.fitting_factor(&moved));
+        let radii: Vec<f64> = beads.iter().map(|b| self.radius(*b)).collect();
+        let places: Vec<f64> = beads.iter().map(|b| self.start(*b)).collect();
+        let (u, u_range) = quantised(&moved);
+        let (f, f_range) = quantised(&forces);
+        let fields = [
+            ("beads", beads.len().to_string()),
+            ("stride", stride.to_string()),
+            ("frames", grid.len().to_string()),
+            ("from", number(grid.first().copied().unwrap_or(0.0))),
+            ("to", number(grid.last().copied().unwrap_or(0.0))),
+            ("factor", number(factor)),
+            ("x0", base64_f32(&places)),
+            ("radius", base64_f32(&radii)),
+            ("u", base64_u16(&u)),
+            ("uRange", range(u_range)),
+            ("f", base64_u16(&f)),
+            ("fRange", range(f_range)),
+            ("contacts", forces.len().to_string()),
+            (
+                "wet",
+                self.wet_contacts
+                    .map_or("null".into(), |(a, b)| format!("[{a},{b}]")),
+            ),
+            ("marks", self.marks_json()),
+            ("colours", colours()),
+        ];
+        let body: Vec<String> = fields.iter().map(|(k, v)| format!("{k}:{v}")).collect();
+        format!("{{{}}}", body.join(","))
+    }
+
+    /// Every how many beads one is kept.
+    fn stride(&self) -> usize {
+        (self.positions_m.len() * FEWEST_FRAMES)
+            .div_ceil(MOST_VALUES)
+            .max(1)
+    }
+
+    fn frame_times(&self, beads: usize) -> Vec<f64> {
+        let frames = (MOST_VALUES / beads.max(1)).clamp(FEWEST_FRAMES, MOST_FRAMES);
+        let finite = self.times_s.iter().copied().filter(|t| t.is_finite());
+        let (from, to) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| {
+            (a.min(t), b.max(t))
+        });
+        if !(from < to) {
+            return vec![0.0, 0.0];
+        }
+        let share = |i: usize| i as f64 / (frames - 1) as f64;
+        (0..frames).map(|i| from + (to - from) * share(i)).collect()
+    }
+
+    fn displacements(&self, beads: &[usize], grid: &[f64]) -> Vec<Vec<f64>> {
+        let moved = |bead: &usize| {
+            let path = self.positions_m.get(*bead).map_or(&[][..], Vec::as_slice);
+            let start = self.start(*bead);
+            resampled(&self.times_s, path, grid)
+                .iter()
+                .map(|x| x - start)
+                .collect()
+        };
+        beads.iter().map(moved).collect()
+    }
+
+    /// Of the contacts that a kept bead stands for, the largest force.
+    fn sampled_forces(&self, stride: usize, grid: &[f64]) -> Vec<Vec<f64>> {
+        let strongest = |group: &[Vec<f64>]| {
+            let mut best = vec![0.0_f64; grid.len()];
+            for force in group {
+                let sampled = resampled(&self.times_s, force, grid);
+                best.iter_mut()
+                    .zip(sampled)
+                    .for_each(|(b, f)| *b = if f.abs() > b.abs() { f } else { *b });
+            }
+            best
+        };
+        self.forces_n.chunks(stride).map(strongest).collect()
+    }
+
+    /// A factor of 1, 2 or 5 times a power of ten: the beads behind the striker
+    /// move by up to about one diameter.
+    fn fitting_factor(&self, moved: &[Vec<f64>]) -> f64 {
+        let behind = moved.iter().skip(1).flatten().map(|u| u.abs());
+        let largest = behind.fold(0.0, f64::max);
+        let wanted = 2.0 * self.radius(1) / largest;
+        if !wanted.is_finite() || wanted <= 1.0 {
+            return 1.0;
+        }
+        let decade = 10f64.powf(wanted.log10().floor());
+        let steps = [5.0, 2.0, 1.0];
+        steps
+            .iter()
+            .map(|s| s * decade)
+            .find(|f| *f <= wanted)
+            .unwrap_or(1.0)
+    }
+
+    fn radius(&self, bead: usize) -> f64 {
+        let own = self.radii_m.get(bead).or(self.radii_m.last()).copied();
+        own.filter(|r| r.is_finite() && *r > 0.0).unwrap_or(1.0)
+    }
+
+    /// First finite position of a bead.
+    fn start(&self, bead: usize) -> f64 {
+        let path = self.positions_m.get(bead);
+        path.and_then(|p| p.iter().copied().find(|x| x.is_finite()))
+            .unwrap_or(0.0)
+    }
+
+    fn marks_json(&self) -> String {
+        let entries = self
+            .marks
+            .iter()
+            .map(|(bead, name)| format!("[{bead},{}]", json_text(name)));
+        format!("[{}]", entries.collect::<Vec<_>>().join(","))
+    }
+}
+
+/// A number as JavaScript writes it.
+fn number(value: f64) -> String {
+    if value.is_finite() {
+        format!("{value:e}")
+    } else {
+        "0".into()
+    }
+}
+
+fn range((lo, hi): (f64, f64)) -> String {
+    format!("[{},{}]", number(lo), number(hi))
+}
+
+/// The sequential map as 256 hexadecimal colours.
+fn colours() -> String {
+    let hex = (0..256).map(|i| {
+        ColourMap::Sequential
+            .colour(0.97 - f64::from(i) / 300.0)
+            .to_string()
+    });
+    json_text(&hex.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moving(beads: usize, frames: usize) -> Animation {
+        let times: Vec<f64> = (0..frames).map(|i| i as f64 * 1e-6).collect();
+        let path = |bead: usize| times.iter().map(|t| bead as f64 * 0.01 + t).collect();
+        let positions: Vec<Vec<f64>> = (0..beads).map(path).collect();
+        let forces = vec![vec![1.0; frames]; beads];
+        Animation::new(&times, &positions, &forces, &[0.005])
+    }
+
+    #[test]
+    fn page_holds_no_reference_to_anything_outside() {
+        let page = moving(5, 50).html();
+        for outside in [
+            "http:", "https:", "src=", "@import", "href=", "@DATA@", "@TITLE@", "@SCRIPT@",
+        ] {
+            assert!(!page.contains(outside), "{outside}");
+        }
+    }
+
+    #[test]
+    fn names_cannot_break_out_of_the_script() {
+        let page = moving(2, 3)
+            .mark(0, "</script><b>\"x\\")
+            .title("<i>")
+            .html();
+        assert_eq!(page.matches("</script>").count(), 1);
+        assert!(!page.contains("<i>"));
+    }
+
+    #[test]
+    fn long_rows_make_files_of_bounded_size() {
+        // Two quantities of two bytes, four thirds for base64, and the page itself.
+        let most = MOST_VALUES * 2 * 2 * 4 / 3 + 300_000;
+        assert!(moving(20_000, 4).html().len() < most);
+    }
+
+    #[test]
+    fn missing_and_infinite_data_still_make_a_page() {
+        let nan = vec![vec![f64::NAN; 3], vec![f64::INFINITY; 2], Vec::new()];
+        for times in [&[][..], &[f64::NAN, 1.0], &[0.0, 1.0, 2.0]] {
+            let page = Animation::new(times, &nan, &nan, &[f64::NAN]).html();
+            assert!(!page.contains("NaN,") && page.contains("</html>"));
+        }
+    }
+}

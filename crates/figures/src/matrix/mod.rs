@@ -1,0 +1,253 @@
+//! Verdicts on claims under several readings, as a table of symbols.
+
+mod symbol;
+
+use symbol::draw_symbol;
+
+use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
+use crate::figure::{DOUBLE_COLUMN_MM, Figure};
+use crate::text::{Anchor, TextLine, wrap};
+
+/// What was found about a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The claim holds.
+    Holds,
+    /// It holds in part.
+    InPart,
+    /// It fails.
+    Fails,
+    /// It cannot be decided.
+    NotDecidable,
+}
+
+impl Verdict {
+    const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::InPart => "holds in part",
+            Self::Fails => "fails",
+            Self::NotDecidable => "not decidable",
+        }
+    }
+
+    /// Colours differ in lightness too, for grey print.
+    fn colour(self) -> Colour {
+        match self {
+            Self::Holds => Colour(56, 150, 122),
+            Self::InPart => Colour(244, 218, 130),
+            Self::Fails => Colour(186, 66, 10),
+            Self::NotDecidable => Colour::grey(226),
+        }
+    }
+}
+
+const FONT: f64 = 7.0;
+const LEADING: f64 = 8.8;
+const LABELS: f64 = 190.0;
+const SMALLEST_CELL: f64 = 10.0;
+const LARGEST_CELL: f64 = 40.0;
+const TALLEST_HEADER: f64 = 130.0;
+const PADDING: f64 = 4.0;
+const KEY: f64 = 18.0;
+
+/// Rows are claims, columns readings, cells verdicts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VerdictMatrix {
+    columns: Vec<String>,
+    rows: Vec<(String, Vec<Verdict>)>,
+}
+
+impl VerdictMatrix {
+    /// A table with the given columns and no rows.
+    #[must_use]
+    pub fn new(columns: &[&str]) -> Self {
+        let columns = columns.iter().map(|c| (*c).to_owned()).collect();
+        Self {
+            columns,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
+    #[must_use]
+    pub fn row(mut self, claim: &str, verdicts: &[Verdict]) -> Self {
+        let cells = verdicts.iter().copied().take(self.columns.len()).collect();
+        self.rows.push((claim.into(), cells));
+        self
+    }
+
+    /// The table as a figure of its own, as high as it needs to be and a
+    /// double column wide unless it has very many columns.
+    #[must_use]
+    pub fn figure(self) -> Figure {
+        let layout = Layout::new(&self);
+        let (width, height) = layout.size();
+        let mm = |points: f64| (points + 6.0) / PT_PER_MM;
+        Figure::new(mm(width), mm(height)).panel(self)
+    }
+
+    /// Draws the table, shrunk to fit the frame.
+    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
+        let layout = Layout::new(self);
+        let (width, height) = layout.size();
+        let scale = (frame.width() / width)
+            .min(frame.height() / height)
+            .min(1.0);
+        svg.open_scaled(Point::new(frame.x0, frame.y0), scale);
+        layout.draw_header(svg, self);
+        layout.draw_rows(svg, self);
+        layout.draw_key(svg);
+        svg.close();
+    }
+}
+
+struct Layout {
+    claims: Vec<Vec<TextLine>>,
+    headers: Vec<TextLine>,
+    labels: f64,
+    cell: f64,
+    header: f64,
+    upright: bool,
+}
+
+impl Layout {
+    fn new(matrix: &VerdictMatrix) -> Self {
+        let claims: Vec<Vec<TextLine>> = matrix
+            .rows
+            .iter()
+            .map(|(claim, _)| wrap(claim, FONT, LABELS, 4))
+            .collect();
+        let widest = claims
+            .iter()
+            .flatten()
+            .map(TextLine::width)
+            .fold(40.0, f64::max);
+        let labels = widest + 2.0 * PADDING;
+        let room = DOUBLE_COLUMN_MM * PT_PER_MM - 6.0 - labels;
+        let cell = (room / matrix.columns.len().max(1) as f64).clamp(SMALLEST_CELL, LARGEST_CELL);
+        let headers: Vec<TextLine> = matrix
+            .columns
+            .iter()
+            .map(|c| TextLine::new(c, FONT).fitted(TALLEST_HEADER))
+            .collect();
+        let longest = headers.iter().map(TextLine::width).fold(0.0, f64::max);
+        let upright = longest <= cell - 3.0;
+        let header = if upright { 1.3 * FONT } else { longest } + PADDING;
+        Self {
+            claims,
+            headers,
+            labels,
+            cell,
+            header,
+            upright,
+        }
+    }
+
+    fn size(&self) -> (f64, f64) {
+        let rows: f64 = (0..self.claims.len()).map(|i| self.row_height(i)).sum();
+        let width = self.labels + self.cell * self.headers.len() as f64;
+        (width.max(self.key_width()), self.header + rows + KEY)
+    }
+
+    fn row_height(&self, row: usize) -> f64 {
+        let lines = self.claims.get(row).map_or(1, |l| l.len().max(1));
+        (lines as f64 * LEADING + 3.0).max(SMALLEST_CELL + 2.0)
+    }
+
+    fn cell_centre(&self, column: usize) -> f64 {
+        self.labels + self.cell * (column as f64 + 0.5)
+    }
+
+    fn draw_header(&self, svg: &mut Svg, matrix: &VerdictMatrix) {
+        for (i, header) in self.headers.iter().enumerate().take(matrix.columns.len()) {
+            let at = Point::new(self.cell_centre(i), self.header - PADDING);
+            if self.upright {
+                header.draw(svg, at, Anchor::CENTRE, Colour::BLACK);
+            } else {
+                header.draw_turned(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK, 90.0);
+            }
+        }
+    }
+
+    fn draw_rows(&self, svg: &mut Svg, matrix: &VerdictMatrix) {
+        let (mut y, mut rules) = (self.header, PathData::new());
+        let right = self.labels + self.cell * self.headers.len() as f64;
+        for (row, (_, cells)) in matrix.rows.iter().enumerate() {
+            let height = self.row_height(row);
+            self.draw_claim(svg, row, y + 0.5 * height);
+            for (column, verdict) in cells.iter().enumerate() {
+                let x = self.cell_centre(column) - 0.5 * self.cell;
+                draw_symbol(
+                    svg,
+                    *verdict,
+                    &Rect::sized(x, y, self.cell, height).grown(-0.5),
+                );
+            }
+            rules.segment(Point::new(0.0, y), Point::new(right, y));
+            y += height;
+        }
+        rules.segment(Point::new(0.0, y), Point::new(right, y));
+        svg.path(&rules, &Paint::line(Colour::grey(190), 0.4));
+    }
+
+    fn draw_claim(&self, svg: &mut Svg, row: usize, middle: f64) {
+        let lines = self.claims.get(row).map_or(&[][..], Vec::as_slice);
+        let first = middle - 0.5 * LEADING * (lines.len() as f64 - 1.0);
+        for (i, line) in lines.iter().enumerate() {
+            let at = Point::new(PADDING, first + LEADING * i as f64);
+            line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+        }
+    }
+
+    fn key_width(&self) -> f64 {
+        let widths = Verdict::ALL
+            .iter()
+            .map(|v| TextLine::new(v.name(), FONT).width() + 32.0);
+        widths.sum()
+    }
+
+    fn draw_key(&self, svg: &mut Svg) {
+        let middle = self.size().1 - 0.5 * KEY + 3.0;
+        let mut x = (self.size().0 - self.key_width()).max(0.0);
+        for verdict in Verdict::ALL {
+            draw_symbol(svg, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
+            let name = TextLine::new(verdict.name(), FONT);
+            name.draw(
+                svg,
+                Point::new(x + 16.0, middle),
+                Anchor::LEFT_MIDDLE,
+                Colour::BLACK,
+            );
+            x += name.width() + 32.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_differ_in_lightness_for_grey_print() {
+        let mut levels = Verdict::ALL.map(|v| v.colour().luminance());
+        levels.sort_by(f64::total_cmp);
+        // The two palest are told apart by their symbols.
+        assert!(
+            levels[1] - levels[0] > 0.08 && levels[2] - levels[1] > 0.2,
+            "{levels:?}"
+        );
+    }
+
+    #[test]
+    fn a_table_grows_with_its_rows() {
+        let table = |rows: usize| {
+            let empty = VerdictMatrix::new(&["a", "b"]);
+            let full = (0..rows).fold(empty, |m, _| m.row("claim", &[Verdict::Holds]));
+            full.figure().size_mm().1
+        };
+        assert!(table(20) > table(10));
+    }
+}
