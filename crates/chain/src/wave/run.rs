@@ -187,7 +187,12 @@ impl<'a> Wave<'a> {
             Control::Fixed { .. } => 0.0,
         };
         Self {
-            window: Window::new(system, &state, table.stages(), limits.whole_chain),
+            window: Window::new(
+                system,
+                &state,
+                (table.stages(), tolerance),
+                limits.whole_chain,
+            ),
             pass: Pass::new(system),
             watch: Watch::new(system, tolerance),
             meter: limits

@@ -65,11 +65,6 @@ pub(super) fn error_norm(
     a: &[Vec<f64>],
     (speed, length): (f64, f64),
 ) -> (f64, usize) {
-    let sped: Vec<f64> = velocity.iter().map(|weight| h * weight / speed).collect();
-    let moved: Vec<f64> = position
-        .iter()
-        .map(|weight| h * h * weight / length)
-        .collect();
     let (mut worst, mut at) = (0.0_f64, bodies.start);
     let mut first = bodies.start;
     while first < bodies.end {

@@ -17,8 +17,9 @@ const LONG_CHAIN: usize = 512;
 /// Steps between looks behind the wave.
 const LOOK_EVERY: usize = 64;
 
-/// Relative velocities and overlaps below this fraction of the shot's scales
-/// are the rounding of positions, not motion.
+/// Relative velocities and overlaps below the tolerance of a step, or below
+/// this fraction of the shot's scales where steps are fixed, are what errors
+/// and rounding leave behind a wave, not motion.
 const RELAXED: f64 = 1e-13;
 
 /// Under load, deviations from rest below this fraction of the shot's scales
@@ -40,18 +41,24 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    pub fn new(system: &System, state: &State, stages: usize, whole_chain: bool) -> Self {
+    pub fn new(
+        system: &System,
+        state: &State,
+        (stages, tolerance): (usize, f64),
+        whole_chain: bool,
+    ) -> Self {
         let scales = system.scales();
         let loaded = system.static_force_n.iter().any(|&force| force != 0.0);
         let floor = if loaded { AT_REST_UNDER_LOAD } else { 0.0 };
+        let relaxed = tolerance.max(RELAXED);
         let mut window = Self {
             bodies: 0..system.bodies(),
             asleep_since_s: vec![0.0; system.bodies()],
             margin: stages + 1,
             speed_floor: floor * scales.speed_m_s,
             length_floor: floor * scales.speed_m_s * scales.time_s,
-            relaxed_speed: RELAXED * scales.speed_m_s,
-            relaxed_length: RELAXED * scales.speed_m_s * scales.time_s,
+            relaxed_speed: relaxed * scales.speed_m_s,
+            relaxed_length: relaxed * scales.speed_m_s * scales.time_s,
             sleeps_behind: !whole_chain && system.beads() >= LONG_CHAIN && system.flies_free(),
             until_look: LOOK_EVERY,
         };

@@ -2,6 +2,7 @@
 
 mod grid;
 mod shape;
+mod solver;
 mod wave;
 
 pub use shape::{SolitaryShape, kinetic_share_by_virial};

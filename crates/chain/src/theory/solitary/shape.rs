@@ -1,21 +1,10 @@
 //! The dimensionless shape of the exact lattice solitary wave.
 
-use super::grid::CosineGrid;
+use super::solver::{Solution, sinc, solve};
 use crate::theory::TheoryError;
 
 /// Exponents for which the solver's window and spectrum stay small.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.02..=20.0;
-/// The spectrum counts as resolved when its last tenth is below this; the
-/// coefficients add up to the peak, 1, so this is a share of the peak.
-const RESOLVED: f64 = 3e-16;
-/// Coefficients after the last one above this are rounding and are dropped.
-const NEGLIGIBLE: f64 = 1e-17;
-/// Finest grid tried, points a bead; reached only if the spectrum never falls off.
-const FINEST: usize = 128;
-/// The slowest exponent, 1.02, needs about half of these.
-const MOST_STEPS: usize = 5000;
-/// A fixed point worse than this is reported as a failure.
-const ACCEPTED: f64 = 1e-13;
 
 /// Shape of the solitary wave of a touching chain with force law F = k δⁿ.
 ///
@@ -31,13 +20,7 @@ const ACCEPTED: f64 = 1e-13;
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolitaryShape {
     exponent: f64,
-    half_window: f64,
-    /// Cosine coefficients of the force shape pⁿ.
-    force: Vec<f64>,
-    speed_squared: f64,
-    force_area: f64,
-    work_area: f64,
-    velocity_square_area: f64,
+    solved: Solution,
 }
 
 impl SolitaryShape {
@@ -54,17 +37,8 @@ impl SolitaryShape {
                 expected: "between 1.02 and 20",
             });
         }
-        let half_window = half_window_beads(exponent);
-        let mut per_bead = 8;
-        while per_bead <= FINEST {
-            let grid = CosineGrid::new(half_window, per_bead);
-            let solution = fixed_point(&grid, exponent)?;
-            if resolved(&solution.force) {
-                return Ok(Self::measured(&grid, exponent, half_window, solution));
-            }
-            per_bead *= 2;
-        }
-        Err(not_converged("spectrum of the solitary wave", RESOLVED))
+        let solved = solve(exponent)?;
+        Ok(Self { exponent, solved })
     }
 
     /// The shape for Hertz contacts, n = 3/2.
@@ -75,26 +49,6 @@ impl SolitaryShape {
         Self::new(1.5)
     }
 
-    fn measured(grid: &CosineGrid, exponent: f64, half_window: usize, found: FixedPoint) -> Self {
-        let velocity = grid.samples(&filtered(grid, &found.force, 1));
-        let powers = |power: f64| found.overlap.iter().map(move |p| p.powf(power));
-        let mut force = found.force;
-        let kept = force
-            .iter()
-            .rposition(|a| a.abs() > NEGLIGIBLE)
-            .unwrap_or(0);
-        force.truncate(kept + 1);
-        Self {
-            exponent,
-            half_window: half_window as f64,
-            speed_squared: found.speed_squared,
-            force_area: grid.integral(powers(exponent)),
-            work_area: grid.integral(powers(exponent + 1.0)),
-            velocity_square_area: grid.integral(velocity.iter().map(|v| v * v)),
-            force,
-        }
-    }
-
     /// Force exponent n.
     pub fn exponent(&self) -> f64 {
         self.exponent
@@ -102,53 +56,53 @@ impl SolitaryShape {
 
     /// Half the width of the window in which the shape is not zero to rounding, in beads.
     pub fn half_window_beads(&self) -> f64 {
-        self.half_window
+        self.solved.half_window
     }
 
     /// σ = m c² / (k δ_mⁿ⁻¹): squared speed in units of the peak overlap.
     pub fn speed_squared(&self) -> f64 {
-        self.speed_squared
+        self.solved.speed_squared
     }
 
     /// c / (k^{1/(2n)} m^{−1/2} F_m^{(n−1)/(2n)}) = √σ; Hertz: 0.9055 K^{1/3} m^{−1/2} F_m^{1/6}.
     pub fn speed_per_force_power(&self) -> f64 {
-        self.speed_squared.sqrt()
+        self.solved.speed_squared.sqrt()
     }
 
     /// c / ((k/m)^{1/(n+1)} v_m^{(n−1)/(n+1)}); Hertz: 0.9075 (K/m)^{2/5} v_m^{1/5}.
     pub fn speed_per_velocity_power(&self) -> f64 {
         let n = self.exponent;
         let peak = self.velocity(0.0);
-        (self.speed_squared.powf(n) * peak.powf(1.0 - n)).powf(1.0 / (n + 1.0))
+        (self.solved.speed_squared.powf(n) * peak.powf(1.0 - n)).powf(1.0 / (n + 1.0))
     }
 
     /// Mean share of the kinetic energy; the virial argument gives (n+1)/(n+3)
     /// exactly (see [`kinetic_share_by_virial`]), this is the quadrature of the profile.
     pub fn kinetic_share(&self) -> f64 {
-        let kinetic = self.velocity_square_area / (2.0 * self.speed_squared);
-        kinetic / (kinetic + self.work_area / (self.exponent + 1.0))
+        let kinetic = self.solved.velocity_square_area / (2.0 * self.solved.speed_squared);
+        kinetic / (kinetic + self.solved.work_area / (self.exponent + 1.0))
     }
 
     /// Energy E / (k δ_mⁿ⁺¹), from the quadratures of both kinds of energy.
     pub fn energy(&self) -> f64 {
-        self.velocity_square_area / (2.0 * self.speed_squared)
-            + self.work_area / (self.exponent + 1.0)
+        self.solved.velocity_square_area / (2.0 * self.solved.speed_squared)
+            + self.solved.work_area / (self.exponent + 1.0)
     }
 
     /// Momentum P / (m c δ_m) = ∫ p dx: also how far the passing wave shifts each bead, in units of δ_m.
     pub fn momentum(&self) -> f64 {
-        self.force_area / self.speed_squared
+        self.solved.force_area / self.solved.speed_squared
     }
 
     /// Mass of the particle with the wave's energy and momentum,
     /// P² / (2 E m), in beads \[Job2007\].
     pub fn effective_mass(&self) -> f64 {
-        self.speed_squared * self.momentum().powi(2) / (2.0 * self.energy())
+        self.solved.speed_squared * self.momentum().powi(2) / (2.0 * self.energy())
     }
 
     /// Overlap in units of δ_m at `x` beads from the centre.
     pub fn overlap(&self, x: f64) -> f64 {
-        self.filtered_sum(x, 2) / self.speed_squared
+        self.filtered_sum(x, 2) / self.solved.speed_squared
     }
 
     /// Contact force in units of F_m at `x` beads from the centre.
@@ -187,7 +141,7 @@ impl SolitaryShape {
     /// Bisection for f(x) = f(0)/2: every profile falls from its centre outwards.
     fn width(&self, profile: impl Fn(f64) -> f64) -> f64 {
         let half = 0.5 * profile(0.0);
-        let (mut inner, mut outer) = (0.0, self.half_window);
+        let (mut inner, mut outer) = (0.0, self.solved.half_window);
         while outer - inner > 2.0 * f64::EPSILON * outer {
             let middle = 0.5 * (inner + outer);
             if profile(middle) > half {
@@ -203,15 +157,15 @@ impl SolitaryShape {
     /// over a bead, two make the double integral of the second difference.
     /// The series is good to 1e-16 of the peak; below that a tail may not turn negative.
     fn filtered_sum(&self, x: f64, times: i32) -> f64 {
-        if x.abs() >= self.half_window {
+        if x.abs() >= self.solved.half_window {
             return 0.0;
         }
-        let step = std::f64::consts::PI / self.half_window;
+        let step = std::f64::consts::PI / self.solved.half_window;
         let term = |(mode, a): (usize, &f64)| {
             let k = step * mode as f64;
             a * sinc(0.5 * k).powi(times) * (k * x).cos()
         };
-        let sum: f64 = self.force.iter().enumerate().map(term).sum();
+        let sum: f64 = self.solved.force.iter().enumerate().map(term).sum();
         sum.max(0.0)
     }
 }
@@ -223,91 +177,4 @@ impl SolitaryShape {
 /// ∫ F δ / (n + 1). Hertz: 5/9.
 pub fn kinetic_share_by_virial(exponent: f64) -> f64 {
     (exponent + 1.0) / (exponent + 3.0)
-}
-
-struct FixedPoint {
-    overlap: Vec<f64>,
-    force: Vec<f64>,
-    speed_squared: f64,
-}
-
-/// p ← Λ∗pⁿ / (Λ∗pⁿ)(0). Fixing the peak removes the one growing direction
-/// (factor n), evenness removes the translation (factor 1); what is left
-/// shrinks by about 1/n a step.
-fn fixed_point(grid: &CosineGrid, exponent: f64) -> Result<FixedPoint, TheoryError> {
-    let variance = gaussian_variance(exponent);
-    let mut overlap: Vec<f64> = grid
-        .positions()
-        .map(|x| (-0.5 * x * x / variance).exp())
-        .collect();
-    let mut change = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
-        let (next, _, _) = iterate(grid, exponent, &overlap);
-        let last_change = change;
-        change = largest_difference(&next, &overlap);
-        overlap = next;
-        let at_rounding = change >= last_change && change < ACCEPTED;
-        if at_rounding || change == 0.0 {
-            break;
-        }
-    }
-    if change > ACCEPTED {
-        return Err(not_converged("solitary wave iteration", change));
-    }
-    let (overlap, force, speed_squared) = iterate(grid, exponent, &overlap);
-    Ok(FixedPoint {
-        overlap,
-        force,
-        speed_squared,
-    })
-}
-
-fn iterate(grid: &CosineGrid, exponent: f64, overlap: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
-    let powers: Vec<f64> = overlap.iter().map(|p| p.max(0.0).powf(exponent)).collect();
-    let force = grid.coefficients(&powers);
-    let mut next = grid.samples(&filtered(grid, &force, 2));
-    let peak = next.first().copied().unwrap_or(1.0);
-    next.iter_mut().for_each(|p| *p = (*p / peak).max(0.0));
-    (next, force, peak)
-}
-
-fn filtered(grid: &CosineGrid, coefficients: &[f64], times: i32) -> Vec<f64> {
-    let damp = |(mode, a): (usize, &f64)| a * sinc(0.5 * grid.wavenumber(mode)).powi(times);
-    coefficients.iter().enumerate().map(damp).collect()
-}
-
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
-}
-
-fn resolved(coefficients: &[f64]) -> bool {
-    let tail = coefficients.len() / 10 + 1;
-    let last = coefficients.iter().rev().take(tail);
-    last.map(|a| a.abs()).fold(0.0, f64::max) < RESOLVED
-}
-
-/// For n → 1 the wave is a Gaussian whose variance s solves s = s/n + 1/6
-/// (1/6 is the variance of Λ): the start of the iteration, and an upper bound
-/// of the true wave's tails.
-fn gaussian_variance(exponent: f64) -> f64 {
-    exponent / (6.0 * (exponent - 1.0))
-}
-
-fn half_window_beads(exponent: f64) -> usize {
-    let log_rounding = 40.0;
-    (2.0 * log_rounding * gaussian_variance(exponent))
-        .sqrt()
-        .ceil() as usize
-        + 1
-}
-
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.sin() / x }
-}
-
-fn not_converged(computation: &'static str, error: f64) -> TheoryError {
-    TheoryError::NotConverged { computation, error }
 }
