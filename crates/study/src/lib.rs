@@ -1,1 +1,27 @@
-//! Shots, sweeps, the paper's claims and their reproduction.
+//! What is done with chains: shots, sweeps over speed, descriptions.
+//!
+//! A [`Plan`] says which chain, watched where, how accurately; [`shoot`] runs
+//! it and returns a [`Shot`]: times of flight, peaks, rebound, energy budget.
+//!
+//! ```
+//! use hertzchain_study::{Plan, shoot};
+//!
+//! let dry = hertzchain_experiment::preset("dry")?;
+//! let (plan, _warnings) = Plan::from_experiment(&dry, Some(0.5))?;
+//! let shot = shoot(&plan)?;
+//! let flight = shot.flight.expect("the pulse reaches the wall");
+//! assert!(flight.reflected_s.unwrap() > flight.incident_s);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod accuracy;
+mod duration;
+mod error;
+mod flight;
+mod plan;
+mod shot;
+
+pub use error::StudyError;
+pub use flight::Flight;
+pub use plan::{Pick, Plan, Solver, Watch};
+pub use shot::{Rebound, Shot, shoot, shoot_checked};

@@ -1,0 +1,121 @@
+//! The paper's claims: rows of a data file.
+
+use super::predicates::{self, Predicate};
+use super::{Evidence, Finding};
+use serde::Deserialize;
+
+/// One statement of the paper that a model can be held to.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Short name, unique.
+    pub id: String,
+    /// What the paper says, in our words.
+    pub statement: String,
+    /// Where in the paper.
+    pub paper: String,
+    /// Name of the predicate that decides.
+    pub predicate: String,
+    /// Cases it is about; their order may matter.
+    #[serde(default)]
+    pub cases: Vec<String>,
+    /// Branches of the ToF it is about: `incident`, `reflected` or both.
+    #[serde(default)]
+    pub branches: Vec<String>,
+    /// Values that the paper prints.
+    #[serde(default)]
+    pub expected: Vec<f64>,
+    /// What the deciding number is compared with.
+    pub threshold: f64,
+    /// A weaker threshold, at which the claim holds in part.
+    pub partly: Option<f64>,
+    /// Only speeds from here in m/s.
+    #[serde(default)]
+    pub from_m_s: f64,
+    /// Only speeds up to here in m/s.
+    #[serde(default = "no_limit")]
+    pub to_m_s: f64,
+    /// The deciding number, in words with its unit.
+    pub value: String,
+    /// Why this threshold.
+    pub reason: String,
+}
+
+fn no_limit() -> f64 {
+    f64::INFINITY
+}
+
+/// A claim file that can't be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ClaimError {
+    /// The text is not a list of claims.
+    #[error("the claims can't be read: {0}")]
+    Text(#[from] toml::de::Error),
+    /// A row names no predicate that exists.
+    #[error("claim `{claim}` names the predicate `{predicate}`, which does not exist")]
+    Predicate {
+        /// The row.
+        claim: String,
+        /// The name.
+        predicate: String,
+    },
+    /// Two rows share a name.
+    #[error("there are two claims `{0}`")]
+    Twice(String),
+}
+
+/// A claim and the code that decides it.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    /// The row.
+    pub claim: Claim,
+    predicate: Predicate,
+}
+
+impl Judge {
+    /// Decides the claim on numbers.
+    #[must_use]
+    pub fn decide(&self, evidence: &Evidence) -> Finding {
+        (self.predicate)(&self.claim, evidence)
+    }
+}
+
+#[derive(Deserialize)]
+struct File {
+    claim: Vec<Claim>,
+}
+
+/// The paper's claims as they come with the program.
+static PAPER: &str = include_str!("../../data/claims.toml");
+
+/// The paper's claims, in the order of the data file.
+///
+/// # Errors
+/// When the data file is damaged, which a test rules out.
+pub fn claims() -> Result<Vec<Judge>, ClaimError> {
+    read(PAPER)
+}
+
+/// Claims from the text of a data file.
+///
+/// # Errors
+/// A text that is no list of claims, an unknown predicate, a name used twice.
+pub fn read(text: &str) -> Result<Vec<Judge>, ClaimError> {
+    let file: File = toml::from_str(text)?;
+    let mut judges: Vec<Judge> = Vec::with_capacity(file.claim.len());
+    for claim in file.claim {
+        if judges.iter().any(|judge| judge.claim.id == claim.id) {
+            return Err(ClaimError::Twice(claim.id));
+        }
+        match predicates::find(&claim.predicate) {
+            Some(predicate) => judges.push(Judge { claim, predicate }),
+            None => {
+                return Err(ClaimError::Predicate {
+                    claim: claim.id,
+                    predicate: claim.predicate,
+                });
+            }
+        }
+    }
+    Ok(judges)
+}

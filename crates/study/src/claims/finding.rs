@@ -1,0 +1,128 @@
+//! What was found about a claim.
+
+/// The answer to "does the model show what the paper says?".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It does.
+    Holds,
+    /// It does in some of the cases or speeds that the claim covers.
+    InPart,
+    /// It does not.
+    Fails,
+    /// The numbers do not tell.
+    NotDecidable,
+}
+
+impl Verdict {
+    /// All verdicts.
+    pub const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
+
+    /// As written in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::InPart => "holds in part",
+            Self::Fails => "fails",
+            Self::NotDecidable => "not decidable",
+        }
+    }
+
+    /// How much of the claim is met, for ranking readings: 1, 1/2 or 0.
+    #[must_use]
+    pub const fn score(self) -> f64 {
+        match self {
+            Self::Holds => 1.0,
+            Self::InPart => 0.5,
+            Self::Fails | Self::NotDecidable => 0.0,
+        }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A predicate's answer: a number with its accuracy, and what follows from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What follows.
+    pub verdict: Verdict,
+    /// The number that decides; not a number when there is none.
+    pub value: f64,
+    /// Absolute accuracy of the number.
+    pub accuracy: f64,
+    /// Where and how much, in words.
+    pub detail: String,
+}
+
+impl Finding {
+    /// Of a claim for which numbers are missing.
+    #[must_use]
+    pub fn without_numbers(why: &str) -> Self {
+        Self {
+            verdict: Verdict::NotDecidable,
+            value: f64::NAN,
+            accuracy: f64::NAN,
+            detail: why.to_owned(),
+        }
+    }
+}
+
+/// Counts single comparisons and makes a verdict of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    yes: usize,
+    no: usize,
+    open: usize,
+}
+
+impl Tally {
+    /// Counts a comparison: met when the margin exceeds its accuracy, not met
+    /// when it is below minus that, open in between or when not a number.
+    pub fn margin(&mut self, margin: f64, accuracy: f64) {
+        if margin > accuracy {
+            self.yes += 1;
+        } else if margin < -accuracy {
+            self.no += 1;
+        } else {
+            self.open += 1;
+        }
+    }
+
+    /// Counts a plain yes or no.
+    pub fn answer(&mut self, yes: bool) {
+        match yes {
+            true => self.yes += 1,
+            false => self.no += 1,
+        }
+    }
+
+    /// Holds when all are met, fails when none is, in part when some are;
+    /// not decidable as soon as an open one could change that.
+    #[must_use]
+    pub fn verdict(self) -> Verdict {
+        match (self.yes, self.no, self.open) {
+            (0, 0, _) => Verdict::NotDecidable,
+            (_, 0, 0) => Verdict::Holds,
+            (0, _, 0) => Verdict::Fails,
+            (0, _, _) | (_, 0, _) => Verdict::NotDecidable,
+            _ => Verdict::InPart,
+        }
+    }
+
+    /// How many were met, and of how many.
+    #[must_use]
+    pub fn counts(self) -> (usize, usize) {
+        (self.yes, self.yes + self.no + self.open)
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (met, all) = self.counts();
+        write!(f, "{met} of {all}")
+    }
+}

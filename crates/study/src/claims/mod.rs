@@ -1,0 +1,20 @@
+//! What the paper says, held against what the model shows.
+//!
+//! Claims are rows of a data file; each names a predicate, which is code on
+//! plain numbers. No verdict is written down anywhere: change the numbers and
+//! the verdicts follow.
+
+mod claim;
+mod evidence;
+mod finding;
+mod predicates;
+mod report;
+mod rounded;
+
+pub use claim::{Claim, ClaimError, Judge, claims, read};
+pub use evidence::{
+    Branch, Curve, DigitisedPeak, Evidence, Oil, Point, Ratio, SHOTS_PER_POINT, SPEED_SCATTER_M_S,
+};
+pub use finding::{Finding, Tally, Verdict};
+pub use report::{claims_json, claims_markdown};
+pub use rounded::{Judged, Rounded, judge_all};

@@ -1,0 +1,53 @@
+//! When a shot is over.
+
+use crate::plan::Plan;
+use hertzchain_chain::{FarEnd, System};
+
+/// How a shot ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct End {
+    /// Longest duration in s.
+    pub longest_s: f64,
+    /// Once the reflected pulse has passed the sensor bead.
+    pub at_reflection: bool,
+    /// Once all bodies fly apart.
+    pub when_apart: bool,
+}
+
+/// Longest shot in contact times a bead. A pulse takes 1.4 of them a bead and
+/// the shot ends four flights after it set out; damping and chains of unlike
+/// beads stretch this by a small factor.
+const LONGEST: f64 = 40.0;
+
+/// Beads' worth of time that even the shortest chain gets.
+const SHORT_CHAIN: f64 = 10.0;
+
+/// A ring is followed for about two turns of a pulse.
+const TWO_TURNS: f64 = 3.0;
+
+/// The end of a shot of a system.
+pub(crate) fn end(plan: &Plan, system: &System) -> End {
+    let scales = system.scales();
+    let beads = system.beads() as f64 + SHORT_CHAIN;
+    let gaps: f64 = plan.chain.gaps.iter().map(|gap| gap.gap_m.abs()).sum();
+    let bead_times = |count: f64| count * (beads * scales.time_s + gaps / scales.speed_m_s);
+    let wall = !matches!(plan.chain.far, FarEnd::Free | FarEnd::Periodic { .. });
+    let longest_s = match (plan.duration_s, &plan.chain.far) {
+        (Some(duration_s), _) => duration_s,
+        (None, FarEnd::Periodic { .. }) => bead_times(TWO_TURNS),
+        (None, _) => swing_s(plan).unwrap_or_else(|| bead_times(LONGEST)),
+    };
+    let open = plan.duration_s.is_none();
+    End {
+        longest_s,
+        at_reflection: open && wall,
+        when_apart: open && !wall && plan.chain.suspension_m.is_none(),
+    }
+}
+
+/// A cradle is followed for one swing of its threads, in s.
+fn swing_s(plan: &Plan) -> Option<f64> {
+    let length_m = plan.chain.suspension_m?;
+    let period_s = std::f64::consts::TAU * (length_m / plan.chain.gravity_m_s2).sqrt();
+    period_s.is_finite().then_some(period_s)
+}

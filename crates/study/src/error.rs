@@ -1,0 +1,49 @@
+//! Why a shot has no result.
+
+use hertzchain_chain::ChainError;
+use hertzchain_chain::wave::SolveError;
+
+/// Why a shot has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StudyError {
+    /// The chain can't be set up.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// The motion can't be computed as asked.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// An accuracy no result can have.
+    #[error("an accuracy of {0} makes no sense; expected a number between 1e-13 and 1e-2")]
+    Accuracy(f64),
+    /// A duration or step that is not a positive number.
+    #[error("{what} = {value} s must be positive and finite")]
+    Time {
+        /// Which time.
+        what: &'static str,
+        /// What it is, in s.
+        value: f64,
+    },
+    /// The sensor bead is not part of the chain.
+    #[error("sensor bead {bead} is outside the chain of {beads} beads")]
+    SensorOutside {
+        /// The sensor bead.
+        bead: usize,
+        /// Number of beads.
+        beads: usize,
+    },
+    /// Halving a fixed step does not get there.
+    #[error(
+        "{method} does not reach an accuracy of {accuracy:e}: halving its step down to {step_s:e} s \
+         still changes the result by {change:e}; ask for less accuracy or use the adaptive solver"
+    )]
+    NotConverged {
+        /// The method.
+        method: &'static str,
+        /// Accuracy asked for.
+        accuracy: f64,
+        /// Last step in s.
+        step_s: f64,
+        /// Last relative change.
+        change: f64,
+    },
+}

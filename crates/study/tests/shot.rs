@@ -1,0 +1,192 @@
+//! Shots of the paper's chain.
+
+use hertzchain_chain::wave::Budget;
+use hertzchain_experiment::preset;
+use hertzchain_study::{Flight, Pick, Plan, Shot, Solver, StudyError, shoot, shoot_checked};
+
+fn plan(name: &str, speed_m_s: f64) -> Plan {
+    let experiment = preset(name).unwrap();
+    Plan::from_experiment(&experiment, Some(speed_m_s))
+        .unwrap()
+        .0
+}
+
+fn flight(plan: &Plan) -> Flight {
+    shoot(plan).unwrap().flight.unwrap()
+}
+
+/// Times of flight in µs, incident and reflected, computed by two
+/// independent integrators.
+const REFERENCE: [(&str, f64, f64, f64); 4] = [
+    ("hertz", 1.0, 630.841591, 632.265715),
+    ("hertz-viscoelastic", 0.5, 751.270959, 783.036376),
+    ("dry", 0.075, 1086.942704, 1120.470790),
+    ("dry", 1.23, 660.261248, 699.493431),
+];
+
+fn assert_reference(solver: Solver, accuracy: f64, allowed: f64) {
+    for (name, speed_m_s, incident_us, reflected_us) in REFERENCE {
+        let plan = Plan {
+            solver,
+            ..plan(name, speed_m_s).with_accuracy(accuracy)
+        };
+        let flight = flight(&plan);
+        let deviations = [
+            flight.incident_s * 1e6 / incident_us - 1.0,
+            flight.reflected_s.unwrap() * 1e6 / reflected_us - 1.0,
+        ];
+        for deviation in deviations {
+            assert!(
+                deviation.abs() < allowed,
+                "{name} at {speed_m_s} m/s: {deviation:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn adaptive_shots_give_the_reference_times() {
+    // The reference has ten digits: half a unit of the last is 5e-10 of the
+    // smallest time; the shot is asked for a hundredth of 1e-7.
+    assert_reference(Solver::Adaptive, 1e-9, 1.5e-9);
+}
+
+#[test]
+fn the_asked_accuracy_is_reached() {
+    for accuracy in [1e-4, 1e-6, 1e-8] {
+        // The reference is far more accurate than what is asked.
+        assert_reference(Solver::Adaptive, accuracy, accuracy);
+    }
+}
+
+#[test]
+fn fixed_steps_are_halved_until_the_asked_accuracy() {
+    // The last change bounds the error only up to the order of convergence,
+    // which at impact may be as low as 1: change = error.
+    assert_reference(Solver::Rk4 { step_s: None }, 1e-5, 2e-5);
+    assert_reference(Solver::Verlet { step_s: None }, 1e-4, 2e-4);
+}
+
+fn checked(plan: &Plan) -> Shot {
+    shoot_checked(plan).unwrap()
+}
+
+#[test]
+fn a_checked_shot_knows_what_it_reached() {
+    let shot = checked(&plan("dry", 0.5).with_accuracy(1e-7));
+    let reached = shot.accuracy_reached.unwrap();
+    assert!(reached > 0.0 && reached < 1e-7, "{reached:e}");
+    assert!(shot.notes.is_empty(), "{:?}", shot.notes);
+}
+
+#[test]
+fn accuracy_beyond_double_precision_is_said_to_be_so() {
+    let shot = checked(&plan("hertz", 1.0).with_accuracy(1e-13));
+    assert!(
+        shot.notes
+            .iter()
+            .any(|note| note.contains("beyond double precision"))
+    );
+    // Rounding accumulates over some thousand steps.
+    assert!(
+        shot.accuracy_reached.unwrap() < 1e-11,
+        "{:?}",
+        shot.accuracy_reached
+    );
+}
+
+#[test]
+fn energy_is_balanced_to_the_asked_accuracy() {
+    for name in [
+        "dry",
+        "hertz",
+        "hertz-viscoelastic",
+        "pump",
+        "gear",
+        "motor",
+    ] {
+        for accuracy in [1e-6, 1e-9] {
+            let shot = shoot(&plan(name, 0.5).with_accuracy(accuracy).with_budget()).unwrap();
+            let residual = shot.budget.as_ref().map(Budget::relative_residual).unwrap();
+            assert!(
+                residual.abs() < accuracy,
+                "{name}: {residual:e} at {accuracy:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn hertz_pulses_keep_their_time_whatever_the_pick() {
+    let peak = flight(&plan("hertz", 1.0));
+    for pick in [Pick::Flank(0.1), Pick::Flank(0.5), Pick::CrossCorrelation] {
+        let other = flight(&Plan {
+            pick,
+            ..plan("hertz", 1.0)
+        });
+        // The wall's pulse is higher and wider than the bead's: picks differ
+        // by a fraction of its width, 30 µs of 631 µs.
+        let change = other.change(&peak);
+        assert!(change > 1e-6 && change < 0.05, "{pick:?}: {change:e}");
+    }
+}
+
+#[test]
+fn correlated_times_do_not_depend_on_the_accuracy_beyond_it() {
+    let at = |accuracy| {
+        flight(&Plan {
+            pick: Pick::CrossCorrelation,
+            ..plan("dry", 0.5).with_accuracy(accuracy)
+        })
+    };
+    assert!(at(1e-6).change(&at(1e-9)) < 1e-6);
+}
+
+#[test]
+fn a_pulse_that_does_not_arrive_is_a_result_not_an_error() {
+    let shot = shoot(&Plan {
+        duration_s: Some(50e-6),
+        ..plan("dry", 0.5)
+    })
+    .unwrap();
+    assert!(shot.flight.is_none());
+    let reason = shot.passage.unwrap_err().to_string();
+    assert!(reason.contains("no pulse reached the wall"), "{reason}");
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let refused = |change: fn(&mut Plan)| {
+        let mut plan = plan("dry", 0.5);
+        change(&mut plan);
+        shoot(&plan).unwrap_err()
+    };
+    assert_eq!(refused(|p| p.accuracy = 0.0), StudyError::Accuracy(0.0));
+    assert!(matches!(
+        refused(|p| p.accuracy = f64::NAN),
+        StudyError::Accuracy(_)
+    ));
+    assert!(matches!(
+        refused(|p| p.sensor_bead = 41),
+        StudyError::SensorOutside { .. }
+    ));
+    assert!(matches!(
+        refused(|p| p.duration_s = Some(-1.0)),
+        StudyError::Time { .. }
+    ));
+    let step = |p: &mut Plan| p.solver = Solver::Rk4 { step_s: Some(0.0) };
+    assert!(matches!(refused(step), StudyError::Time { .. }));
+}
+
+#[test]
+fn a_fixed_step_that_never_gets_there_gives_up_with_its_reason() {
+    let error = shoot(&Plan {
+        solver: Solver::Verlet { step_s: None },
+        ..plan("dry", 0.5).with_accuracy(1e-13)
+    });
+    let text = error.unwrap_err().to_string();
+    assert!(
+        text.contains("does not reach an accuracy of 1e-13"),
+        "{text}"
+    );
+}
