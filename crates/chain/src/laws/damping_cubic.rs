@@ -1,7 +1,7 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::Pair;
 
-/// Cubic in the overlap rate [Labbe]: F = B δ̇³ while in contact.
+/// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ while in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DampingCubic {
     /// B in kg s/m².
@@ -20,7 +20,7 @@ impl Term<1> for DampingCubic {
             least: 0.0,
         }],
         validity: "phenomenological, fitted between 0.075 and 1.23 m/s; acts at once when a contact closes",
-        reference: "Labbe",
+        reference: "Labbe2017",
         nature: Nature::Dissipative,
         gated: true,
     };

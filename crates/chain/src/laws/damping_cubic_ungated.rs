@@ -1,7 +1,7 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::Pair;
 
-/// Cubic in the overlap rate [Labbe]: F = B δ̇³ whether or not in contact,
+/// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ whether or not in contact,
 /// as one reading of the equation with its rate kept when a contact opens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DampingCubicUngated {
@@ -21,7 +21,7 @@ impl Term<1> for DampingCubicUngated {
             least: 0.0,
         }],
         validity: "a reading of the printed equation, for comparison only: no known mechanism acts across a gap",
-        reference: "Labbe",
+        reference: "Labbe2017",
         nature: Nature::Dissipative,
         gated: false,
     };
