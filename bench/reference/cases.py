@@ -285,6 +285,11 @@ def wet(oil, speed, **options):
     return lambda rtol: rig_observables(p.wet_rig(oil, speed, **options), speed, 3.4e-3 * speed**-0.2, rtol)
 
 
+def reading(build, speed, **where):
+    """A rig by a function, so that a reading is one line."""
+    return lambda rtol: rig_observables(build(), speed, 3.4e-3 * speed**-0.2, rtol, **where)
+
+
 def ring(rtol):
     """Ten beads K = m = 1 on a ring, just touching; bead 1 starts at speed 1; state at t = 10 and 20."""
     n = 10

@@ -45,11 +45,18 @@ def dry_rig(a_visc=None, cubic=CUBIC, **options):
     return row([MASS] * (BEADS + 1), hertz_same(), a_visc=a, cubic=cubic, **options)
 
 
-def wet_rig(oil, speed, **options):
-    """Contacts 0..=6 dry with the cubic term, 7..=40 wet with the oil's effective material on both sides."""
+def wet_rig(oil, speed, first_wet=SENSOR, cubic=CUBIC, eta2_over_eta1=1.0, largest_nu=1.0, **options):
+    """Contacts from `first_wet` on wet with the oil's effective material on both sides, those before dry with the cubic term."""
     young, (eta, eta_exponent), (nu, nu_exponent) = OILS[oil]
-    eta, nu = eta * speed**eta_exponent, nu * speed**nu_exponent
-    wet = np.arange(BEADS + 1) >= SENSOR
-    return row([MASS] * (BEADS + 1), np.where(wet, hertz_same(young, nu), hertz_same()),
-               a_visc=np.where(wet, relaxation(young, nu, eta, eta), relaxation()),
-               cubic=np.where(wet, 0.0, CUBIC), **options)
+    eta, nu = eta * speed**eta_exponent, min(nu * speed**nu_exponent, largest_nu)
+    wet = np.arange(BEADS + 1) >= first_wet
+    a_wet, a_dry = relaxation(young, nu, eta, eta2_over_eta1 * eta), relaxation(eta2=eta2_over_eta1 * ETA)
+    return row([MASS] * (BEADS + 1), np.where(wet, hertz_same(young, nu), hertz_same()), a_visc=np.where(wet, a_wet, a_dry),
+               cubic=np.where(wet, 0.0, cubic), **options)
+
+
+def dry_rig_on_plane():
+    """The paper's chain against an elastic plane of its own steel."""
+    d = compliance(YOUNG, POISSON)
+    stiff = np.append(np.full(BEADS, hertz_same()), hertz(RADIUS, d, np.inf, d))
+    return row([MASS] * (BEADS + 1), stiff, a_visc=relaxation(), cubic=CUBIC)

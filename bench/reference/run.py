@@ -64,6 +64,20 @@ def rig_cases():
     yield "rig/pump_clipped_0.5", DRY | dict(speed_m_s=0.5, oil="pump", tension="clipped"), c.wet("pump", 0.5, clipped=True)
 
 
+def reading_cases():
+    """Single switches away from the default reading."""
+    at = DRY | dict(speed_m_s=0.5)
+    yield "reading/dry_wall_plane_0.5", at | dict(far_end="plane of the same steel"), c.reading(p.dry_rig_on_plane, 0.5)
+    yield ("reading/dry_eta2_zero_0.5", at | dict(eta2_pa_s=0.0, relaxation_s=p.relaxation(eta2=0.0)),
+           c.dry(0.5, a_visc=p.relaxation(eta2=0.0)))
+    yield "reading/dry_sensor_6_0.5", at | dict(sensor_bead=6), c.reading(p.dry_rig, 0.5, sensor=6)
+    for name, switches in (("contact_6_wet", dict(first_wet=6)), ("all_wet", dict(first_wet=0)), ("no_cubic", dict(cubic=0.0)),
+                           ("eta2_zero", dict(eta2_over_eta1=0.0))):
+        yield (f"reading/pump_{name}_0.5", at | dict(oil="pump") | switches, c.reading(lambda s=switches: p.wet_rig("pump", 0.5, **s), 0.5))
+    yield ("reading/motor_nu_half_0.075", DRY | dict(speed_m_s=0.075, oil="motor", largest_nu=0.5),
+           c.reading(lambda: p.wet_rig("motor", 0.075, largest_nu=0.5), 0.075))
+
+
 def example_cases():
     free = dict(far_end="free")
     yield ("dimer-steel-ptfe", dict(beads=40, radius_m=4.76e-3, steel=c.STEEL_316, ptfe=c.PTFE, striker="steel", odd_beads="steel",
@@ -103,6 +117,7 @@ def other_cases():
 def all_cases():
     yield from example_cases()
     yield from rig_cases()
+    yield from reading_cases()
     yield from other_cases()
     yield from law_cases()
 
