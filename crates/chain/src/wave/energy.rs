@@ -145,6 +145,22 @@ impl Meter {
         self.most_driven_j = self.most_driven_j.max(self.work_j[self.laws.len() + 1]);
     }
 
+    /// Error of the step's work, as a fraction of the energy put in.
+    pub fn error(&self, step_s: f64, weights: &[f64]) -> f64 {
+        let input = self.start_j.abs() + self.most_driven_j;
+        if input == 0.0 {
+            return 0.0;
+        }
+        let slots = 0..self.work_j.len();
+        let error = |slot: usize| -> f64 {
+            let rows = weights.iter().zip(&self.powers_w);
+            rows.map(|(weight, powers)| weight * powers[slot]).sum()
+        };
+        slots
+            .map(|slot| (step_s * error(slot) / input).abs())
+            .fold(0.0, f64::max)
+    }
+
     /// The last stage of a step is the first of the next.
     pub fn carry_over(&mut self) {
         let last = self.powers_w.len() - 1;

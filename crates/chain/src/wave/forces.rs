@@ -97,6 +97,16 @@ impl Pass {
         }
     }
 
+    /// Whether any gate disagrees with the overlap of the last pass: closed
+    /// across a gap or open at an overlap.
+    pub fn disagrees(&self, contacts: Range<usize>) -> bool {
+        let gates = self.gap[contacts.clone()]
+            .iter()
+            .zip(&self.touching[contacts]);
+        let wrong = gates.map(|(gap, touching)| u32::from(gap * (2.0 * touching - 1.0) < 0.0));
+        wrong.sum::<u32>() > 0
+    }
+
     /// Largest overlaps, where a law asks for them.
     fn memory(&mut self, system: &System, state: &State, contacts: Range<usize>) {
         if !system.has_memory {
@@ -155,8 +165,7 @@ impl Pass {
         match system.tension {
             Tension::Allowed => {
                 for c in 0..n {
-                    let force = if passing[c] > 0.0 { closed[c] } else { 0.0 };
-                    dynamic[c] = force + across[c] - rest[c];
+                    dynamic[c] = passing[c] * closed[c] + across[c] - rest[c];
                 }
             }
             Tension::Clipped => {
@@ -165,15 +174,10 @@ impl Pass {
                     // A frozen closed gate keeps its smooth force until the
                     // step has been ended where that force passes 0.
                     let smooth = gates == Gates::Frozen && passing[c] > 0.0;
-                    let force = if passing[c] > 0.0 { closed[c] } else { 0.0 } + across[c];
                     let cut = touching[c] > passing[c];
-                    let force = if cut {
-                        0.0
-                    } else if smooth {
-                        force
-                    } else {
-                        force.max(0.0)
-                    };
+                    let force = passing[c] * closed[c] + across[c];
+                    let least = if smooth { f64::NEG_INFINITY } else { 0.0 };
+                    let force = if cut { 0.0 } else { force.max(least) };
                     dynamic[c] = force - rest[c];
                 }
             }

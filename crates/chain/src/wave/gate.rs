@@ -36,6 +36,8 @@ pub(super) struct Watch {
     /// Overlap in m that counts as 0 when a step was made to end there.
     landing: f64,
     speed: f64,
+    /// Modes change with overlaps alone: no cut, no memory.
+    overlap_alone: bool,
     /// Time of the last change of each contact's mode and how many fell on it.
     last: Vec<(f64, u8)>,
 }
@@ -51,6 +53,7 @@ impl Watch {
             slight_speed: 0.01 * tolerance * scales.speed_m_s,
             landing: 0.1 * tolerance * scales.speed_m_s * scales.time_s,
             speed: scales.speed_m_s,
+            overlap_alone: system.tension == Tension::Allowed && !system.has_memory,
             last: vec![(-1.0, 0); system.contacts()],
         }
     }
@@ -95,6 +98,9 @@ impl Watch {
     /// The first change in a step that must end the step, if any.
     pub fn first(&self, piece: &Piece<'_>, pass: &Pass, contacts: Range<usize>) -> Option<Event> {
         let (system, state) = (piece.system, piece.state);
+        if self.overlap_alone && !pass.disagrees(contacts.clone()) {
+            return None;
+        }
         contacts
             .filter_map(|contact| {
                 let change = self.change(system, state, pass, contact)?;
@@ -137,6 +143,9 @@ impl Watch {
         aimed: Option<Event>,
     ) -> bool {
         let mut changed = false;
+        if self.overlap_alone && aimed.is_none() && !pass.disagrees(contacts.clone()) {
+            return false;
+        }
         for contact in contacts {
             let found = self.change(system, state, pass, contact);
             let aimed = aimed.filter(|event| event.contact == contact && found.is_none());

@@ -404,13 +404,13 @@ impl<'a> Wave<'a> {
         };
         let speed = self.speed_scale();
         let length = speed * self.system.scales().time_s;
-        error_norm(
-            self.window.bodies.clone(),
-            h,
-            weights,
-            &self.a,
-            (speed, length),
-        )
+        let bodies = self.window.bodies.clone();
+        let (error, body) = error_norm(bodies, h, weights, &self.a, (speed, length));
+        let work = self
+            .meter
+            .as_ref()
+            .map_or(0.0, |meter| meter.error(h, &weights[0]));
+        (if work > error { work } else { error }, body)
     }
 
     /// Largest rate of a touching contact, within bounds.

@@ -78,3 +78,69 @@ pub fn shoot_with(chain: &Chain, method: &dyn Method) -> (Passage, Outcome) {
 pub fn shoot(chain: &Chain, tolerance: f64) -> (Passage, Outcome) {
     shoot_with(chain, &DormandPrince { tolerance })
 }
+
+/// A number that another program computed: `bench/reference/numbers.json`.
+pub fn reference(case: &str, quantity: &str) -> f64 {
+    let text = include_str!("../../../../bench/reference/numbers.json");
+    let cases: serde_json::Value = serde_json::from_str(text).unwrap();
+    let named = |value: &serde_json::Value, key: &str, name: &str| value[key] == *name;
+    let case = cases
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|c| named(c, "case", case))
+        .unwrap();
+    let results = case["results"].as_array().unwrap();
+    let result = results
+        .iter()
+        .find(|r| named(r, "quantity", quantity))
+        .unwrap();
+    result["value"].as_f64().unwrap()
+}
+
+/// Asserts that two numbers agree to a relative tolerance.
+#[track_caller]
+pub fn close(value: f64, expected: f64, relative: f64) {
+    let error = (value - expected).abs();
+    assert!(
+        error <= relative * expected.abs(),
+        "{value} is not {expected} to {relative:e}: {:e}",
+        error / expected.abs()
+    );
+}
+
+/// K = m = 1 with one elastic law: for numbers without units.
+pub fn unit_row(beads: usize, speed: f64, far: FarEnd) -> Chain {
+    let bead = Bead {
+        radius_m: 1.0,
+        mass_kg: 1.0,
+        material: Material::RIGID,
+    };
+    let laws = vec![law(ElasticHertz {
+        stiffness: Some(1.0),
+    })];
+    Chain {
+        beads: vec![bead; beads],
+        start: Start::Striker {
+            bead,
+            speed_m_s: speed,
+        },
+        far,
+        sections: vec![Section {
+            contacts: 0..=beads,
+            laws,
+            material: None,
+        }],
+        ..row(beads, speed, vec![])
+    }
+}
+
+/// Runs a shot for a fixed time.
+pub fn run_for(chain: &Chain, tolerance: f64, duration_s: f64) -> Outcome {
+    let system = System::new(chain).unwrap();
+    let limits = Limits {
+        budget: true,
+        ..Limits::until(duration_s)
+    };
+    run(&system, &DormandPrince { tolerance }, limits, &mut []).unwrap()
+}
