@@ -16,5 +16,5 @@ pub use evidence::{
     Branch, Curve, DigitisedPeak, Evidence, Oil, Point, Ratio, SHOTS_PER_POINT, SPEED_SCATTER_M_S,
 };
 pub use finding::{Finding, Tally, Verdict};
-pub use report::{claims_json, claims_markdown};
+pub use report::{claims_json, claims_markdown, value_text};
 pub use rounded::{Judged, Rounded, judge_all};

@@ -1,0 +1,123 @@
+//! Predicates: code that decides a claim on numbers, by name.
+
+mod attenuation;
+mod constants;
+mod data;
+mod fits;
+mod monotony;
+mod passages;
+mod ratios;
+mod striker;
+mod trends;
+
+use super::{Branch, Claim, Curve, Evidence, Finding, Point};
+
+/// Decides a claim.
+pub(super) type Predicate = fn(&Claim, &Evidence) -> Finding;
+
+static PREDICATES: &[(&str, Predicate)] = &[
+    ("pulses-separate", passages::pulses_separate),
+    ("return-takes-longer", passages::return_takes_longer),
+    ("return-is-split", passages::return_is_split),
+    ("loosening-lengthens-return", passages::loosening_lengthens_return),
+    ("return-scatters-more", passages::return_scatters_more),
+    ("gaps-open", passages::gaps_open),
+    ("tof-falls", monotony::tof_falls),
+    ("peaks-rise", monotony::peaks_rise),
+    ("power-law-r-squared", fits::r_squared),
+    ("power-law-residuals", fits::residuals),
+    ("exponent-is", fits::exponent_is),
+    ("exponents-differ", fits::exponents_differ),
+    ("ratio-below", ratios::below),
+    ("ratio-above", ratios::above),
+    ("ratio-crosses", ratios::crosses),
+    ("ratio-mainly-rises", ratios::mainly_rises),
+    ("ratio-has-dips", ratios::has_dips),
+    ("trends-alike", trends::alike),
+    ("trend-against-viscosity", trends::against_viscosity),
+    ("viscosity-orders-ratios", trends::viscosity_does_not_order_ratios),
+    ("attenuates-more", attenuation::attenuates_more),
+    ("dynamic-viscosity", constants::dynamic_viscosity),
+    ("viscosity-ratio", constants::viscosity_ratio),
+    ("relaxation-time", constants::relaxation_time),
+    ("relaxation-order", constants::relaxation_order),
+    ("no-rebound", striker::no_rebound),
+    ("overlaps-data", data::overlaps_data),
+];
+
+/// A predicate by its name.
+pub(super) fn find(name: &str) -> Option<Predicate> {
+    let row = PREDICATES.iter().find(|(known, _)| *known == name);
+    row.map(|(_, predicate)| *predicate)
+}
+
+/// The curves of a claim's cases, if none is missing.
+fn curves<'a>(claim: &Claim, evidence: &'a Evidence) -> Option<Vec<&'a Curve>> {
+    let curves: Option<Vec<_>> = claim.cases.iter().map(|case| evidence.curve(case)).collect();
+    curves.filter(|curves| !curves.is_empty())
+}
+
+/// The answer when a case of the claim was not computed.
+fn missing() -> Finding {
+    Finding::without_numbers("a case that this claim is about was not computed")
+}
+
+/// The branches of a claim; both when it names none.
+fn branches(claim: &Claim) -> Vec<Branch> {
+    let named = |branch: &Branch| {
+        claim.branches.is_empty() || claim.branches.iter().any(|name| name == branch.name())
+    };
+    Branch::BOTH.into_iter().filter(named).collect()
+}
+
+/// The shots of a curve at the speeds of a claim.
+fn within<'a>(claim: &Claim, curve: &'a Curve) -> Vec<&'a Point> {
+    let inside = |p: &&Point| (claim.from_m_s..=claim.to_m_s).contains(&p.speed_m_s);
+    curve.points.iter().filter(inside).collect()
+}
+
+/// The number whose margin is smallest, kept with its accuracy and place.
+#[derive(Debug)]
+struct Worst {
+    margin: f64,
+    value: f64,
+    accuracy: f64,
+    place: String,
+}
+
+impl Worst {
+    fn none() -> Self {
+        Self {
+            margin: f64::INFINITY,
+            value: f64::NAN,
+            accuracy: f64::NAN,
+            place: String::new(),
+        }
+    }
+
+    /// Keeps this one if its margin is the smallest so far.
+    fn see(&mut self, margin: f64, value: f64, accuracy: f64, place: impl FnOnce() -> String) {
+        if margin < self.margin || margin.is_nan() {
+            *self = Self {
+                margin,
+                value,
+                accuracy,
+                place: place(),
+            };
+        }
+    }
+
+    /// The finding with the tally's verdict.
+    fn finding(self, tally: super::Tally) -> Finding {
+        let detail = match self.place.is_empty() {
+            true => format!("{tally} comparisons met"),
+            false => format!("{tally} comparisons met; nearest or worst: {}", self.place),
+        };
+        Finding {
+            verdict: tally.verdict(),
+            value: self.value,
+            accuracy: self.accuracy,
+            detail,
+        }
+    }
+}

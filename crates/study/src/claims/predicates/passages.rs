@@ -1,0 +1,143 @@
+//! Predicates on the three pulses of a shot.
+
+use super::{Worst, curves, missing, within};
+use crate::claims::{Branch, Claim, Evidence, Finding, Point, SPEED_SCATTER_M_S, Tally, Verdict};
+
+/// Incoming, wall and returning pulse follow each other without touching at
+/// half height: each ToF over the mean of the two pulses' widths exceeds the
+/// threshold.
+pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for curve in curves {
+        for p in within(claim, curve) {
+            let [incoming, wall, returning] = p.widths_s;
+            let pairs = [(p.tof_incident_s, incoming + wall), (p.tof_reflected_s, wall + returning)];
+            for (tof, widths) in pairs {
+                let value = tof / (0.5 * widths);
+                let accuracy = value * p.accuracy_reached;
+                tally.margin(value - claim.threshold, accuracy);
+                worst.see(value, value, accuracy, || place(&curve.case, p));
+            }
+        }
+    }
+    worst.finding(tally)
+}
+
+fn place(case: &str, p: &Point) -> String {
+    format!("{case} at {} m/s", p.speed_m_s)
+}
+
+/// Reflected over incident ToF exceeds the threshold at every speed.
+pub(super) fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for curve in curves {
+        for p in within(claim, curve) {
+            let value = p.tof_reflected_s / p.tof_incident_s;
+            let accuracy = 2.0 * value * p.accuracy_reached;
+            tally.margin(value - claim.threshold, accuracy);
+            worst.see(value - claim.threshold, value, accuracy, || place(&curve.case, p));
+        }
+    }
+    worst.finding(tally)
+}
+
+/// A second returning maximum of at least the threshold times the first: a
+/// pulse of its own. Above the weaker threshold it is a shoulder.
+pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let mut points = curves.iter().flat_map(|curve| within(claim, curve));
+    let Some(p) = points.next() else {
+        return missing();
+    };
+    let value = p.second_returning_peak_n / p.returning_peak_n;
+    let accuracy = 2.0 * value * p.accuracy_reached;
+    let mut tally = Tally::default();
+    tally.margin(value - claim.threshold, accuracy);
+    let partly = value > claim.partly.unwrap_or(claim.threshold);
+    let verdict = match tally.verdict() {
+        Verdict::Fails if partly => Verdict::InPart,
+        verdict => verdict,
+    };
+    Finding {
+        verdict,
+        value,
+        accuracy,
+        detail: format!(
+            "returning peaks of {:.3} N and {:.3} N at {} m/s",
+            p.returning_peak_n, p.second_returning_peak_n, p.speed_m_s
+        ),
+    }
+}
+
+/// By how much the return takes longer, less the same in the second case, a
+/// chain held together, is positive.
+pub(super) fn loosening_lengthens_return(claim: &Claim, evidence: &Evidence) -> Finding {
+    let curves = curves(claim, evidence).unwrap_or_default();
+    let [free, held] = curves[..] else {
+        return missing();
+    };
+    let increase = |p: &Point| p.tof_reflected_s / p.tof_incident_s - 1.0;
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for p in within(claim, held) {
+        let Some(loose) = free.at(p.speed_m_s) else {
+            continue;
+        };
+        let value = increase(loose) - increase(p);
+        let accuracy = 2.0 * (p.accuracy_reached + loose.accuracy_reached);
+        tally.margin(value - claim.threshold, accuracy);
+        worst.see(value - claim.threshold, value, accuracy, || place(&free.case, p));
+    }
+    worst.finding(tally)
+}
+
+/// The scatter of the striker's speed makes the reflected ToF scatter more
+/// than the incident one: ratio of the two |dT/dv| above the threshold.
+pub(super) fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> Finding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for curve in curves {
+        let slopes = Branch::BOTH.map(|branch| curve.slopes_s2_m(branch));
+        let [incident, reflected] = &slopes;
+        for ((p, incident), reflected) in curve.points.iter().zip(incident).zip(reflected) {
+            let value = reflected / incident;
+            // A slope is a difference of two ToFs some 3 % apart.
+            let accuracy = 2.0 * p.accuracy_reached / 0.03;
+            tally.margin(value - claim.threshold, accuracy);
+            worst.see(value - claim.threshold, value, accuracy, || {
+                let us = reflected.abs() * SPEED_SCATTER_M_S * 1e6;
+                format!("{}, reflected ToF ± {us:.2} µs", place(&curve.case, p))
+            });
+        }
+    }
+    worst.finding(tally)
+}
+
+/// Some contact between beads stands open when the returning pulse has
+/// passed, and the gaps stay below the weaker threshold.
+pub(super) fn gaps_open(claim: &Claim, evidence: &Evidence) -> Finding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let largest = claim.partly.unwrap_or(f64::INFINITY);
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for curve in curves {
+        for p in within(claim, curve) {
+            let accuracy = p.accuracy_reached * p.gaps_m;
+            tally.margin(p.gaps_m - claim.threshold, accuracy);
+            tally.margin(largest - p.gaps_m, accuracy);
+            let margin = (p.gaps_m - claim.threshold).min(largest - p.gaps_m);
+            worst.see(margin, p.gaps_m, accuracy, || place(&curve.case, p));
+        }
+    }
+    worst.finding(tally)
+}

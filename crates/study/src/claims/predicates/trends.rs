@@ -1,0 +1,92 @@
+//! Predicates on how the ratios of different liquids go together.
+
+use super::{Worst, missing};
+use crate::claims::{Claim, Evidence, Finding, Tally};
+
+/// Pearson's correlation of two ratio curves over their common speeds.
+fn correlation(evidence: &Evidence, one: &str, other: &str) -> Option<f64> {
+    let (a, b) = (evidence.ratios(one), evidence.ratios(other));
+    let pairs: Vec<(f64, f64)> = a
+        .iter()
+        .filter_map(|r| {
+            let partner = b.iter().find(|s| s.speed_m_s == r.speed_m_s)?;
+            Some((r.incident, partner.incident))
+        })
+        .collect();
+    let n = pairs.len() as f64;
+    let (mean_a, mean_b) = (
+        pairs.iter().map(|p| p.0).sum::<f64>() / n,
+        pairs.iter().map(|p| p.1).sum::<f64>() / n,
+    );
+    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum()
+    };
+    let product = sum(&|a, b| a * b);
+    let scale = (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
+    (pairs.len() > 2 && scale > 0.0).then_some(product / scale)
+}
+
+/// The two ratio curves correlate by more than the threshold.
+pub(super) fn alike(claim: &Claim, evidence: &Evidence) -> Finding {
+    let [one, other] = &claim.cases[..] else {
+        return missing();
+    };
+    let Some(value) = correlation(evidence, one, other) else {
+        return missing();
+    };
+    let mut tally = Tally::default();
+    tally.margin(value - claim.threshold, 0.0);
+    let mut worst = Worst::none();
+    worst.see(0.0, value, 0.0, || format!("{one} with {other}"));
+    worst.finding(tally)
+}
+
+/// The first case goes with the second more than with the third, although
+/// its viscosity is nearer to the third's.
+pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
+    let [one, alike, other] = &claim.cases[..] else {
+        return missing();
+    };
+    let correlations = (correlation(evidence, one, alike), correlation(evidence, one, other));
+    let viscosity = |case: &str| Some(evidence.oil(case)?.dynamic_viscosity_pa_s().ln());
+    let viscosities = (viscosity(one), viscosity(alike), viscosity(other));
+    let ((Some(near), Some(far)), (Some(a), Some(b), Some(c))) = (correlations, viscosities) else {
+        return missing();
+    };
+    let value = near - far;
+    let mut tally = Tally::default();
+    tally.margin(value - claim.threshold, 0.0);
+    tally.answer((a - b).abs() > (a - c).abs());
+    let mut worst = Worst::none();
+    worst.see(0.0, value, 0.0, || {
+        format!("{one} with {alike} {near:.3}, with {other} {far:.3}")
+    });
+    worst.finding(tally)
+}
+
+/// At every speed the ratios are neither in the order of the viscosities nor
+/// in the reverse one.
+pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence) -> Finding {
+    let mut oils: Vec<(f64, Vec<_>)> = Vec::new();
+    for case in &claim.cases {
+        match evidence.oil(case) {
+            Some(oil) => oils.push((oil.dynamic_viscosity_pa_s(), evidence.ratios(case))),
+            None => return missing(),
+        }
+    }
+    oils.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let speeds = oils.first().map_or(Vec::new(), |(_, ratios)| ratios.clone());
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for (i, first) in speeds.iter().enumerate() {
+        let row: Vec<f64> = oils.iter().filter_map(|(_, r)| Some(r.get(i)?.incident)).collect();
+        let steps: Vec<f64> = row.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
+        // Out of order by as much as the smaller of the largest rise and fall.
+        let rise = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let fall = -steps.iter().copied().fold(f64::INFINITY, f64::min);
+        let value = rise.min(fall);
+        let accuracy = 2.0 * first.accuracy_reached;
+        tally.margin(value - claim.threshold, accuracy);
+        worst.see(value - claim.threshold, value, accuracy, || format!("{} m/s", first.speed_m_s));
+    }
+    worst.finding(tally)
+}

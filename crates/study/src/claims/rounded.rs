@@ -1,0 +1,71 @@
+//! Verdicts under the rounding of the printed constants.
+
+use super::{Claim, Evidence, Finding, Judge, Verdict};
+
+/// What became of a claim when the printed constants were drawn anew within
+/// half a unit of their last digit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rounded {
+    /// Number of draws.
+    pub draws: usize,
+    /// Draws with each verdict, in the order of [`Verdict::ALL`].
+    pub verdicts: [usize; 4],
+    /// Smallest and largest deciding number of the draws that had one.
+    pub range: Option<(f64, f64)>,
+}
+
+impl Rounded {
+    fn of(findings: &[Finding]) -> Self {
+        let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
+        let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
+        let range = values.fold(None, |range: Option<(f64, f64)>, v| {
+            let (low, high) = range.unwrap_or((v, v));
+            Some((low.min(v), high.max(v)))
+        });
+        Self {
+            draws: findings.len(),
+            verdicts: Verdict::ALL.map(count),
+            range,
+        }
+    }
+
+    /// Whether some draw differs from a verdict.
+    #[must_use]
+    pub fn flips(&self, verdict: Verdict) -> bool {
+        let same = Verdict::ALL.iter().position(|v| *v == verdict);
+        same.is_some_and(|i| self.verdicts.get(i) != Some(&self.draws))
+    }
+}
+
+/// A claim with all that was found about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// The claim.
+    pub claim: Claim,
+    /// The verdict, rounding considered.
+    pub verdict: Verdict,
+    /// What the constants as printed give.
+    pub finding: Finding,
+    /// What rounding does, if it was looked at.
+    pub rounded: Option<Rounded>,
+}
+
+/// Decides all claims: on the printed constants, and on draws within their
+/// rounding. A verdict that a draw changes is not decidable.
+#[must_use]
+pub fn judge_all(judges: &[Judge], printed: &Evidence, draws: &[Evidence]) -> Vec<Judged> {
+    judges.iter().map(|judge| decide(judge, printed, draws)).collect()
+}
+
+fn decide(judge: &Judge, printed: &Evidence, draws: &[Evidence]) -> Judged {
+    let finding = judge.decide(printed);
+    let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
+    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
+    let flips = rounded.as_ref().is_some_and(|r| r.flips(finding.verdict));
+    Judged {
+        claim: judge.claim.clone(),
+        verdict: if flips { Verdict::NotDecidable } else { finding.verdict },
+        finding,
+        rounded,
+    }
+}

@@ -1,0 +1,40 @@
+//! Why a reproduction ends without a result.
+
+use crate::StudyError;
+use crate::claims::ClaimError;
+use hertzchain_experiment::{Mistakes, SwitchError, UnknownPreset};
+
+/// Why a reproduction ends without a result.
+#[derive(Debug, thiserror::Error)]
+pub enum ReproduceError {
+    /// A shot can't be computed.
+    #[error("the shot of `{case}` at {speed_m_s} m/s: {error}")]
+    Shot {
+        /// The case.
+        case: String,
+        /// Speed in m/s.
+        speed_m_s: f64,
+        /// Why.
+        error: Box<StudyError>,
+    },
+    /// A reading that an experiment can't have.
+    #[error(transparent)]
+    Mistakes(#[from] Mistakes),
+    /// A switch that does not exist.
+    #[error(transparent)]
+    Reading(SwitchError),
+    /// One of the paper's chains is missing from the program.
+    #[error(transparent)]
+    Preset(UnknownPreset),
+    /// The claims can't be read.
+    #[error(transparent)]
+    Claims(#[from] ClaimError),
+    /// A file can't be written.
+    #[error("{path} can't be written: {error}")]
+    Write {
+        /// The file.
+        path: String,
+        /// Why.
+        error: std::io::Error,
+    },
+}
