@@ -141,7 +141,7 @@ impl Animation {
         let (from, to) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| {
             (a.min(t), b.max(t))
         });
-        if !(from < to) {
+        if from >= to {
             return vec![0.0, 0.0];
         }
         let share = |i: usize| i as f64 / (frames - 1) as f64;
@@ -176,11 +176,11 @@ impl Animation {
     }
 
     /// A factor of 1, 2 or 5 times a power of ten: the beads behind the striker
-    /// move by up to about one diameter.
+    /// move by up to one radius.
     fn fitting_factor(&self, moved: &[Vec<f64>]) -> f64 {
         let behind = moved.iter().skip(1).flatten().map(|u| u.abs());
         let largest = behind.fold(0.0, f64::max);
-        let wanted = 2.0 * self.radius(1) / largest;
+        let wanted = self.radius(1) / largest;
         if !wanted.is_finite() || wanted <= 1.0 {
             return 1.0;
         }

@@ -17,7 +17,7 @@ pub(crate) fn line(points: Vec<Point>) -> Vec<Point> {
     }
     let column = |p: &Point| (p.x / COLUMN).floor();
     let runs = points.chunk_by(|a, b| column(a) == column(b));
-    runs.flat_map(|run| ends_and_extremes(run)).collect()
+    runs.flat_map(ends_and_extremes).collect()
 }
 
 /// First, lowest, highest and last point in their order along the line.

@@ -96,29 +96,24 @@ impl Occupancy {
     }
 }
 
-/// Places for a box of the given size along the inner edge of `frame`: the
-/// corners first, then in between.
+/// Places for a box of the given size in `frame`: the corners first, then along
+/// the edges, then inside.
 pub(crate) fn places(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
-    const SHARES: [(f64, f64); 12] = [
-        (1.0, 0.0),
-        (0.0, 0.0),
-        (1.0, 1.0),
-        (0.0, 1.0),
-        (0.5, 0.0),
-        (0.5, 1.0),
-        (1.0, 0.5),
-        (0.0, 0.5),
-        (0.75, 0.0),
-        (0.25, 0.0),
-        (0.75, 1.0),
-        (0.25, 1.0),
+    // Sixteenths, the rounder ones first.
+    const STEPS: [f64; 17] = [
+        1.0, 0.0, 0.5, 0.25, 0.75, 0.125, 0.875, 0.375, 0.625, 0.0625, 0.9375, 0.1875, 0.8125,
+        0.3125, 0.6875, 0.4375, 0.5625,
     ];
+    let mut shares = vec![(1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    shares.extend(STEPS.iter().flat_map(|s| [(*s, 0.0), (*s, 1.0)]));
+    shares.extend(STEPS.iter().flat_map(|s| [(1.0, *s), (0.0, *s)]));
+    shares.extend(STEPS.iter().flat_map(|a| STEPS.map(|d| (*a, d))));
     let at = |(across, down): (f64, f64)| {
         let x = frame.x0 + across * (frame.width() - width).max(0.0);
         let y = frame.y0 + down * (frame.height() - height).max(0.0);
         Rect::sized(x, y, width, height)
     };
-    SHARES.map(at).to_vec()
+    shares.into_iter().map(at).collect()
 }
 
 #[cfg(test)]

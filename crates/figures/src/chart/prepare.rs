@@ -82,13 +82,17 @@ impl Prepared {
             side.left = side.left.max(left);
             side.right = side.right.max(right);
         }
-        if self.y_ticks.exponent.is_some() {
-            side.top += 1.5 * style.small;
-        }
-        side.right += chart
-            .heat
-            .as_ref()
-            .map_or(0.0, |h| heat::bar_width(h, style, frame.1));
+        let (bar, above) = match &chart.heat {
+            Some(map) => heat::bar_room(map, style, frame.1),
+            None => (0.0, 0.0),
+        };
+        let factor = if self.y_ticks.exponent.is_some() {
+            1.5 * style.small
+        } else {
+            0.0
+        };
+        side.right += bar;
+        side.top += factor.max(above);
         side
     }
 

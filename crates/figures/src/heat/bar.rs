@@ -10,15 +10,21 @@ use crate::text::{Anchor, TextLine};
 const GAP: f64 = 6.0;
 const BAR: f64 = 8.0;
 
-/// Room right of the frame for bar, numbers and label.
-pub(crate) fn width(map: &HeatMap, style: &Style, height: f64) -> f64 {
+/// Room for bar, numbers and label: right of the frame, and above it.
+pub(crate) fn room(map: &HeatMap, style: &Style, height: f64) -> (f64, f64) {
     let label = TextLine::new(&map.label, style.label);
     let label_height = if map.label.is_empty() {
         0.0
     } else {
         label.height() + 3.0
     };
-    GAP + BAR + 3.0 + numbers(map, style, height).1 + label_height
+    let (found, widest) = numbers(map, style, height);
+    let above = if found.exponent.is_some() {
+        1.5 * style.small
+    } else {
+        0.0
+    };
+    (GAP + BAR + 3.0 + widest + label_height, above)
 }
 
 /// The ticks of a bar of the given height, and the width of the widest number.

@@ -3,7 +3,7 @@
 mod bar;
 mod raster;
 
-pub(crate) use bar::{draw_bar, width as bar_width};
+pub(crate) use bar::{draw_bar, room as bar_room};
 pub(crate) use raster::draw;
 
 use crate::chart::Chart;
@@ -92,7 +92,7 @@ impl HeatMap {
             (lo.min(v), hi.max(v))
         });
         let largest = lo.abs().max(hi.abs());
-        if !(lo <= hi) || largest < 1e-290 {
+        if lo > hi || largest < 1e-290 {
             (0.0, 1.0)
         } else if self.map == ColourMap::Diverging {
             (-largest, largest)

@@ -1,0 +1,244 @@
+//! What every picture must be: well-formed, complete on the page, the same
+//! every time, and not empty.
+
+use hertzchain_figures::{
+    Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series, Verdict,
+    VerdictMatrix,
+};
+use proptest::prelude::*;
+use resvg::usvg::{Group, Node, Options, Tree};
+
+fn wave() -> Chart {
+    let x: Vec<f64> = (0..300).map(|i| f64::from(i) * 4.0).collect();
+    let y: Vec<f64> = x.iter().map(|x| (x / 90.0).sin()).collect();
+    Chart::new("Time (µs)", r"$F_{\mathrm{wall}}$ (N)")
+        .with(Series::line("model", &x, &y))
+        .with(Series::points("data", &x[..20], &y[..20]).y_error(&[0.1; 20]))
+        .h_line(0.5, "half")
+        .v_line(600.0, "wall peak")
+}
+
+fn every_kind() -> Vec<Figure> {
+    let heat = HeatMap::new(3, 2, &[0.0, 1.0, 2.0, -1.0, f64::NAN, 4.0])
+        .colours(ColourMap::Diverging)
+        .label("$v$ (m/s)");
+    let table = VerdictMatrix::new(&["default", "preload 0.24 N"]).row(
+        "Motor oil lengthens the ToF",
+        &[Verdict::Holds, Verdict::NotDecidable],
+    );
+    let rig = RigDrawing {
+        beads: 40,
+        sensor_bead: Some(7),
+        wet_contacts: Some((7, 40)),
+        ..RigDrawing::default()
+    };
+    vec![
+        Figure::single_column(60.0).panel(wave()),
+        Figure::single_column(60.0).panel(wave().inset(wave())),
+        Figure::double_column(90.0)
+            .columns(2)
+            .letters()
+            .share_x()
+            .panel(wave().title("a"))
+            .panel(wave())
+            .panel(wave()),
+        Figure::single_column(60.0).panel(Chart::new("Time", "Bead").heat(heat)),
+        table.figure(),
+        rig.figure(),
+        Figure::single_column(50.0),
+        Figure::single_column(50.0).panel(Chart::new("", "")),
+    ]
+}
+
+/// Every text group lies on the page; so does everything else that is drawn.
+fn check(svg: &str) {
+    roxmltree::Document::parse(svg).expect("well-formed XML");
+    let tree = Tree::from_str(svg, &Options::default()).expect("valid SVG");
+    // Sizes are written to a hundredth of a point, glyph outlines overshoot by a little.
+    let slack = 0.6;
+    let (width, height) = (tree.size().width() + slack, tree.size().height() + slack);
+    each_group(tree.root(), &mut |group| {
+        if group.id().starts_with('t') {
+            let b = group.abs_bounding_box();
+            let on_page = b.left() >= -slack
+                && b.top() >= -slack
+                && b.right() <= width
+                && b.bottom() <= height;
+            assert!(
+                on_page,
+                "text {} at {b:?} on a page of {width} x {height}",
+                group.id()
+            );
+        }
+    });
+}
+
+fn each_group(group: &Group, visit: &mut impl FnMut(&Group)) {
+    visit(group);
+    for child in group.children() {
+        if let Node::Group(inner) = child {
+            each_group(inner, visit);
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_picture_is_well_formed_with_all_text_on_the_page() {
+    for figure in every_kind() {
+        check(&figure.svg());
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    for (a, b) in every_kind().iter().zip(&every_kind()) {
+        assert_eq!(a.svg(), b.svg());
+    }
+    let png = |i: usize| every_kind()[i].png(100.0).expect("renders");
+    assert_eq!(png(3), png(3));
+}
+
+fn decoded(png: &[u8]) -> (u32, u32, Vec<u8>, Option<u32>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .expect("a PNG");
+    let mut data = vec![0; reader.output_buffer_size().expect("fits in memory")];
+    let info = reader.next_frame(&mut data).expect("a picture");
+    let dpm = reader.info().pixel_dims.map(|d| d.xppu);
+    (info.width, info.height, data, dpm)
+}
+
+#[test]
+fn png_has_the_size_and_resolution_asked_for_and_is_not_blank() {
+    let (width, height, data, per_metre) = decoded(&every_kind()[0].png(300.0).expect("renders"));
+    // 86 mm and 60 mm at 300 dots per 25.4 mm.
+    assert_eq!((width, height), (1016, 709));
+    assert_eq!(per_metre, Some(11811));
+    let dark = data
+        .chunks_exact(3)
+        .filter(|p| p.iter().all(|c| *c < 100))
+        .count();
+    assert!(dark > 5000, "{dark} dark pixels");
+    assert!(
+        data.chunks_exact(3)
+            .filter(|p| **p == [255, 255, 255])
+            .count()
+            > 400_000
+    );
+}
+
+#[test]
+fn impossible_sizes_are_errors() {
+    let figure = Figure::single_column(60.0);
+    for dpi in [0.0, -5.0, f64::NAN, f64::INFINITY, 1e9] {
+        assert!(figure.png(dpi).is_err(), "{dpi}");
+    }
+}
+
+#[test]
+fn a_million_points_make_a_small_file() {
+    let x: Vec<f64> = (0..1_000_000).map(f64::from).collect();
+    let y: Vec<f64> = x
+        .iter()
+        .map(|x| (x * 0.37).sin() * (x / 1e5).cos())
+        .collect();
+    let line = Figure::single_column(60.0)
+        .panel(Chart::new("n", "y").with(Series::line("", &x, &y)))
+        .svg();
+    assert!(line.len() < 150_000, "{}", line.len());
+}
+
+#[test]
+fn map_colours_reach_the_png() {
+    let heat = HeatMap::new(2, 1, &[-1.0, 1.0]).colours(ColourMap::Diverging);
+    let png = Figure::single_column(60.0)
+        .panel(Chart::new("x", "y").heat(heat))
+        .png(150.0)
+        .expect("renders");
+    let (_, _, data, _) = decoded(&png);
+    for end in [0.0, 1.0] {
+        let Colour(r, g, b) = ColourMap::Diverging.colour(end);
+        let share = data.chunks_exact(3).filter(|p| **p == [r, g, b]).count() as f64
+            / (data.len() as f64 / 3.0);
+        assert!(share > 0.2, "{share}");
+    }
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        6 => -1e3_f64..1e3,
+        2 => prop::num::f64::ANY,
+        1 => Just(f64::NAN),
+        1 => Just(0.0),
+    ]
+}
+
+fn numbers() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(number(), 0..40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn charts_of_any_numbers_stay_on_the_page(
+        x in numbers(), y in numbers(), error in numbers(), upper in numbers(),
+        logs in any::<(bool, bool)>(), range in any::<Option<(f64, f64)>>(),
+        label in "[ -~µ]{0,60}", size in (20.0_f64..200.0, 15.0_f64..150.0),
+    ) {
+        let mut chart = Chart::new(&label, &label)
+            .title(&label)
+            .with(Series::band("band", &x, &y, &upper))
+            .with(Series::line(&label, &x, &y).dash(Dash::Dotted))
+            .with(Series::points("points", &x, &y).marker(Marker::Diamond).y_error(&error).x_error(&upper))
+            .h_line(error.first().copied().unwrap_or(1.0), &label)
+            .v_line(upper.first().copied().unwrap_or(1.0), &label)
+            .note(&label);
+        if logs.0 { chart = chart.x_log() }
+        if logs.1 { chart = chart.y_log() }
+        if let Some((a, b)) = range { chart = chart.x_range(a, b) }
+        let figure = Figure::new(size.0.max(45.0), size.1.max(35.0)).letters();
+        check(&figure.panel(chart.clone().inset(chart)).svg());
+    }
+
+    #[test]
+    fn maps_of_any_numbers_stay_on_the_page(
+        values in numbers(), columns in 0_usize..9, rows in 0_usize..9, edges in (number(), number()),
+    ) {
+        let heat = HeatMap::new(columns, rows, &values).x_edges(edges.0, edges.1).label("value");
+        check(&Figure::single_column(60.0).panel(Chart::new("x", "y").heat(heat)).svg());
+    }
+
+    #[test]
+    fn rigs_of_any_kind_keep_their_labels_on_the_page(
+        beads in 0_usize..2000, sensor_bead in any::<Option<usize>>(), small in 0_usize..60,
+        wet in any::<Option<(u8, u8)>>(), flags in any::<[bool; 6]>(), end in 0_usize..3, metres in number(),
+    ) {
+        let rig = RigDrawing {
+            beads,
+            sensor_bead: sensor_bead.map(|n| if flags[0] { small } else { n }),
+            bead_radius_m: metres,
+            striker_radius_m: flags[1].then_some(metres),
+            wet_contacts: wet.map(|(a, b)| (a.into(), b.into())),
+            preload_n: flags[2].then_some(metres),
+            incline_deg: metres,
+            far_end: [FarEnd::HalfBead, FarEnd::Plane, FarEnd::Open][end],
+            wall_sensor: flags[3],
+            stop_mass_kg: flags[4].then_some(metres),
+            actuator: flags[5],
+            photogate: flags[0],
+            recorder: "charge amplifier".into(),
+            ..RigDrawing::default()
+        };
+        check(&rig.figure().svg());
+    }
+
+    #[test]
+    fn tables_of_any_shape_stay_on_the_page(
+        columns in prop::collection::vec("[ -~]{0,40}", 0..50), claims in prop::collection::vec("[ -~]{0,160}", 0..30),
+    ) {
+        let names: Vec<&str> = columns.iter().map(String::as_str).collect();
+        let row = |t: VerdictMatrix, c: &String| t.row(c, &[Verdict::Fails, Verdict::InPart, Verdict::Holds]);
+        check(&claims.iter().fold(VerdictMatrix::new(&names), row).figure().svg());
+    }
+}
