@@ -1,11 +1,13 @@
 //! Prescribed motion of a driven end.
 
+use std::f64::consts::{PI, TAU};
+
 /// Position of a driven end against time, starting from rest at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// x = a (1 − cos 2πft)/2 · sign convention: starts at rest, moves toward the chain.
+    /// x = a sin 2πft; its velocity jumps to 2πaf at t = 0.
     Sine {
-        /// Peak-to-peak amplitude a in m.
+        /// Amplitude a in m.
         amplitude_m: f64,
         /// Frequency f in Hz.
         frequency_hz: f64,
@@ -35,11 +37,15 @@ impl Motion {
             Self::Sine {
                 amplitude_m,
                 frequency_hz,
-            } => raised(*amplitude_m, *frequency_hz, time_s),
+            } => {
+                let omega = TAU * frequency_hz;
+                let (sin, cos) = (omega * time_s).sin_cos();
+                (amplitude_m * sin, amplitude_m * omega * cos)
+            }
             Self::Pulse {
                 amplitude_m,
                 duration_s,
-            } if time_s < *duration_s => raised(*amplitude_m, duration_s.recip(), time_s),
+            } if time_s < *duration_s => push_and_back(*amplitude_m, *duration_s, time_s),
             Self::Pulse { .. } => (0.0, 0.0),
             Self::Table {
                 times_s,
@@ -70,11 +76,11 @@ impl Motion {
             Self::Sine {
                 amplitude_m,
                 frequency_hz,
-            } => std::f64::consts::PI * (amplitude_m * frequency_hz).abs(),
+            } => TAU * (amplitude_m * frequency_hz).abs(),
             Self::Pulse {
                 amplitude_m,
                 duration_s,
-            } => std::f64::consts::PI * (amplitude_m / duration_s).abs(),
+            } => PI * (amplitude_m / duration_s).abs(),
             Self::Table {
                 times_s,
                 positions_m,
@@ -87,9 +93,9 @@ impl Motion {
     }
 }
 
-/// a (1 − cos 2πft)/2 and its rate.
-fn raised(amplitude_m: f64, frequency_hz: f64, time_s: f64) -> (f64, f64) {
-    let omega = 2.0 * std::f64::consts::PI * frequency_hz;
+/// a sin²(πt/T) and its rate.
+fn push_and_back(amplitude_m: f64, duration_s: f64, time_s: f64) -> (f64, f64) {
+    let omega = TAU / duration_s;
     let (sin, cos) = (omega * time_s).sin_cos();
     (
         0.5 * amplitude_m * (1.0 - cos),

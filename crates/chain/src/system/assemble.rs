@@ -317,14 +317,18 @@ fn section_columns(
 ) -> Result<SectionColumns, ChainError> {
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
     let (mut gated, mut ungated) = (Vec::new(), Vec::new());
+    // A contact that does not exist never closes; any pair will do for it.
+    let Some(any) = pairs.iter().flatten().next() else {
+        return Ok(SectionColumns {
+            contacts,
+            gated,
+            ungated,
+        });
+    };
     for law in &section.laws {
         let rows = contacts.clone().map(|contact| {
-            // A contact that does not exist never closes; any pair will do.
-            let any = pairs[contact].or_else(|| pairs.iter().flatten().next().copied());
-            let Some(pair) = any else {
-                return Ok(Vec::new());
-            };
-            law.coefficients(&pair)
+            let pair = pairs[contact].as_ref().unwrap_or(any);
+            law.coefficients(pair)
                 .map_err(|error| ChainError::Law { contact, error })
         });
         let columns = Columns::from_rows(&rows.collect::<Result<Vec<_>, _>>()?);

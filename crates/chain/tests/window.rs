@@ -1,0 +1,78 @@
+//! Beads that the wave has not reached cost nothing and change nothing.
+
+mod common;
+use common::*;
+use hertzchain_chain::observe::Signal;
+use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
+use hertzchain_chain::*;
+
+fn run_window(chain: &Chain, duration_s: f64, whole_chain: bool) -> Outcome {
+    let system = System::new(chain).unwrap();
+    let limits = Limits {
+        whole_chain,
+        ..Limits::until(duration_s)
+    };
+    run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut []).unwrap()
+}
+
+#[test]
+fn without_preload_the_window_is_exact_to_the_bit_and_saves_work() {
+    let laws = vec![hertz(), viscoelastic(), cubic()];
+    let chain = row(200, 0.5, laws);
+    let (part, whole) = (
+        run_window(&chain, 2e-3, false),
+        run_window(&chain, 2e-3, true),
+    );
+    let bits = |o: &Outcome| -> Vec<u64> {
+        o.velocity_m_s
+            .iter()
+            .chain(&o.displacement_m)
+            .map(|x| x.to_bits())
+            .collect()
+    };
+    assert_eq!(bits(&part), bits(&whole));
+    assert!(part.work.bodies_passed * 10 < whole.work.bodies_passed * 7);
+}
+
+#[test]
+fn under_preload_the_window_changes_nothing_that_matters() {
+    let push = Push::Constant { force_n: 5.0 };
+    let chain = Chain {
+        push,
+        ..row(200, 0.5, vec![hertz(), viscoelastic()])
+    };
+    let (part, whole) = (
+        run_window(&chain, 1e-3, false),
+        run_window(&chain, 1e-3, true),
+    );
+    for (a, b) in part.velocity_m_s.iter().zip(&whole.velocity_m_s) {
+        assert!((a - b).abs() < 1e-12 * 0.5, "{a} {b}");
+    }
+    assert!(part.work.bodies_passed < whole.work.bodies_passed);
+}
+
+/// The leading pulse of a long Hertz chain keeps the speed and the amplitude
+/// that the exact solitary wave of its own amplitude has.
+#[test]
+fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
+    let beads = 100_000;
+    let chain = unit_row(beads, 1.0, FarEnd::Free);
+    let system = System::new(&chain).unwrap();
+    let mut early = Signal::new(Sensor::Velocity(100));
+    let mut late = Signal::new(Sensor::Velocity(beads - 20));
+    let duration = beads as f64 / 0.840_508_77;
+    let method = DormandPrince { tolerance: 3e-11 };
+    let outcome = run(
+        &system,
+        &method,
+        Limits::until(duration),
+        &mut [&mut early, &mut late],
+    )
+    .unwrap();
+    let (first, last) = (early.maxima()[0], late.maxima()[0]);
+    let distance = (beads - 120) as f64;
+    close(last.value, first.value, 1e-6);
+    close(distance / (last.time_s - first.time_s), 0.840_508_77, 1e-6);
+    // The mean number of beads that a force pass touches does not grow with the chain.
+    assert!(outcome.work.bodies_passed / outcome.work.force_passes < 150);
+}
