@@ -301,3 +301,25 @@ fn parameters<'a>(
         .filter_map(|p| Some((p.name, value(p.name)?)))
         .collect()
 }
+
+/// [Thornton1997]'s closed form, held against the work of the law by the
+/// reference program.
+#[test]
+fn restitution_of_an_elastic_plastic_collision_matches_its_closed_form() {
+    let row = hertzchain_chain::laws::find("elastic_plastic_thornton").unwrap();
+    for (speed, label) in [(0.5, "0.5"), (1.0, "1.0")] {
+        let laws = vec![row.build(&[("yield_pressure", 3e9)]).unwrap()];
+        let chain = hertzchain_chain::Chain {
+            far: hertzchain_chain::FarEnd::Free,
+            ..common::row(1, speed, laws)
+        };
+        let outcome = common::run_for(&chain, 1e-11, 1e-3);
+        let restitution = (outcome.velocity_m_s[1] - outcome.velocity_m_s[0]) / speed;
+        let quantity = format!("restitution_closed_form_at_{label}_m_s");
+        let expected = common::reference("restitution/elastic_plastic_thornton", &quantity);
+        close(restitution, expected, 1e-8);
+        let budget = outcome.budget.unwrap();
+        assert!(budget.dissipated[0].energy_j > 0.0);
+        assert!(budget.relative_residual().abs() < 1e-9, "{budget:?}");
+    }
+}

@@ -295,6 +295,10 @@ fn sections(
     for section in ordered {
         let (first, last) = (*section.contacts.start(), *section.contacts.end());
         contact_exists(chain, last, "a section")?;
+        if first > last {
+            let what = format!("a section ends at contact {last}, before it starts at {first}");
+            return Err(ChainError::Layout(what));
+        }
         if let Some(c) = (first..=last).find(|&c| section_of[c] != u32::MAX) {
             return Err(ChainError::Layout(format!(
                 "contact {c} is in two sections"

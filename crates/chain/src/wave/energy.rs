@@ -245,13 +245,13 @@ fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
     }
     contacts
         .map(|c| {
-            let across = pass.dynamic[c + 1] + system.static_force_n[c];
-            let uncut = if pass.touching[c] > 0.0 {
+            let acting = pass.dynamic[c + 1] + system.static_force_n[c];
+            let gated = if pass.touching[c] > 0.0 {
                 pass.closed_force[c]
             } else {
                 0.0
             };
-            (across - uncut) * pass.rate[c]
+            (acting - gated - pass.across[c]) * pass.rate[c]
         })
         .sum()
 }

@@ -24,8 +24,10 @@ pub(crate) struct Pass {
     pub root: Vec<f64>,
     pub rate: Vec<f64>,
     pub largest: Vec<f64>,
-    /// Sum of the gated terms as if closed and uncut.
+    /// Sum of the gated terms as if closed.
     pub closed_force: Vec<f64>,
+    /// Sum of the terms that act across gaps.
+    pub across: Vec<f64>,
     /// Dynamic force of contact c at index c + 1; 0 at both ends.
     pub dynamic: Vec<f64>,
     /// Gates of the last pass, as in [`State`].
@@ -44,6 +46,7 @@ impl Pass {
             rate: contacts(),
             largest: contacts(),
             closed_force: contacts(),
+            across: contacts(),
             dynamic: vec![0.0; system.contacts() + 2],
             passing: contacts(),
             touching: contacts(),
@@ -97,6 +100,11 @@ impl Pass {
         }
     }
 
+    /// Force of a contact before any cut, taken as closed.
+    pub fn uncut(&self, contact: usize) -> f64 {
+        self.closed_force[contact] + self.across[contact]
+    }
+
     /// Whether any gate disagrees with the overlap of the last pass: closed
     /// across a gap or open at an overlap.
     pub fn disagrees(&self, contacts: Range<usize>) -> bool {
@@ -126,10 +134,10 @@ impl Pass {
         }
     }
 
-    /// Sums of the terms; those that act across gaps go to `scratch`.
+    /// Sums of the terms; those that act across gaps apart.
     fn add_terms(&mut self, system: &System, contacts: Range<usize>) {
         self.closed_force[contacts.clone()].fill(0.0);
-        self.scratch[contacts.clone()].fill(0.0);
+        self.across[contacts.clone()].fill(0.0);
         for section in &system.sections {
             let part =
                 section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);
@@ -148,7 +156,7 @@ impl Pass {
                 term.law.add_forces(&term.columns, first, seen, force);
             }
             for term in &section.ungated {
-                let force = &mut self.scratch[part.clone()];
+                let force = &mut self.across[part.clone()];
                 term.law.add_forces(&term.columns, first, seen, force);
             }
         }
@@ -159,7 +167,7 @@ impl Pass {
         let n = contacts.len();
         let dynamic = &mut self.dynamic[contacts.start + 1..=contacts.end][..n];
         let closed = &self.closed_force[contacts.clone()][..n];
-        let across = &self.scratch[contacts.clone()][..n];
+        let across = &self.across[contacts.clone()][..n];
         let passing = &self.passing[contacts.clone()][..n];
         let rest = &system.static_force_n[contacts.clone()][..n];
         match system.tension {

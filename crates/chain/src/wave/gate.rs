@@ -66,8 +66,8 @@ impl Watch {
         match state.mode[c] {
             Mode::Open => (gap > 0.0).then_some(Change::Overlap(Mode::Closed)),
             _ if gap < 0.0 => Some(Change::Overlap(Mode::Open)),
-            Mode::Closed if clipped && pass.closed_force[c] < 0.0 => Some(Change::Force(Mode::Cut)),
-            Mode::Cut if pass.closed_force[c] > 0.0 => Some(Change::Force(Mode::Closed)),
+            Mode::Closed if clipped && pass.uncut(c) < 0.0 => Some(Change::Force(Mode::Cut)),
+            Mode::Cut if pass.uncut(c) > 0.0 => Some(Change::Force(Mode::Closed)),
             Mode::Closed if system.has_memory => {
                 let loading = state.v[c] - state.v[c + 1] > 1e-9 * self.speed;
                 (loading && pass.rate[c] < -1e-9 * self.speed).then_some(Change::Turn)
@@ -88,7 +88,7 @@ impl Watch {
             ..Closed::new(depth, pass.rate[c])
         };
         let force = match change {
-            Change::Force(_) => pass.closed_force[c],
+            Change::Force(_) => pass.uncut(c),
             _ => system.unclipped_force(c, closed),
         };
         let inverse_mass = system.inverse_mass[c].max(system.inverse_mass[c + 1]);
