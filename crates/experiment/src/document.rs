@@ -91,13 +91,26 @@ impl Node {
 pub(crate) fn parse(text: &str) -> Result<Node, Vec<Problem>> {
     let (table, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
-        return Err(errors.iter().map(|e| syntax(e, text)).collect());
+        return Err(syntax_errors(&errors, text));
     }
     let span = table.span();
     Ok(Node {
         value: Value::Table(entries(table.get_ref())),
         span,
     })
+}
+
+/// The first error of each line: the others follow from it.
+fn syntax_errors(errors: &[toml::de::Error], text: &str) -> Vec<Problem> {
+    let line = |error: &toml::de::Error| {
+        let end = error.span().map_or(text.len(), |span| span.start);
+        let before = text.as_bytes().iter().take(end);
+        before.filter(|byte| **byte == b'\n').count()
+    };
+    let mut last = None;
+    let first_of_line = |error: &&toml::de::Error| last.replace(line(error)) != Some(line(error));
+    let first = errors.iter().filter(first_of_line);
+    first.map(|error| syntax(error, text)).collect()
 }
 
 fn syntax(error: &toml::de::Error, text: &str) -> Problem {

@@ -4,7 +4,7 @@ use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
 use crate::document::{self, Node, Value};
-use crate::finding::{Finding, Mistakes, Problem, Source, Warning};
+use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::reading::{Pick, Reading};
 use crate::spec::{Far, Liquid, Near, SectionSpec, Solver, Spec};
@@ -155,11 +155,6 @@ impl Experiment {
 
     pub(crate) fn tree(&self) -> &Node {
         &self.tree
-    }
-
-    /// A mistake that concerns the whole file.
-    pub(crate) fn finding(&self, problem: Problem) -> Finding {
-        problem.mistake(&self.source)
     }
 
     /// Name of the file or preset.

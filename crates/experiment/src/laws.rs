@@ -138,8 +138,8 @@ fn expected<T>(
 ) -> T {
     let unit = unit(parameter, row, node, units);
     let words = match parameter.least {
-        least if least == 0.0 => "0 or more",
-        least if least == 1.0 => "1 or more",
+        0.0 => "0 or more",
+        1.0 => "1 or more",
         _ => "above the law's least value",
     };
     call(Expected {

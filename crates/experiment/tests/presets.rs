@@ -1,5 +1,5 @@
 //! The files that come with the program, against the numbers they stand for.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use hertzchain_chain::{Chain, FarEnd, Material, Pair, Start};
 use hertzchain_experiment::{examples, preset, presets};

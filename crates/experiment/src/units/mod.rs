@@ -77,7 +77,7 @@ impl Unit {
     /// Size in SI base units.
     #[must_use]
     pub fn size(&self) -> f64 {
-        self.convert(&Decimal::ONE)
+        self.convert(Decimal::ONE)
     }
 
     /// A decimal number of this unit in SI base units.

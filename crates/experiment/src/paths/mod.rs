@@ -1,0 +1,244 @@
+//! Parameter paths: the named numbers of an experiment file.
+//!
+//! `materials.aisi316.young_modulus`, `beads[0].radius`,
+//! `contacts[1].laws.damping_cubic.coefficient`: the keys of the file joined
+//! by points, lists by index from 0, laws by name. An end of a path that fits
+//! only one number is enough: `young_modulus`, `damping_cubic.coefficient`.
+
+mod slots;
+
+use crate::document::{Entry, Node, Number, Value};
+use crate::experiment::Experiment;
+use crate::finding::Mistakes;
+use crate::nearest;
+use slots::{Slot, Step};
+
+/// One number of an experiment, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// Full path.
+    pub path: String,
+    /// Value in SI.
+    pub value: f64,
+    /// SI unit; "1" for a plain number.
+    pub unit: String,
+    /// Half a unit of the last digit written, in SI: what rounding for print
+    /// may hide. 0 for values set by a program.
+    pub half_digit: f64,
+    /// Whether it counts something and must stay whole.
+    pub is_count: bool,
+}
+
+/// Why a path can't be followed.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum PathError {
+    /// No number has this name.
+    #[error("there is no number `{path}`{}", hint(.nearest.as_deref()))]
+    Unknown {
+        /// The path given.
+        path: String,
+        /// The path probably meant.
+        nearest: Option<String>,
+    },
+    /// Several numbers have this end.
+    #[error("`{path}` can be any of: {}", .candidates.join(", "))]
+    Ambiguous {
+        /// The path given.
+        path: String,
+        /// Full paths that end so.
+        candidates: Vec<String>,
+    },
+    /// The file does not give this number, and a default holds.
+    #[error("`{path}` is not given in the file")]
+    NotGiven {
+        /// Full path.
+        path: String,
+    },
+    /// The value does not fit the experiment.
+    #[error(transparent)]
+    Mistakes(#[from] Mistakes),
+}
+
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |path| format!("; did you mean `{path}`?"))
+}
+
+impl Experiment {
+    /// Every number that the file gives, in its order.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<Named> {
+        let given = |slot: Slot| {
+            let si = slot.value?;
+            Some(Named {
+                path: slot.path,
+                value: si.value,
+                unit: slot.unit,
+                half_digit: si.half_digit,
+                is_count: slot.is_count,
+            })
+        };
+        self.slots().into_iter().filter_map(given).collect()
+    }
+
+    /// The value of a named number in SI.
+    ///
+    /// # Errors
+    /// An unknown or ambiguous path, or a number that the file does not give.
+    pub fn get(&self, path: &str) -> Result<f64, PathError> {
+        let slot = self.slot(path)?;
+        let value = slot.value.map(|si| si.value);
+        value.ok_or(PathError::NotGiven { path: slot.path })
+    }
+
+    /// This experiment with named numbers set, in SI.
+    ///
+    /// ```
+    /// let dry = hertzchain_experiment::preset("dry")?;
+    /// let soft = dry.set(&[("young_modulus", 200e9), ("damping_cubic.coefficient", 50.0)])?;
+    /// assert_eq!(soft.get("materials.aisi316.young_modulus")?, 200e9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// An unknown or ambiguous path, or a value that does not fit.
+    pub fn set(&self, values: &[(&str, f64)]) -> Result<Self, PathError> {
+        let number = |value: f64| {
+            Value::Number(Number {
+                value,
+                half_digit: 0.0,
+                from_code: true,
+            })
+        };
+        let values = values.iter().map(|(path, value)| (*path, number(*value)));
+        self.replaced(values)
+    }
+
+    /// This experiment with named numbers set from text as it would stand in
+    /// the file: "200 GPa", "0.3".
+    ///
+    /// # Errors
+    /// An unknown or ambiguous path, or a value that does not fit.
+    pub fn set_text(&self, values: &[(&str, &str)]) -> Result<Self, PathError> {
+        let texts = values.iter().map(|(path, text)| {
+            let plain = text.trim().parse::<f64>();
+            let number = plain.map(|value| {
+                Value::Number(Number {
+                    value,
+                    half_digit: 0.0,
+                    from_code: false,
+                })
+            });
+            (
+                *path,
+                number.unwrap_or_else(|_| Value::Text((*text).to_owned())),
+            )
+        });
+        self.replaced(texts)
+    }
+
+    /// This experiment with another speed of the striker in m/s.
+    ///
+    /// # Errors
+    /// No striker, or a speed that is not positive and finite.
+    pub fn with_speed(&self, speed_m_s: f64) -> Result<Self, PathError> {
+        self.set(&[("striker.speed", speed_m_s)])
+    }
+
+    fn slots(&self) -> Vec<Slot> {
+        slots::all(self.tree(), self.units())
+    }
+
+    fn replaced<'a>(
+        &self,
+        values: impl Iterator<Item = (&'a str, Value)>,
+    ) -> Result<Self, PathError> {
+        let mut tree = self.tree().clone();
+        for (path, value) in values {
+            let slot = self.slot(path)?;
+            assign(&mut tree, &slot.steps, value);
+        }
+        Ok(self.with_tree(tree)?)
+    }
+
+    /// The slot of a path or of an end of one: given numbers come first.
+    fn slot(&self, path: &str) -> Result<Slot, PathError> {
+        let slots = self.slots();
+        if let Some(exact) = slots.iter().find(|slot| slot.path == path) {
+            return Ok(exact.clone());
+        }
+        let ending = format!(".{path}");
+        let fitting: Vec<&Slot> = slots.iter().filter(|s| s.path.ends_with(&ending)).collect();
+        let given: Vec<&Slot> = fitting
+            .iter()
+            .copied()
+            .filter(|s| s.value.is_some())
+            .collect();
+        match (&given[..], &fitting[..]) {
+            ([only], _) | ([], [only]) => Ok((*only).clone()),
+            ([], []) => Err(PathError::Unknown {
+                path: path.to_owned(),
+                nearest: nearest_path(path, &slots),
+            }),
+            ([], several) | (several, _) => Err(PathError::Ambiguous {
+                path: path.to_owned(),
+                candidates: several.iter().map(|slot| slot.path.clone()).collect(),
+            }),
+        }
+    }
+}
+
+/// The path nearest to a mistyped one, by the whole or by its end.
+fn nearest_path(path: &str, slots: &[Slot]) -> Option<String> {
+    let depth = path.split('.').count();
+    let end = |slot: &Slot| {
+        let parts: Vec<&str> = slot.path.split('.').collect();
+        parts[parts.len().saturating_sub(depth)..].join(".")
+    };
+    let ends: Vec<String> = slots.iter().map(end).collect();
+    let near = nearest::of(path, ends.iter().map(String::as_str))?;
+    let at = ends.iter().position(|end| end == near)?;
+    slots.get(at).map(|slot| slot.path.clone())
+}
+
+/// Puts a value at the end of some steps, making tables on the way.
+fn assign(node: &mut Node, steps: &[Step], value: Value) {
+    match steps.split_first() {
+        None => node.value = value,
+        Some((Step::Key(key), rest)) => assign(entry(node, key), rest, value),
+        Some((Step::Index(index), rest)) => {
+            if let Value::List(members) = &mut node.value
+                && let Some(member) = members.get_mut(*index)
+            {
+                assign(member, rest, value);
+            }
+        }
+    }
+}
+
+/// The value of a key; a law given by its name alone becomes a table.
+fn entry<'a>(node: &'a mut Node, key: &str) -> &'a mut Node {
+    let span = node.span.clone();
+    let fresh = |key: &str, value: Value| Entry {
+        key: key.to_owned(),
+        key_span: span.clone(),
+        node: Node {
+            value,
+            span: span.clone(),
+        },
+    };
+    let mut entries = match std::mem::replace(&mut node.value, Value::Flag(false)) {
+        Value::Table(entries) => entries,
+        Value::Text(law) => vec![fresh("law", Value::Text(law))],
+        _ => Vec::new(),
+    };
+    let at = entries.iter().position(|entry| entry.key == key);
+    let at = at.unwrap_or_else(|| {
+        entries.push(fresh(key, Value::Table(Vec::new())));
+        entries.len() - 1
+    });
+    node.value = Value::Table(entries);
+    match &mut node.value {
+        Value::Table(entries) => &mut entries[at].node,
+        _ => unreachable!("the value has just been made a table"),
+    }
+}
