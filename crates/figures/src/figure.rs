@@ -247,8 +247,13 @@ impl Grid {
             across: vec![Side::default(); columns],
             down: vec![Side::default(); rows],
         };
-        // Ticks depend on the frame and the frame on the tick labels: once more settles it.
-        for _ in 0..3 {
+        // Ticks depend on the frame and the frame on the tick labels. The first
+        // guess is forgotten; after it margins only grow, so this settles.
+        for round in 0..4 {
+            if round == 1 {
+                grid.across.fill(Side::default());
+                grid.down.fill(Side::default());
+            }
             grid.measure(panels, figure.letters);
             grid.fit(page);
         }
@@ -256,8 +261,6 @@ impl Grid {
     }
 
     fn measure(&mut self, panels: &[Panel], letters: bool) {
-        self.across.fill(Side::default());
-        self.down.fill(Side::default());
         for (i, panel) in panels.iter().enumerate() {
             let mut side = self.margins(panel);
             if letters || !panel.title().is_empty() {

@@ -18,8 +18,11 @@ impl Step {
             mantissa: 1,
             exponent: raw.log10().floor() as i32,
         };
-        while step.size() < raw * (1.0 - 1e-9) {
-            step = step.next();
+        // One, two or three changes lead from a power of ten to the next.
+        for _ in 0..4 {
+            if step.size() < raw * (1.0 - 1e-9) {
+                step = step.next();
+            }
         }
         step
     }
@@ -80,15 +83,24 @@ impl Step {
     }
 }
 
+/// More changes of step than any sound range needs.
+const TRIES: usize = 12;
+
 pub(super) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     let exponent = shared_exponent(scale);
     let mut step = Step::at_least(scale.hi - scale.lo, room.most() as f64);
     let mut major = labelled(scale, step, exponent);
-    while major.len() > 3 && !room.fits(scale, &major) {
+    for _ in 0..TRIES {
+        if major.len() <= 3 || room.fits(scale, &major) {
+            break;
+        }
         step = step.next();
         major = labelled(scale, step, exponent);
     }
-    while major.len() < 2 {
+    for _ in 0..TRIES {
+        if major.len() >= 2 {
+            break;
+        }
         step = step.before();
         major = labelled(scale, step, exponent);
     }

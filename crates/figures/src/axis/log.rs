@@ -52,7 +52,7 @@ fn sparse(scale: &Scale) -> i32 {
 /// Within a small part of a decade a logarithmic axis is nearly linear.
 fn even_steps(scale: &Scale, room: &Room) -> Ticks {
     let mut found = linear::ticks(scale, room);
-    while found.major.len() > 3 && !room.fits(scale, &found.major) {
+    if !room.fits(scale, &found.major) && found.major.len() > 3 {
         let mut n = 0;
         found.major.retain(|_| {
             n += 1;

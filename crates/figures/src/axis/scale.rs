@@ -62,14 +62,11 @@ fn padded_linear(lo: f64, hi: f64, pad: f64) -> Scale {
 }
 
 fn padded_log(lo: f64, hi: f64, pad: f64) -> Scale {
-    let ratio = if hi / lo < 1.0 + 1e-6 {
-        1.1
-    } else {
-        (hi / lo).powf(pad)
-    };
+    let span = hi.ln() - lo.ln();
+    let ratio = if span < 1e-6 { 1.1 } else { (pad * span).exp() };
     Scale {
-        lo: lo / ratio,
-        hi: hi * ratio,
+        lo: (lo / ratio).max(0.1 * SMALLEST),
+        hi: (hi * ratio).min(10.0 * LARGEST),
         log: true,
     }
 }
@@ -101,7 +98,7 @@ impl Scale {
             return None;
         }
         let share = if self.log {
-            (value / self.lo).ln() / (self.hi / self.lo).ln()
+            (value.ln() - self.lo.ln()) / (self.hi.ln() - self.lo.ln())
         } else {
             (value - self.lo) / (self.hi - self.lo)
         };
@@ -112,7 +109,7 @@ impl Scale {
     /// The value at a share of the axis, the inverse of [`Scale::share`].
     pub(crate) fn value(&self, share: f64) -> f64 {
         if self.log {
-            self.lo * (self.hi / self.lo).powf(share)
+            (self.lo.ln() + share * (self.hi.ln() - self.lo.ln())).exp()
         } else {
             self.lo + share * (self.hi - self.lo)
         }
@@ -168,7 +165,7 @@ mod tests {
             log: true,
         };
         let back = scale.share(scale.value(0.3)).expect("inside the axis");
-        // A logarithm and a power, a few ulp each.
+        // Logarithms and an exponential, a few ulp each.
         assert!((back - 0.3).abs() < 1e-13);
     }
 }

@@ -9,6 +9,8 @@ use crate::draw::{Colour, Paint, Rect, Svg};
 /// Share of the outer frame that an inset takes, labels included.
 const WIDTH: f64 = 0.47;
 const HEIGHT: f64 = 0.47;
+/// Smallest legible inset, points.
+const SMALLEST: (f64, f64) = (62.0, 44.0);
 
 /// Chooses the freest corner and marks it as taken.
 pub(crate) fn place(chart: &Chart, frame: &Rect, taken: &mut Occupancy) -> Option<Rect> {
@@ -20,13 +22,20 @@ pub(crate) fn place(chart: &Chart, frame: &Rect, taken: &mut Occupancy) -> Optio
     Some(found)
 }
 
-/// Draws the inset with all its labels within `area`.
+/// Draws the inset with all its labels within `area`; too small an area stays empty.
 pub(crate) fn draw(svg: &mut Svg, inset: &Chart, area: &Rect) {
-    let size = (0.7 * area.width(), 0.7 * area.height());
-    let guess = Prepared::new(inset, Style::INSET, size.0, size.1);
-    let frame = area.inside(guess.margins(inset, size));
-    let prepared = Prepared::new(inset, Style::INSET, frame.width(), frame.height());
-    let frame = area.inside(prepared.margins(inset, (frame.width(), frame.height())));
+    if area.width() < SMALLEST.0 || area.height() < SMALLEST.1 {
+        return;
+    }
+    let prepare = |size: (f64, f64)| Prepared::new(inset, Style::INSET, size.0, size.1);
+    let mut size = (0.7 * area.width(), 0.7 * area.height());
+    let mut margins = prepare(size).margins(inset, size);
+    for _ in 0..3 {
+        let frame = area.inside(margins);
+        size = (frame.width(), frame.height());
+        margins = margins.union(prepare(size).margins(inset, size));
+    }
+    let frame = area.inside(margins);
     svg.rect(area, &Paint::fill(Colour::WHITE));
-    prepared.draw(svg, inset, &frame);
+    prepare((frame.width(), frame.height())).draw(svg, inset, &frame);
 }

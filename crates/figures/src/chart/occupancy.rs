@@ -3,13 +3,15 @@
 
 use crate::draw::{Point, Rect};
 
-/// Edge of a cell in points.
+/// Edge of a cell in points, on posters a share of the frame.
 const CELL: f64 = 2.0;
+const MOST_CELLS: f64 = 600.0;
 
 /// A coarse grid over a frame that counts what lies where.
 #[derive(Debug, Clone)]
 pub(crate) struct Occupancy {
     frame: Rect,
+    cell: f64,
     columns: usize,
     rows: usize,
     cells: Vec<u32>,
@@ -17,10 +19,12 @@ pub(crate) struct Occupancy {
 
 impl Occupancy {
     pub(crate) fn new(frame: Rect) -> Self {
-        let columns = (frame.width() / CELL).ceil() as usize + 1;
-        let rows = (frame.height() / CELL).ceil() as usize + 1;
+        let cell = CELL.max(frame.width().max(frame.height()) / MOST_CELLS);
+        let columns = (frame.width() / cell).ceil() as usize + 1;
+        let rows = (frame.height() / cell).ceil() as usize + 1;
         Self {
             frame,
+            cell,
             columns,
             rows,
             cells: vec![0; columns * rows],
@@ -31,8 +35,8 @@ impl Occupancy {
         if !self.frame.contains(p) {
             return None;
         }
-        let column = ((p.x - self.frame.x0) / CELL) as usize;
-        let row = ((p.y - self.frame.y0) / CELL) as usize;
+        let column = ((p.x - self.frame.x0) / self.cell) as usize;
+        let row = ((p.y - self.frame.y0) / self.cell) as usize;
         Some(row * self.columns + column)
     }
 
@@ -47,7 +51,7 @@ impl Occupancy {
     pub(crate) fn mark_line(&mut self, points: &[Point], weight: u32) {
         for pair in points.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let steps = ((b.x - a.x).hypot(b.y - a.y) / CELL)
+            let steps = ((b.x - a.x).hypot(b.y - a.y) / self.cell)
                 .ceil()
                 .clamp(1.0, 4096.0);
             for i in 0..=steps as u32 {
@@ -79,9 +83,10 @@ impl Occupancy {
     }
 
     fn covered(&self, rect: &Rect) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let cell = self.cell;
         let range = |from: f64, to: f64, start: f64, count: usize| {
-            let first = ((from - start) / CELL).floor().max(0.0) as usize;
-            let last = ((to - start) / CELL).floor().max(-1.0) + 1.0;
+            let first = ((from - start) / cell).floor().max(0.0) as usize;
+            let last = ((to - start) / cell).floor().max(-1.0) + 1.0;
             first..(last as usize).min(count)
         };
         let columns = range(rect.x0, rect.x1, self.frame.x0, self.columns);

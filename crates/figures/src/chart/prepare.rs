@@ -75,7 +75,7 @@ impl Prepared {
         }
         if !chart.x.unlabelled {
             side.bottom = 1.35 * style.small + 3.0;
-            if !chart.x.label.is_empty() {
+            if !chart.x.label.is_empty() || self.x_ticks.exponent.is_some() {
                 side.bottom += line(&chart.x.label).height() + 1.5;
             }
             let (left, right) = self.overhang(frame.0);
@@ -209,10 +209,8 @@ fn with_headroom(chart: &Chart, style: &Style, plot: Plot) -> Scale {
     if free.is_none_or(|(_, cost)| cost == 0) {
         return plot.y;
     }
-    Scale {
-        hi: plot.y.value(height / (height - needed)),
-        ..plot.y
-    }
+    let raised = plot.y.value(height / (height - needed));
+    Scale::fixed(plot.y.lo, raised, plot.y.log).unwrap_or(plot.y)
 }
 
 /// Where the data of a chart lie.

@@ -93,9 +93,10 @@ impl HeatMap {
     fn strongest(&self, columns: &std::ops::Range<usize>, rows: &std::ops::Range<usize>) -> f64 {
         let mut best = f64::NAN;
         for row in rows.clone() {
+            let start = row.saturating_mul(self.columns);
             let line = self
                 .values
-                .get(row * self.columns + columns.start..row * self.columns + columns.end);
+                .get(start.saturating_add(columns.start)..start.saturating_add(columns.end));
             for value in line.unwrap_or(&[]) {
                 if best.is_nan() || value.abs() > best.abs() {
                     best = *value;
