@@ -20,8 +20,12 @@ mod error;
 mod flight;
 mod plan;
 mod shot;
+mod speeds;
+mod sweep;
 
 pub use error::StudyError;
 pub use flight::Flight;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
+pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds};
+pub use sweep::{Point, PointError, Settings, Sweep, sweep};

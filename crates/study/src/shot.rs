@@ -120,8 +120,9 @@ struct Gun<'a> {
     end: End,
 }
 
-/// A search for a fixed step ends when a run would cost more passes than this.
-const MOST_PASSES: u64 = 200_000_000;
+/// A search for a fixed step halves it at most this often, down to some 1e-5
+/// of the contact time: beyond, adaptive steps are the only sane choice.
+const MOST_HALVINGS: i32 = 11;
 
 impl<'a> Gun<'a> {
     fn load(plan: &'a Plan) -> Result<Self, StudyError> {
@@ -168,35 +169,26 @@ impl<'a> Gun<'a> {
 
     /// Halves the step until the result stands still.
     fn halving(&self, solver: Solver) -> Result<Shot, StudyError> {
-        let mut step_s = accuracy::first_step_s(&self.system);
-        let mut last = self.at_step(solver, step_s, false);
+        let first_s = accuracy::first_step_s(&self.system);
+        let mut last = self.at_step(solver, first_s, false);
         let mut change = f64::INFINITY;
-        loop {
-            step_s *= 0.5;
-            let passes = last.as_ref().map_or(0, |shot| 2 * shot.work.force_passes);
-            let explodes = step_s < f64::EPSILON * self.end.longest_s;
-            if passes > MOST_PASSES || explodes {
-                return Err(StudyError::NotConverged {
-                    method: accuracy::fixed(solver, step_s).name(),
-                    accuracy: self.plan.accuracy,
-                    step_s: 2.0 * step_s,
-                    change,
-                });
-            }
+        for halving in 1..=MOST_HALVINGS {
+            let step_s = first_s * 0.5_f64.powi(halving);
             let next = self.at_step(solver, step_s, false);
             if let (Ok(one), Ok(two)) = (&last, &next) {
                 change = one.change(two);
                 if change <= self.plan.accuracy {
                     return self.settled(solver, step_s, change, next);
                 }
-            } else if let (Err(_), Err(StudyError::Solve(error))) = (&last, &next)
-                && step_s < 1e-3 * accuracy::first_step_s(&self.system)
-            {
-                // Not a matter of the step any more.
-                return Err(error.clone().into());
             }
             last = next;
         }
+        last.and(Err(StudyError::NotConverged {
+            method: accuracy::fixed(solver, first_s).name(),
+            accuracy: self.plan.accuracy,
+            step_s: first_s * 0.5_f64.powi(MOST_HALVINGS),
+            change,
+        }))
     }
 
     /// The shot at the step that was found, sampled if asked.

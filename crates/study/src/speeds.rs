@@ -1,0 +1,150 @@
+//! Lists of speeds as a user writes them.
+
+use hertzchain_experiment::units::{UnitError, parse_quantity, parse_unit};
+
+/// Most speeds in one sweep.
+pub const MOST_SPEEDS: usize = 100_000;
+
+/// What is wrong with a speed or a list of speeds.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpeedError {
+    /// Not a number with a unit.
+    #[error("`{text}`: {error}; expected a speed such as 0.5 or \"0.5 m/s\"")]
+    Unit {
+        /// The text.
+        text: String,
+        /// What is wrong with it.
+        error: UnitError,
+    },
+    /// Another quantity.
+    #[error("`{text}` is {found}, not a speed such as 0.5 or \"0.5 m/s\"")]
+    NotASpeed {
+        /// The text.
+        text: String,
+        /// What it is.
+        found: String,
+    },
+    /// Nothing moves, or backward.
+    #[error("a speed of {0} m/s is not positive")]
+    NotPositive(f64),
+    /// A range that is none.
+    #[error(
+        "`{0}` is not a range; expected FROM:TO:COUNT, such as 0.075:1.23:25 or log:0.075:1.23:25"
+    )]
+    Range(String),
+    /// Too few or too many points in a range.
+    #[error("a range has from 2 to {MOST_SPEEDS} speeds, not {0}")]
+    Count(String),
+}
+
+/// A speed in m/s from "0.5", "0.5 m/s" or "500 mm/s".
+///
+/// # Errors
+/// See [`SpeedError`].
+pub fn parse_speed(text: &str) -> Result<f64, SpeedError> {
+    let text = text.trim();
+    let given = |error| SpeedError::Unit {
+        text: text.to_owned(),
+        error,
+    };
+    let quantity = parse_quantity(text).map_err(given)?;
+    let plain = parse_unit("1").is_ok_and(|one| quantity.dimension.agrees_with(&one.dimension));
+    let speed = parse_unit("m/s").is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension));
+    if !plain && !speed {
+        return Err(SpeedError::NotASpeed {
+            text: text.to_owned(),
+            found: quantity.dimension.name(),
+        });
+    }
+    if quantity.value > 0.0 {
+        Ok(quantity.value)
+    } else {
+        Err(SpeedError::NotPositive(quantity.value))
+    }
+}
+
+/// Speeds in m/s from "0.1, 0.2, 0.5 m/s", "0.075:1.23:25" (equal steps) or
+/// "log:0.075:1.23:25" (equal ratios); members of a list may be ranges.
+///
+/// # Errors
+/// See [`SpeedError`].
+pub fn parse_speeds(text: &str) -> Result<Vec<f64>, SpeedError> {
+    let mut speeds = Vec::new();
+    for member in text.split(',') {
+        if member.contains(':') {
+            speeds.extend(range(member.trim())?);
+        } else {
+            speeds.push(parse_speed(member)?);
+        }
+    }
+    Ok(speeds)
+}
+
+fn range(text: &str) -> Result<Vec<f64>, SpeedError> {
+    let (logarithmic, ends) = match text.strip_prefix("log:") {
+        Some(ends) => (true, ends),
+        None => (false, text),
+    };
+    let parts: Vec<&str> = ends.split(':').collect();
+    let &[from, to, count] = parts.as_slice() else {
+        return Err(SpeedError::Range(text.to_owned()));
+    };
+    let (from, to) = (parse_speed(from)?, parse_speed(to)?);
+    let points = count
+        .trim()
+        .parse()
+        .ok()
+        .filter(|n| (2..=MOST_SPEEDS).contains(n));
+    let count = points.ok_or_else(|| SpeedError::Count(count.trim().to_owned()))?;
+    let between = |share: f64| match logarithmic {
+        true => from * (to / from).powf(share),
+        false => from + (to - from) * share,
+    };
+    let at = |i: usize| match i {
+        0 => from,
+        // The last is the end itself, not the end as rounding leaves it.
+        i if i + 1 == count => to,
+        i => between(i as f64 / (count - 1) as f64),
+    };
+    Ok((0..count).map(at).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_have_units_or_none() {
+        assert_eq!(parse_speed(" 0.5 m/s"), Ok(0.5));
+        assert_eq!(parse_speed("500 mm/s"), Ok(0.5));
+        assert_eq!(
+            parse_speeds("0.1, 0.2 m/s,500 mm/s"),
+            Ok(vec![0.1, 0.2, 0.5])
+        );
+    }
+
+    #[test]
+    fn ranges_hold_both_ends() {
+        assert_eq!(parse_speeds("0.5:1.5:3"), Ok(vec![0.5, 1.0, 1.5]));
+        let log = parse_speeds("log:0.01:1:3").unwrap();
+        // Rounding of one power.
+        assert!(log[0] == 0.01 && (log[1] - 0.1).abs() < 1e-15 && log[2] == 1.0);
+        assert_eq!(parse_speeds("2 m/s,1:0.5:2"), Ok(vec![2.0, 1.0, 0.5]));
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let refused = |text: &str| parse_speeds(text).unwrap_err();
+        assert!(matches!(refused(""), SpeedError::Unit { .. }));
+        assert!(matches!(refused("0.1,,0.2"), SpeedError::Unit { .. }));
+        assert!(matches!(refused("fast"), SpeedError::Unit { .. }));
+        assert!(matches!(refused("3 kg"), SpeedError::NotASpeed { .. }));
+        assert_eq!(refused("0"), SpeedError::NotPositive(0.0));
+        assert!(matches!(refused("-1"), SpeedError::NotPositive(_)));
+        assert!(matches!(refused("nan"), SpeedError::Unit { .. }));
+        assert!(matches!(refused("1:2"), SpeedError::Range(_)));
+        assert!(matches!(refused("1:2:1"), SpeedError::Count(_)));
+        assert!(matches!(refused("1:2:1000000000000"), SpeedError::Count(_)));
+        assert!(matches!(refused("1:2:x"), SpeedError::Count(_)));
+    }
+}

@@ -1,0 +1,63 @@
+//! Sweeps over speed.
+
+use hertzchain_experiment::preset;
+use hertzchain_study::{Settings, Sweep, parse_speeds, sweep};
+
+fn hertz(accuracy: f64, speeds: &str) -> Sweep {
+    let settings = Settings {
+        adjust: &|plan| plan.accuracy = accuracy,
+        ..Settings::default()
+    };
+    sweep(
+        &preset("hertz").unwrap(),
+        &parse_speeds(speeds).unwrap(),
+        &settings,
+    )
+}
+
+#[test]
+fn hertz_tof_scales_as_speed_to_minus_one_fifth() {
+    let swept = hertz(1e-11, "log:0.075:1.23:9");
+    for fit in [swept.incident.unwrap(), swept.reflected.unwrap()] {
+        // Ten times the accuracy asked of each time, over a factor of 16 in speed.
+        assert!((fit.exponent + 0.2).abs() < 1e-10, "{}", fit.exponent);
+        assert!(fit.largest_deviation() < 1e-10);
+    }
+}
+
+#[test]
+fn a_sweep_gives_the_same_bits_on_one_and_on_two_threads() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| hertz(1e-6, "0.1:1:5").flights())
+    };
+    assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn a_speed_that_fails_does_not_stop_the_others() {
+    // At 1e-30 m/s the oil's Poisson ratio is beyond 1: the file can't have that speed.
+    let pump = preset("pump").unwrap();
+    let swept = sweep(&pump, &[0.5, 1e-30, 0.1], &Settings::default());
+    assert_eq!(swept.points.len(), 3);
+    assert!(swept.points[1].shot.is_err());
+    assert_eq!(swept.flights().len(), 2);
+    // Below 0.18 m/s it exceeds 1/2, which is worth a warning.
+    assert!(swept.points[0].warnings.is_empty() && !swept.points[2].warnings.is_empty());
+}
+
+#[test]
+fn progress_is_told_once_a_shot() {
+    let count = std::sync::atomic::AtomicUsize::new(0);
+    let settings = Settings {
+        progress: &|| {
+            count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        },
+        ..Settings::default()
+    };
+    let _ = sweep(&preset("hertz").unwrap(), &[0.5, 1.0, 2.0], &settings);
+    assert_eq!(count.into_inner(), 3);
+}
