@@ -21,6 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("space_time", space_time()),
         ("energy", energy()),
         ("residuals", residuals()),
+        ("panels", panels()),
         ("verdicts", verdicts()),
         ("verdicts_many", verdicts_many()),
         ("rig", paper_rig().figure()),
@@ -392,4 +393,39 @@ fn animation() -> Animation {
         .mark(0, "striker")
         .mark(7, "sensor bead 7")
         .wet(7, 40)
+}
+
+/// Six small panels with shared axes.
+fn panels() -> Figure {
+    let v = log_grid(0.075, 1.23, 12);
+    let empty = Figure::double_column(88.0)
+        .columns(3)
+        .letters()
+        .share_x()
+        .share_y();
+    let names = [
+        "pump, incident",
+        "gear, incident",
+        "motor, incident",
+        "pump, reflected",
+        "gear, reflected",
+        "motor, reflected",
+    ];
+    let panel = |(i, name): (usize, &&str)| {
+        let tilt = 0.01 * (i as f64 - 2.5);
+        let ratio = map(&v, |v| 1.0 + tilt * (v / 0.4).ln());
+        let (low, high) = (map(&ratio, |r| r - 0.006), map(&ratio, |r| r + 0.006));
+        Chart::new("Impact speed $v_0$ (m/s)", "ToF ratio wet / dry")
+            .title(name)
+            .x_log()
+            .with(Series::band("rounding", &v, &low, &high).colour(Colour::BLUE))
+            .with(Series::line("model", &v, &ratio).colour(Colour::BLUE))
+            .h_line(1.0, "")
+            .note(&format!("slope {tilt:.3}"))
+    };
+    names
+        .iter()
+        .enumerate()
+        .map(panel)
+        .fold(empty, Figure::panel)
 }

@@ -19,7 +19,6 @@ mod matrix;
 mod png_image;
 mod render;
 mod rig;
-mod share;
 mod text;
 
 pub use animation::Animation;

@@ -175,12 +175,13 @@ impl Animation {
         self.forces_n.chunks(stride).map(strongest).collect()
     }
 
-    /// A factor of 1, 2 or 5 times a power of ten: the beads behind the striker
-    /// move by up to one radius.
+    /// A factor of 1, 2 or 5 times a power of ten: half of the beads behind the
+    /// striker move by no more than one radius. Those thrown off do not count.
     fn fitting_factor(&self, moved: &[Vec<f64>]) -> f64 {
-        let behind = moved.iter().skip(1).flatten().map(|u| u.abs());
-        let largest = behind.fold(0.0, f64::max);
-        let wanted = self.radius(1) / largest;
+        let farthest = |path: &Vec<f64>| path.iter().fold(0.0, |far: f64, u| far.max(u.abs()));
+        let mut reach: Vec<f64> = moved.iter().skip(1).map(farthest).collect();
+        reach.sort_by(f64::total_cmp);
+        let wanted = self.radius(1) / reach.get(reach.len() / 2).copied().unwrap_or(0.0);
         if !wanted.is_finite() || wanted <= 1.0 {
             return 1.0;
         }

@@ -82,7 +82,7 @@ function drawWet(y, place, scale) {
 
 function drawWall(at, y, scale) {
   const r = radius[data.beads - 1] * scale, x = at(x0[data.beads - 1]) + r;
-  if (data.contacts * data.stride < data.beads * data.stride) return;
+  if (data.contacts < data.beads) return;
   pen.fillStyle = "#9aa0a8";
   pen.fillRect(x + 1, y - 1.6 * Math.max(r, 6), 8, 3.2 * Math.max(r, 6));
 }

@@ -39,7 +39,7 @@ pub(crate) struct Room {
 impl Room {
     /// More labels than this crowd an axis even if they fit.
     fn most(&self) -> usize {
-        let pitch = if self.side_by_side { 3.6 } else { 2.6 } * self.font;
+        let pitch = if self.side_by_side { 3.6 } else { 2.1 } * self.font;
         ((self.length / pitch) as usize).clamp(2, 8)
     }
 

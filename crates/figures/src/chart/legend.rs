@@ -97,9 +97,10 @@ impl LegendBox {
     }
 }
 
-/// Shading of an area.
+/// Shading of an area, with an edge for grey print.
 pub(crate) fn band_paint(colour: Colour) -> Paint {
-    Paint::fill(colour.mixed(Colour::WHITE, 0.72))
+    let edge = colour.mixed(Colour::WHITE, 0.25);
+    Paint::fill(colour.mixed(Colour::WHITE, 0.72)).outlined(edge, 0.4)
 }
 
 /// Stroke of a line series.

@@ -1,8 +1,13 @@
 //! A figure: panels in a grid, as SVG or PNG.
 
+mod grid;
+mod share;
+
+use grid::Grid;
+
 use crate::FigureError;
 use crate::chart::{Chart, Prepared, Style};
-use crate::draw::{Colour, PT_PER_MM, Point, Rect, Side, Svg};
+use crate::draw::{Colour, PT_PER_MM, Point, Rect, Svg};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
 use crate::text::{Anchor, TextLine};
@@ -11,12 +16,6 @@ use crate::text::{Anchor, TextLine};
 pub const SINGLE_COLUMN_MM: f64 = 86.0;
 /// Width of a journal page of two columns in millimetres.
 pub const DOUBLE_COLUMN_MM: f64 = 178.0;
-
-/// Space around and between panels, in points.
-const MARGIN: f64 = 3.0;
-const GUTTER: f64 = 7.0;
-/// Height of the line with panel letter and title, in points.
-const HEADING: f64 = 11.5;
 
 /// What can be put into a figure.
 #[derive(Debug, Clone)]
@@ -169,7 +168,8 @@ impl Figure {
     pub fn svg(&self) -> String {
         let mut svg = Svg::new();
         let panels = self.shared();
-        let grid = Grid::new(self, &panels);
+        let page = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
+        let grid = Grid::new(page, self.columns, self.letters, &panels);
         for (i, panel) in panels.iter().enumerate() {
             let frame = grid.frame(i);
             self.heading(&mut svg, panel, i, &frame, &grid);
@@ -198,10 +198,10 @@ impl Figure {
     fn shared(&self) -> Vec<Panel> {
         let mut panels = self.panels.clone();
         if self.share_x {
-            crate::share::x_axes(&mut panels, self.columns);
+            share::x_axes(&mut panels, self.columns);
         }
         if self.share_y {
-            crate::share::y_axes(&mut panels, self.columns);
+            share::y_axes(&mut panels, self.columns);
         }
         panels
     }
@@ -224,101 +224,5 @@ fn panel_letter(index: usize) -> String {
     match u8::try_from(index) {
         Ok(i) if i < 26 => format!("({})", char::from(b'a' + i)),
         _ => format!("({})", index + 1),
-    }
-}
-
-/// Places of the frames: equal in size, aligned along rows and columns.
-struct Grid {
-    columns: usize,
-    frame: (f64, f64),
-    /// Margins of each column (left, right) and row (top, bottom).
-    across: Vec<Side>,
-    down: Vec<Side>,
-}
-
-impl Grid {
-    fn new(figure: &Figure, panels: &[Panel]) -> Self {
-        let columns = figure.columns.min(panels.len()).max(1);
-        let rows = panels.len().div_ceil(columns).max(1);
-        let page = (figure.width_mm * PT_PER_MM, figure.height_mm * PT_PER_MM);
-        let mut grid = Self {
-            columns,
-            frame: (0.75 * page.0 / columns as f64, 0.75 * page.1 / rows as f64),
-            across: vec![Side::default(); columns],
-            down: vec![Side::default(); rows],
-        };
-        // Ticks depend on the frame and the frame on the tick labels. The first
-        // guess is forgotten; after it margins only grow, so this settles.
-        for round in 0..4 {
-            if round == 1 {
-                grid.across.fill(Side::default());
-                grid.down.fill(Side::default());
-            }
-            grid.measure(panels, figure.letters);
-            grid.fit(page);
-        }
-        grid
-    }
-
-    fn measure(&mut self, panels: &[Panel], letters: bool) {
-        for (i, panel) in panels.iter().enumerate() {
-            let mut side = self.margins(panel);
-            if letters || !panel.title().is_empty() {
-                side.top += HEADING;
-            }
-            if let Some(column) = self.across.get_mut(i % self.columns) {
-                *column = column.union(side);
-            }
-            if let Some(row) = self.down.get_mut(i / self.columns) {
-                *row = row.union(side);
-            }
-        }
-    }
-
-    fn margins(&self, panel: &Panel) -> Side {
-        match panel {
-            Panel::Chart(chart) => {
-                let prepared = Prepared::new(chart, Style::JOURNAL, self.frame.0, self.frame.1);
-                prepared.margins(chart, self.frame)
-            }
-            Panel::Matrix(_) | Panel::Rig(_) => Side::default(),
-        }
-    }
-
-    fn fit(&mut self, page: (f64, f64)) {
-        let gaps = |count: usize| 2.0 * MARGIN + GUTTER * (count - 1) as f64;
-        let across: f64 = self.across.iter().map(|s| s.left + s.right).sum();
-        let down: f64 = self.down.iter().map(|s| s.top + s.bottom).sum();
-        let (columns, rows) = (self.across.len(), self.down.len());
-        self.frame = (
-            ((page.0 - across - gaps(columns)) / columns as f64).max(4.0),
-            ((page.1 - down - gaps(rows)) / rows as f64).max(4.0),
-        );
-    }
-
-    fn frame(&self, index: usize) -> Rect {
-        let (column, row) = (index % self.columns, index / self.columns);
-        let left: f64 = self
-            .across
-            .iter()
-            .take(column)
-            .map(|s| s.left + s.right + self.frame.0 + GUTTER)
-            .sum();
-        let top: f64 = self
-            .down
-            .iter()
-            .take(row)
-            .map(|s| s.top + s.bottom + self.frame.1 + GUTTER)
-            .sum();
-        let own = (self.across.get(column), self.down.get(row));
-        let x = MARGIN + left + own.0.map_or(0.0, |s| s.left);
-        let y = MARGIN + top + own.1.map_or(0.0, |s| s.top);
-        Rect::sized(x, y, self.frame.0, self.frame.1)
-    }
-
-    /// Room between the heading and the frame.
-    fn above(&self, index: usize) -> f64 {
-        let top = self.down.get(index / self.columns).map_or(0.0, |s| s.top);
-        (top - HEADING - 0.55 * Style::JOURNAL.small).clamp(0.0, 12.0)
     }
 }

@@ -1,7 +1,7 @@
 //! Axes shared between the charts of a column or row.
 
+use super::Panel;
 use crate::chart::{Chart, Style, x_scale, y_scale};
-use crate::figure::Panel;
 
 /// Gives the charts of each column one x range and labels the lowest only.
 pub(crate) fn x_axes(panels: &mut [Panel], columns: usize) {
