@@ -6,11 +6,12 @@ use crate::check::Check;
 use crate::document::{self, Node, Value};
 use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
+use crate::locate;
 use crate::reading::{Pick, Reading};
 use crate::spec::{Far, Liquid, Near, SectionSpec, Solver, Spec};
 use crate::value::Units;
 use crate::view::View;
-use hertzchain_chain::{Chain, Sensor};
+use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -74,7 +75,9 @@ impl Experiment {
         let source = Arc::new(NamedSource::new(name, text.to_owned()).with_language("toml"));
         let tree = document::parse(text).map_err(|problems| Mistakes::new(problems, &source))?;
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
-        Self::from_tree(source, folder, tree, None)
+        let experiment = Self::from_tree(source, folder, tree, None)?;
+        experiment.system(None)?;
+        Ok(experiment)
     }
 
     /// The experiment of a tree, in a reading or the tree's own.
@@ -136,6 +139,18 @@ impl Experiment {
             assemble::chain(&self.spec, speed_m_s).map_err(|p| self.mistake(p))?;
         let warnings = oddities.into_iter().map(|p| p.warning(&self.source));
         Ok((chain, warnings.collect()))
+    }
+
+    /// The chain as [`Experiment::chain`] gives it, at rest and ready for a
+    /// shot, and what is odd about it.
+    ///
+    /// # Errors
+    /// Those of [`Experiment::chain`]; laws that the materials can't serve; no
+    /// static equilibrium.
+    pub fn system(&self, speed_m_s: Option<f64>) -> Result<(System, Vec<Warning>), Mistakes> {
+        let (chain, warnings) = self.chain(speed_m_s)?;
+        let refused = |error| self.mistake(locate::problem(&self.spec, &error));
+        Ok((System::new(&chain).map_err(refused)?, warnings))
     }
 
     fn mistake(&self, problem: Problem) -> Mistakes {

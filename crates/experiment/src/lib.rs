@@ -19,6 +19,7 @@ mod experiment;
 mod finding;
 mod keys;
 mod laws;
+mod locate;
 mod motion_file;
 mod nearest;
 mod paths;

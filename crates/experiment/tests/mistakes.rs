@@ -431,3 +431,24 @@ fn beads_need_a_mass_or_a_density() {
     );
     assert!(finding.one_line().contains("the striker has no mass"));
 }
+
+#[test]
+fn what_the_physics_refuses_is_found_in_the_file() {
+    let free = DRY.replace("kind = \"half-bead\"", "kind = \"free\"");
+    let push = "[near_end]\npush = \"constant\"\nforce = \"1 N\"\n";
+    let finding = only(&format!("{free}\n{push}"));
+    assert!(finding.text().contains("[far_end]"), "{}", finding.text());
+    assert!(finding.one_line().contains("no rest position"));
+    let bare = "units = \"dimensionless\"\n[striker]\nspeed = 1\n[[beads]]\n[[contacts]]\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\"]\n";
+    let finding = only(bare);
+    check(
+        &finding,
+        6,
+        "\"damping_viscoelastic\"",
+        &["can't be used on contact 0", "`relaxation_time`"],
+    );
+    let mixed = format!(
+        "{bare}[materials.a]\nyoung_modulus = 1\npoisson_ratio = 0\n[[beads]]\nmaterial = \"a\"\n"
+    );
+    assert!(Experiment::from_text("test.toml", &mixed).is_err());
+}

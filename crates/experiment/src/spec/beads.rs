@@ -75,6 +75,7 @@ pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Vec<Group>,
         .iter()
         .map(|table| group(table, materials))
         .collect::<Result<_, _>>()?;
+    all_or_none_have_materials(&groups)?;
     let mut total = 0usize;
     for group in &groups {
         total = total.saturating_add(group.count());
@@ -84,6 +85,23 @@ pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Vec<Group>,
         }
     }
     Ok(groups)
+}
+
+/// A dimensionless chain may do without materials, but not in part.
+fn all_or_none_have_materials(groups: &[Group]) -> Result<(), Problem> {
+    let bare = |group: &&Group| group.cell.iter().any(|part| part.material.is_none());
+    let some = (groups.iter().flat_map(|g| &g.cell)).any(|part| part.material.is_some());
+    match groups.iter().find(bare) {
+        Some(group) if some => {
+            let message = "these beads have no material, but others do";
+            Err(Problem::new(
+                &group.span,
+                message,
+                "expected `material = \"name\"`",
+            ))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn group(table: &View<'_>, materials: &Materials) -> Result<Group, Problem> {

@@ -1,12 +1,11 @@
 //! Sections of contacts and their laws.
 
-use super::Materials;
+use super::{Group, Materials};
 use crate::document::Node;
 use crate::finding::Problem;
 use crate::laws::{self, LawSpec};
-use crate::value::Units;
 use crate::view::View;
-use hertzchain_chain::laws::{Nature, Source, find};
+use hertzchain_chain::laws::{Nature, Parameter, Source, find};
 use std::ops::Range;
 
 /// Consecutive contacts that share laws.
@@ -44,24 +43,29 @@ impl SectionSpec {
 pub(crate) fn read(
     root: &View<'_>,
     materials: &Materials,
-    beads: usize,
+    groups: &[Group],
 ) -> Result<Vec<SectionSpec>, Problem> {
+    let beads = groups.iter().map(Group::count).sum();
     let tables = root.tables("contacts");
-    if tables.is_empty() {
-        return Ok(vec![unit_springs(root)]);
-    }
     let section = |table: &View<'_>| section(table, materials, beads);
     let mut sections: Vec<SectionSpec> = tables.iter().map(section).collect::<Result<_, _>>()?;
+    if sections.is_empty() {
+        sections.push(hertz(root));
+    }
+    let mut parts = groups.iter().flat_map(|group| &group.cell);
+    if parts.all(|part| part.material.is_none()) {
+        sections.iter_mut().for_each(unit_stiffness);
+    }
     sections.sort_by_key(|section| section.from);
     covered(&sections, beads)?;
     Ok(sections)
 }
 
-/// The default of a dimensionless chain: Hertz contacts with K = 1.
-fn unit_springs(root: &View<'_>) -> SectionSpec {
+/// The default of a dimensionless chain: Hertz contacts.
+fn hertz(root: &View<'_>) -> SectionSpec {
     let law = find("elastic_hertz").map(|row| LawSpec {
         row,
-        given: vec![("stiffness", 1.0)],
+        given: Vec::new(),
         span: root.span(),
     });
     SectionSpec {
@@ -85,19 +89,13 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
         return Err(Problem::new(&table.span_of("to"), message, label));
     }
     let members = table.node.get("laws").map_or(&[][..], Node::members).iter();
-    let mut laws: Vec<LawSpec> = members
-        .map(|member| laws::read(member, table.units))
-        .collect::<Result<_, _>>()?;
-    let material = materials.find(table)?;
-    if table.units == Units::Dimensionless && materials.0.is_empty() {
-        laws.iter_mut().for_each(unit_stiffness);
-    }
+    let laws = members.map(|member| laws::read(member, table.units));
     Ok(SectionSpec {
         from,
         to: to.filter(|&contact| contact != beads),
-        laws,
+        laws: laws.collect::<Result<_, _>>()?,
         wet: table.flag("wet"),
-        material,
+        material: materials.find(table)?,
         span: table.span(),
     })
 }
@@ -112,13 +110,17 @@ fn within(table: &View<'_>, key: &str, contact: usize, beads: usize) -> Result<(
 }
 
 /// Without materials a stiffness that they would set is 1.
-fn unit_stiffness(law: &mut LawSpec) {
-    let declares = |p: &hertzchain_chain::laws::Parameter| {
-        p.name == "stiffness" && p.source == Source::Materials
-    };
-    let given = law.given.iter().any(|(name, _)| *name == "stiffness");
-    if law.row.info.parameters.iter().any(declares) && !given {
-        law.given.push(("stiffness", 1.0));
+fn unit_stiffness(section: &mut SectionSpec) {
+    let declares = |p: &Parameter| p.name == "stiffness" && p.source == Source::Materials;
+    for law in section
+        .laws
+        .iter_mut()
+        .filter(|_| section.material.is_none())
+    {
+        let given = law.given.iter().any(|(name, _)| *name == "stiffness");
+        if law.row.info.parameters.iter().any(declares) && !given {
+            law.given.push(("stiffness", 1.0));
+        }
     }
 }
 

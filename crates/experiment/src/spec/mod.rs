@@ -71,7 +71,7 @@ impl Spec {
             push: ends::push(root)?,
             far: ends::far(root, &materials)?,
             far_span: root.span_of("far_end"),
-            sections: contacts::read(root, &materials, count)?,
+            sections: contacts::read(root, &materials, &groups)?,
             gaps: setting::gaps(root)?,
             initial: setting::initial(root)?,
             incline_rad: track_value("incline")?.unwrap_or(0.0),

@@ -1,0 +1,62 @@
+//! What the physics refuses, back at its place in the file.
+
+use crate::finding::Problem;
+use crate::spec::Spec;
+use hertzchain_chain::ChainError;
+use hertzchain_chain::laws::{LawError, Source};
+use std::ops::Range;
+
+/// The problem in the file behind a chain that can't be set up.
+pub(crate) fn problem(spec: &Spec, error: &ChainError) -> Problem {
+    match error {
+        ChainError::Law { contact, error } => law(spec, *contact, error),
+        ChainError::Equilibrium(why) => {
+            let message = format!("the chain has no rest position: {why}");
+            let label = "expected ends that hold what pushes and pulls";
+            Problem::new(&spec.far_span, message, label)
+        }
+        ChainError::Value {
+            what,
+            value,
+            expected,
+        } => {
+            let message = format!("{what} is {value}");
+            Problem::new(
+                &beads(spec),
+                message,
+                format!("expected it to be {expected}"),
+            )
+        }
+        ChainError::Layout(why) => {
+            Problem::new(&beads(spec), why, "expected parts that fit together")
+        }
+    }
+}
+
+fn beads(spec: &Spec) -> Range<usize> {
+    spec.groups.first().map_or(0..0, |group| group.span.clone())
+}
+
+fn law(spec: &Spec, contact: usize, error: &LawError) -> Problem {
+    let beads = spec.bead_count();
+    let section = spec
+        .sections
+        .iter()
+        .find(|section| (section.from..=section.last(beads)).contains(&contact));
+    let law = section.and_then(|s| s.laws.iter().find(|law| law.name() == error.law));
+    let span = law.map_or(0..0, |law| law.span.clone());
+    let message = format!("law `{}` can't be used on contact {contact}", error.law);
+    let problem = Problem::new(&span, message, &error.what);
+    let from_materials = law.map_or(Vec::new(), |law| {
+        let parameters = law.row.info.parameters.iter();
+        let left = parameters.filter(|p| p.source == Source::Materials);
+        left.map(|p| format!("`{}`", p.name)).collect()
+    });
+    match from_materials.is_empty() {
+        true => problem,
+        false => problem.help(format!(
+            "the materials must set {}, unless the law gives it",
+            from_materials.join(" and ")
+        )),
+    }
+}
