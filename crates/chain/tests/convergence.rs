@@ -1,4 +1,5 @@
 //! The order of every solver, on a smooth problem and on impact.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod common;
 use common::*;

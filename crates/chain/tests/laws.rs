@@ -1,4 +1,5 @@
 //! What every law of the registry must obey.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod common;
 use common::close;

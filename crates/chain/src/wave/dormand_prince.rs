@@ -42,7 +42,7 @@ pub(crate) fn dormand_prince() -> Table {
         22.0 / 525.0,
         -1.0 / 40.0,
     ];
-    Table::from_runge_kutta(&rows, Some(&error), continuous_extension(&end), 5)
+    Table::from_runge_kutta(&rows, Some(&error), continuous_extension(&end), 5.0)
 }
 
 /// b_j(θ) = θ²(3−2θ) b_j + θ²(1−θ)² d_j, plus the Hermite slopes of the

@@ -8,7 +8,7 @@ pub(crate) fn rk4() -> Table {
     let rows: [&[f64]; 5] = [&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0], &end];
     let weights = [end[0], end[1], end[2], end[3], 0.0];
     let dense = hermite(&weights, 1.0, &[0.0, 0.0, 0.0, 0.0, 1.0]);
-    let mut table = Table::from_runge_kutta(&rows, None, dense, 4);
+    let mut table = Table::from_runge_kutta(&rows, None, dense, 4.0);
     let mut moved = table.end().1.to_vec();
     moved.push(0.0);
     table.dense_position = hermite(&moved, 0.0, &weights);

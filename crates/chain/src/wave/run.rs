@@ -316,9 +316,9 @@ impl<'a> Wave<'a> {
             self.stages(h);
             let (error, body) = self.error(h);
             let error = error / tolerance;
-            if !(error <= 1.0) {
+            if error > 1.0 || error.is_nan() {
                 let shrink = if error.is_finite() {
-                    0.9 * error.powf(-0.2)
+                    0.9 * error.powf(-self.table.order.recip())
                 } else {
                     0.1
                 };
@@ -330,7 +330,7 @@ impl<'a> Wave<'a> {
             }
             match self.first_change(h) {
                 None => {
-                    let grown = h * (0.9 * error.powf(-0.2)).clamp(0.2, 5.0);
+                    let grown = h * (0.9 * error.powf(-self.table.order.recip())).clamp(0.2, 5.0);
                     // A step cut short by an event or the end says little
                     // about the step after it.
                     self.proposed_s = if h < self.proposed_s {

@@ -79,13 +79,12 @@ pub(super) fn error_norm(
         }
         for lane in 0..count {
             let error = dv[lane].abs().max(dx[lane].abs()) + 0.0 * (dv[lane] + dx[lane]);
-            // Written so that NaN is kept.
-            if !(error <= worst) {
+            if error.is_nan() {
+                return (error, first + lane);
+            }
+            if error > worst {
                 (worst, at) = (error, first + lane);
             }
-        }
-        if worst.is_nan() {
-            break;
         }
         first += count;
     }

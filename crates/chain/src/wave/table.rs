@@ -24,7 +24,7 @@ pub struct Table {
     /// The last stage is evaluated at the end of the step.
     pub(crate) last_is_end: bool,
     /// Nominal order.
-    pub(crate) order: i32,
+    pub(crate) order: f64,
 }
 
 impl Table {
@@ -40,7 +40,7 @@ impl Table {
         rows: &[&[f64]],
         error: Option<&[f64]>,
         dense: Vec<[f64; DEGREE]>,
-        order: i32,
+        order: f64,
     ) -> Self {
         let velocity: Vec<Vec<f64>> = rows.iter().map(|row| row.to_vec()).collect();
         let position = rows

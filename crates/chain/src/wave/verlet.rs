@@ -13,6 +13,6 @@ pub(crate) fn verlet() -> Table {
         dense_velocity: hermite(&[0.5, 0.5], 1.0, &[0.0, 1.0]),
         dense_position: hermite(&[0.5, 0.0], 0.0, &[0.5, 0.5]),
         last_is_end: false,
-        order: 2,
+        order: 2.0,
     }
 }

@@ -1,5 +1,6 @@
 //! The paper's chain, for tests.
 #![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Passage, Passages};
