@@ -47,8 +47,8 @@ pub struct Point {
     pub wall_peak_n: f64,
     /// Peak at the sensor bead, returning, in N.
     pub returning_peak_n: f64,
-    /// Second largest returning maximum before an echo from the near end can
-    /// be back, in N; 0 when there is none.
+    /// Largest returning maximum beside the first, before an echo from the near
+    /// end can be back, in N; 0 when there is none.
     pub second_returning_peak_n: f64,
     /// Full widths at half maximum of the incoming, wall and returning pulse in s.
     pub widths_s: [f64; 3],
@@ -57,8 +57,9 @@ pub struct Point {
     pub striker_separation_m_s: f64,
     /// Velocity of the striker at the end of the shot in m/s.
     pub striker_rebound_m_s: f64,
-    /// Sum of the gaps between beads when the returning pulse has passed, in m.
-    pub gaps_m: f64,
+    /// By how much beads 1 and N stand farther apart than at rest when the
+    /// returning pulse has passed, in m: all gaps less all overlaps.
+    pub loosened_m: f64,
     /// Relative accuracy reached of both ToFs.
     pub accuracy_reached: f64,
 }

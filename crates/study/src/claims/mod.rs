@@ -17,4 +17,4 @@ pub use evidence::{
 };
 pub use finding::{Finding, Tally, Verdict};
 pub use report::{claims_json, claims_markdown, value_text};
-pub use rounded::{Judged, Rounded, judge_all};
+pub use rounded::{Judged, Rounded, judge_all, judge_all_rounded};

@@ -91,7 +91,7 @@ fn section(page: &mut String, judged: &Judged) {
     let _ = writeln!(page, "\n### `{}`: {}\n", claim.id, judged.verdict);
     let _ = writeln!(page, "{} ({})\n", claim.statement, claim.paper);
     let value = value_text(finding.value, finding.accuracy);
-    let _ = writeln!(page, "- Value: {value}, the {}.", claim.value);
+    let _ = writeln!(page, "- Value: {value} ({}).", claim.value);
     let threshold = digits(claim.threshold);
     let _ = writeln!(page, "- Threshold: {threshold}. {}", claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
@@ -139,12 +139,18 @@ fn significant(value: f64, count: usize) -> String {
         return format!("{value}");
     }
     if !(-4.0..6.0).contains(&magnitude) {
-        return format!("{value:.*e}", count.saturating_sub(1));
+        let text = format!("{value:.*e}", count.saturating_sub(1));
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", trimmed(mantissa));
     }
     let decimals = (count as f64 - 1.0 - magnitude).max(0.0) as usize;
-    let text = format!("{value:.decimals$}");
+    trimmed(&format!("{value:.decimals$}")).to_owned()
+}
+
+/// Without zeros at the end of decimals.
+fn trimmed(text: &str) -> &str {
     match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        true => text.trim_end_matches('0').trim_end_matches('.'),
         false => text,
     }
 }

@@ -50,18 +50,32 @@ pub struct Judged {
     pub rounded: Option<Rounded>,
 }
 
-/// Decides all claims: on the printed constants, and on draws within their
-/// rounding. A verdict that a draw changes is not decidable.
+/// Decides all claims on the constants as printed.
 #[must_use]
-pub fn judge_all(judges: &[Judge], printed: &Evidence, draws: &[Evidence]) -> Vec<Judged> {
-    judges.iter().map(|judge| decide(judge, printed, draws)).collect()
+pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
+    judge_all_rounded(judges, printed, printed, &[])
 }
 
-fn decide(judge: &Judge, printed: &Evidence, draws: &[Evidence]) -> Judged {
+/// Decides all claims on the constants as printed, and looks what draws within
+/// their rounding do. `reference` has the printed constants and is as fine as
+/// the draws are: a verdict from which a draw differs there is not decidable.
+#[must_use]
+pub fn judge_all_rounded(
+    judges: &[Judge],
+    printed: &Evidence,
+    reference: &Evidence,
+    draws: &[Evidence],
+) -> Vec<Judged> {
+    let all = judges.iter().map(|judge| decide(judge, printed, reference, draws));
+    all.collect()
+}
+
+fn decide(judge: &Judge, printed: &Evidence, reference: &Evidence, draws: &[Evidence]) -> Judged {
     let finding = judge.decide(printed);
     let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
     let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
-    let flips = rounded.as_ref().is_some_and(|r| r.flips(finding.verdict));
+    let unrounded = judge.decide(reference).verdict;
+    let flips = rounded.as_ref().is_some_and(|r| r.flips(unrounded));
     Judged {
         claim: judge.claim.clone(),
         verdict: if flips { Verdict::NotDecidable } else { finding.verdict },

@@ -26,6 +26,9 @@ pub enum ReproduceError {
     /// One of the paper's chains is missing from the program.
     #[error(transparent)]
     Preset(UnknownPreset),
+    /// A case that does not exist.
+    #[error("there is no case `{0}`")]
+    NoCase(String),
     /// The claims can't be read.
     #[error(transparent)]
     Claims(#[from] ClaimError),

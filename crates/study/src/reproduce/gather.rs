@@ -1,10 +1,11 @@
 //! From shots to the numbers that claims are judged on.
 
 use super::ReproduceError;
+use super::memory::Memory;
 use crate::claims::{Curve, Evidence, Oil, Point};
 use crate::{Plan, Shot, shoot, shoot_checked};
-use hertzchain_chain::observe::{Maximum, Passage};
-use hertzchain_chain::{Chain, Sensor, System};
+use hertzchain_chain::observe::Passage;
+use hertzchain_chain::{Chain, Sensor};
 use hertzchain_experiment::{Experiment, Reading, preset};
 use rayon::prelude::*;
 
@@ -86,13 +87,33 @@ pub fn gather(
     change: Change<'_>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Evidence, ReproduceError> {
+    gathered(how, change, None, done)
+}
+
+/// The same without changes, looking into a memory before shooting.
+///
+/// # Errors
+/// As [`gather`].
+pub fn gather_remembering(
+    how: &Gathering<'_>,
+    memory: &Memory,
+) -> Result<Evidence, ReproduceError> {
+    gathered(how, &|_, _, _| {}, Some(memory), &|| {})
+}
+
+fn gathered(
+    how: &Gathering<'_>,
+    change: Change<'_>,
+    memory: Option<&Memory>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Evidence, ReproduceError> {
     let cases = Cases::new(&how.reading)?;
     let jobs: Vec<(usize, f64)> = (0..cases.0.len())
         .flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)))
         .collect();
     let shoot = |&(case, speed): &(usize, f64)| {
         let (name, experiment) = &cases.0[case];
-        let point = point(name, experiment, speed, how, change);
+        let point = point((name, experiment), speed, how, change, memory);
         done();
         point
     };
@@ -121,23 +142,30 @@ fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, Repr
     Ok(material.map_or(f64::NAN, |m| m.shear_viscosity_pa_s / m.young_modulus_pa))
 }
 
-/// Positions are looked at this often to see the gaps at the end, in s.
-const GLANCE_S: f64 = 5e-5;
+/// The sensor bead is sampled this often to see small returning maxima, in s:
+/// ten samples in the narrowest pulse of the paper's speeds.
+const SAMPLED_S: f64 = 5e-6;
 
 fn point(
-    case: &str,
-    experiment: &Experiment,
+    (case, experiment): (&str, &Experiment),
     speed_m_s: f64,
     how: &Gathering<'_>,
     change: Change<'_>,
+    memory: Option<&Memory>,
 ) -> Result<Point, ReproduceError> {
     let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
-    let beads = plan.chain.beads.len();
-    let positions = (1..=beads).map(Sensor::Position).collect();
-    let plan = plan.watching(positions, Some(GLANCE_S));
-    let shot = if how.checked { shoot_checked(&plan) } else { shoot(&plan) };
-    let shot = shot.map_err(|error| failed(case, speed_m_s, error))?;
-    Ok(read_off(&plan, speed_m_s, &shot))
+    let (n, beads) = (plan.sensor_bead, plan.chain.beads.len());
+    let sensors = vec![Sensor::Bead(n), Sensor::Position(1), Sensor::Position(beads)];
+    let plan = plan.watching(sensors, Some(SAMPLED_S));
+    let compute = || {
+        let shot = if how.checked { shoot_checked(&plan) } else { shoot(&plan) };
+        let shot = shot.map_err(|error| failed(case, speed_m_s, error))?;
+        Ok(read_off(&plan, speed_m_s, &shot))
+    };
+    match memory {
+        Some(memory) => memory.point(&plan, compute),
+        None => compute(),
+    }
 }
 
 /// The plan of a shot of a case.
@@ -176,7 +204,7 @@ fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
         sensor_peak_n: or_nan(passage.map(|p| p.incident.value)),
         wall_peak_n: or_nan(passage.map(|p| p.wall.value)),
         returning_peak_n: or_nan(reflected.map(|peak| peak.value)),
-        second_returning_peak_n: or_nan(passage.and_then(|p| second_return(plan, p))),
+        second_returning_peak_n: or_nan(passage.and_then(|p| second_return(plan, shot, p))),
         widths_s: [
             or_nan(passage.and_then(|p| p.incident_width_s)),
             or_nan(passage.and_then(|p| p.wall_width_s)),
@@ -184,35 +212,44 @@ fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
         ],
         striker_separation_m_s: or_nan(rebound.and_then(|r| r.first).map(|(_, v)| v)),
         striker_rebound_m_s: or_nan(rebound.map(|r| r.end_m_s)),
-        gaps_m: gaps(plan, shot),
+        loosened_m: loosened(shot),
         accuracy_reached: shot.accuracy_reached.unwrap_or(shot.accuracy_asked),
     }
 }
 
-/// Second largest returning maximum. What comes later than twice the way from
-/// the sensor bead to the near end takes may be an echo from there.
-fn second_return(plan: &Plan, passage: &Passage) -> Option<f64> {
-    let first = passage.reflected?;
+/// Largest returning maximum beside the first. What comes later than twice the
+/// way from the sensor bead to the near end takes may be an echo from there.
+fn second_return(plan: &Plan, shot: &Shot, passage: &Passage) -> Option<f64> {
+    let (first, width) = (passage.reflected?, passage.reflected_width_s?);
     let back = passage.tof_reflected_s()?;
     let (n, beads) = (plan.sensor_bead as f64, plan.chain.beads.len() as f64);
     let until = first.time_s + 2.0 * n / (beads - n) * back;
-    let other = |peak: &&Maximum| {
-        peak.time_s > passage.wall.time_s && peak.time_s < until && **peak != first
-    };
-    let others = passage.sensor_maxima.iter().filter(other);
-    Some(others.map(|peak| peak.value).fold(0.0, f64::max))
+    let trace = shot.trace.as_ref()?;
+    let samples = trace.columns.first()?;
+    let tops = samples.windows(3).zip(trace.time_s.iter().skip(1)).filter_map(|(w, time)| {
+        let [left, middle, right] = [w.first()?, w.get(1)?, w.get(2)?];
+        let other = *time > passage.wall.time_s
+            && *time < until
+            && (time - first.time_s).abs() > 0.25 * width;
+        (other && middle > left && middle >= right).then_some(top(*left, *middle, *right))
+    });
+    Some(tops.fold(0.0, f64::max))
 }
 
-/// Sum of the gaps between beads where the shot was last looked at, in m.
-fn gaps(plan: &Plan, shot: &Shot) -> f64 {
-    let (Some(trace), Ok(system)) = (&shot.trace, System::new(&plan.chain)) else {
-        return f64::NAN;
-    };
-    let last: Vec<f64> = trace.columns.iter().filter_map(|c| c.last().copied()).collect();
-    let gap = |(i, pair): (usize, &[f64])| match pair {
-        // Contact i + 1 joins beads i + 1 and i + 2.
-        [left, right] => (right - left - system.static_contact(i + 1).overlap_m).max(0.0),
-        _ => 0.0,
-    };
-    last.windows(2).enumerate().map(gap).sum()
+/// Top of the parabola through three samples.
+fn top(left: f64, middle: f64, right: f64) -> f64 {
+    let bend = left - 2.0 * middle + right;
+    match bend < 0.0 {
+        true => middle - (right - left).powi(2) / (8.0 * bend),
+        false => middle,
+    }
+}
+
+/// By how much beads 1 and N stood farther apart at the end than at rest, in m.
+fn loosened(shot: &Shot) -> f64 {
+    let column = |i: usize| shot.trace.as_ref()?.columns.get(i)?.last().copied();
+    match (column(1), column(2)) {
+        (Some(first), Some(last)) => last - first,
+        _ => f64::NAN,
+    }
 }

@@ -1,54 +1,57 @@
 //! Predicates on power laws.
 
 use super::{Worst, branches, curves, missing};
-use crate::claims::{Claim, Curve, Evidence, Finding, Tally, Verdict};
+use crate::claims::{Branch, Claim, Curve, Evidence, Finding, Tally, Verdict};
 
 /// R² of the straight line in log–log is at least the threshold, for every
 /// case and branch.
 pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
-    each_fit(claim, evidence, |curve, branch| {
+    each_fit(claim, evidence, &|curve, branch| {
         let fit = curve.power_law(branch).ok()?;
-        Some((fit.r_squared, fit.r_squared - claim.threshold))
+        let left = 1.0 - fit.r_squared;
+        let sum: f64 = fit.residuals.iter().map(|r| r * r).sum();
+        // 1 − R² is the residuals' sum of squares over that of ln T; to first
+        // order an error of every ToF moves it by twice its share of a residual.
+        let of_residual = accuracy(curve) * (fit.residuals.len() as f64 / sum).sqrt();
+        Some((fit.r_squared, fit.r_squared - claim.threshold, 2.0 * left * of_residual))
     })
 }
 
 /// The largest residual of the weighted fit, in standard errors of the
 /// paper's points, is at most the threshold, for every case and branch.
 pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> Finding {
-    each_fit(claim, evidence, |curve, branch| {
+    each_fit(claim, evidence, &|curve, branch| {
         let fit = curve.weighted_power_law(branch).ok()?;
         let errors = curve.standard_errors_s(branch);
         let tofs = curve.tofs_s(branch);
-        let scaled = fit.residuals.iter().zip(&errors).zip(&tofs);
-        let largest = scaled.map(|((r, error), tof)| (r.exp_m1() * tof / error).abs());
-        let value = largest.fold(0.0, f64::max);
-        Some((value, claim.threshold - value))
+        let relative: Vec<f64> = errors.iter().zip(&tofs).map(|(error, tof)| error / tof).collect();
+        let scaled = fit.residuals.iter().zip(&relative);
+        let value = scaled.map(|(r, error)| (r.exp_m1() / error).abs()).fold(0.0, f64::max);
+        let finest = relative.iter().copied().fold(f64::INFINITY, f64::min);
+        Some((value, claim.threshold - value, 2.0 * accuracy(curve) / finest))
     })
 }
 
-/// What a fit is judged by: the value and its margin.
-type Measure<'a> = &'a dyn Fn(&Curve, crate::claims::Branch) -> Option<(f64, f64)>;
+/// Relative accuracy of a curve's ToFs.
+fn accuracy(curve: &Curve) -> f64 {
+    curve.points.iter().map(|p| p.accuracy_reached).fold(0.0, f64::max)
+}
 
-fn each_fit(
-    claim: &Claim,
-    evidence: &Evidence,
-    measure: impl Fn(&Curve, crate::claims::Branch) -> Option<(f64, f64)>,
-) -> Finding {
-    let measure: Measure<'_> = &measure;
+/// What a fit is judged by: the value, its margin and their accuracy.
+type Measure<'a> = &'a dyn Fn(&Curve, Branch) -> Option<(f64, f64, f64)>;
+
+fn each_fit(claim: &Claim, evidence: &Evidence, measure: Measure<'_>) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for curve in curves {
         for branch in branches(claim) {
-            let Some((value, margin)) = measure(curve, branch) else {
+            let Some((value, margin, accuracy)) = measure(curve, branch) else {
                 return Finding::without_numbers("no power law can be fitted");
             };
-            // The numbers of a fit are as accurate as the ToFs, of which they
-            // are sums; one part in a thousand covers the worst amplification.
-            let accuracy = 1e-3 * margin.abs();
             tally.margin(margin, accuracy);
-            worst.see(margin, value, value * 1e-3, || {
+            worst.see(margin, value, accuracy, || {
                 format!("{} ToF of {}", branch.name(), curve.case)
             });
         }

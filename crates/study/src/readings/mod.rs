@@ -1,0 +1,12 @@
+//! What becomes of the claims when the paper is read otherwise, or its
+//! constants are rounded otherwise.
+
+mod draws;
+mod report;
+mod rounding;
+mod scan;
+
+pub use draws::rounded_evidence;
+pub use report::{scan_csv, scan_markdown};
+pub use rounding::{Draw, Prefactors};
+pub use scan::{Price, Row, Scan, scan};

@@ -1,0 +1,129 @@
+//! A scan over readings as a table and a page.
+
+use super::scan::{Row, Scan};
+use crate::claims::Verdict;
+use hertzchain_experiment::Reading;
+use std::collections::HashSet;
+use std::fmt::Write as _;
+
+/// One row a reading: its switches, its score, the verdict of each claim.
+#[must_use]
+pub fn scan_csv(scan: &Scan) -> String {
+    let switches = Reading::switches().iter().map(|switch| switch.name);
+    let claims = scan.claims.iter().map(|claim| claim.id.as_str());
+    let header: Vec<&str> = switches.chain(["score"]).chain(claims).collect();
+    let mut csv = header.join(",") + "\n";
+    let mut seen = HashSet::new();
+    for row in scan.rows().filter(|row| seen.insert(row.reading)) {
+        let options = Reading::switches().iter();
+        let options = options.map(|s| row.reading.get(s.name).unwrap_or_default().to_owned());
+        let verdicts = row.verdicts.iter().map(|verdict| verdict.name().to_owned());
+        let fields: Vec<String> = options.chain([row.score().to_string()]).chain(verdicts).collect();
+        let _ = writeln!(csv, "{}", fields.join(","));
+    }
+    csv
+}
+
+/// What the scan shows, for people.
+#[must_use]
+pub fn scan_markdown(scan: &Scan) -> String {
+    let mut page = String::from("# Which claims hold in which reading\n\n");
+    page.push_str(
+        "The paper leaves open what these switches decide. The score counts a claim that holds as \
+         1 and one that holds in part as 1/2; rounding of the printed constants is left aside here.\n\n",
+    );
+    page.push_str("## One switch at a time\n\n| reading | score | gained | lost |\n|---|---|---|---|\n");
+    let _ = writeln!(page, "| default | {} | | |", scan.default.score());
+    for row in &scan.single {
+        table_row(&mut page, scan, row);
+    }
+    product(&mut page, scan);
+    closest(&mut page, scan);
+    prices(&mut page, scan);
+    page
+}
+
+fn table_row(page: &mut String, scan: &Scan, row: &Row) {
+    let (gained, lost) = row.against(&scan.default);
+    let (gained, lost) = (names(scan, &gained), names(scan, &lost));
+    let _ = writeln!(page, "| {} | {} | {gained} | {lost} |", row.reading, row.score());
+}
+
+/// Names of claims, by index.
+fn names(scan: &Scan, claims: &[usize]) -> String {
+    let names = claims.iter().filter_map(|i| scan.claims.get(*i)).map(|claim| claim.id.as_str());
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn product(page: &mut String, scan: &Scan) {
+    page.push_str("\n## Full product\n\n");
+    let factors = scan.product_of.iter().map(|(name, options)| format!("{name} ({})", options.len()));
+    let factors: Vec<String> = factors.collect();
+    let _ = writeln!(
+        page,
+        "{} readings, of the switches that move a verdict, with their options: {}.",
+        scan.product.len(),
+        factors.join(", ")
+    );
+    if !scan.left_out.is_empty() {
+        let _ = writeln!(
+            page,
+            "No room in the product, by the limit on its size: {}. They were tried one at a time from \
+             the default reading and again from the best of the product.",
+            scan.left_out.join(", ")
+        );
+    }
+    page.push_str("\nThe ten best:\n\n| reading | score | gained | lost |\n|---|---|---|---|\n");
+    let mut rows: Vec<&Row> = scan.product.iter().collect();
+    rows.sort_by(|a, b| {
+        let changes = |row: &Row| row.reading.changes().len();
+        b.score().total_cmp(&a.score()).then(changes(a).cmp(&changes(b)))
+    });
+    for row in rows.into_iter().take(10) {
+        table_row(page, scan, row);
+    }
+}
+
+fn closest(page: &mut String, scan: &Scan) {
+    let row = scan.closest();
+    let (gained, lost) = row.against(&scan.default);
+    page.push_str("\n## Closest to the paper\n\n");
+    let _ = writeln!(
+        page,
+        "{}: score {} against {} of the default reading, of {} claims.\n",
+        row.reading,
+        row.score(),
+        scan.default.score(),
+        scan.claims.len()
+    );
+    let or_none = |list: String| if list.is_empty() { "nothing".to_owned() } else { list };
+    let _ = writeln!(page, "- Gained: {}.", or_none(names(scan, &gained)));
+    let _ = writeln!(page, "- Lost: {}.", or_none(names(scan, &lost)));
+    let unmet = row.verdicts.iter().enumerate();
+    let unmet: Vec<usize> = unmet.filter(|(_, v)| **v == Verdict::Fails).map(|(i, _)| i).collect();
+    let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
+}
+
+fn prices(page: &mut String, scan: &Scan) {
+    page.push_str("\n## What the open claims cost\n\n");
+    page.push_str(
+        "For each claim that does not fully hold in the default reading: the reading that meets it \
+         best, of these the one with the highest score, and what is lost there.\n\n\
+         | claim | default | best | reading | score | lost |\n|---|---|---|---|---|---|\n",
+    );
+    for price in scan.prices() {
+        let name = names(scan, &[price.claim]);
+        let verdict = |row: &Row| row.verdicts.get(price.claim).map_or("", |v| v.name());
+        let default = verdict(&scan.default);
+        match &price.row {
+            None => {
+                let _ = writeln!(page, "| {name} | {default} | {default} | no reading tried | | |");
+            }
+            Some(row) => {
+                let lost = names(scan, &row.against(&scan.default).1);
+                let (best, score) = (verdict(row), row.score());
+                let _ = writeln!(page, "| {name} | {default} | {best} | {} | {score} | {lost} |", row.reading);
+            }
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Which claims hold in which reading.
+
+use crate::claims::{Claim, Judge, Verdict, claims};
+use crate::reproduce::{
+    Gathering, Memory, Progress, ReproduceError, SCAN_SPEEDS_M_S, gather_remembering,
+};
+use hertzchain_experiment::Reading;
+
+/// The claims' verdicts in one reading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The reading.
+    pub reading: Reading,
+    /// One verdict a claim.
+    pub verdicts: Vec<Verdict>,
+    /// The deciding numbers, not a number where there is none.
+    pub values: Vec<f64>,
+}
+
+impl Row {
+    /// Claims met, those in part for a half.
+    #[must_use]
+    pub fn score(&self) -> f64 {
+        self.verdicts.iter().map(|verdict| verdict.score()).sum()
+    }
+
+    /// Claims met better, and worse, than in another reading, by index.
+    #[must_use]
+    pub fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
+        let scores = self.verdicts.iter().zip(&other.verdicts).enumerate();
+        let changes: Vec<(usize, f64)> =
+            scores.map(|(i, (a, b))| (i, a.score() - b.score())).collect();
+        let of = |better: bool| {
+            let wanted = changes.iter().filter(|(_, change)| match better {
+                true => *change > 0.0,
+                false => *change < 0.0,
+            });
+            wanted.map(|(i, _)| *i).collect()
+        };
+        (of(true), of(false))
+    }
+}
+
+/// What a claim that the default reading does not meet costs elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Price {
+    /// The claim, by index.
+    pub claim: usize,
+    /// The best reading in which it is met better than in the default one;
+    /// `None` when no reading that was tried does.
+    pub row: Option<Row>,
+}
+
+/// The claims in many readings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scan {
+    /// The claims.
+    pub claims: Vec<Claim>,
+    /// The default reading.
+    pub default: Row,
+    /// One switch changed at a time.
+    pub single: Vec<Row>,
+    /// Switches of the full product with their options, the default first.
+    pub product_of: Vec<(&'static str, Vec<&'static str>)>,
+    /// Switches that move a verdict but would have made the product larger
+    /// than asked; the search for the closest reading still tries them.
+    pub left_out: Vec<&'static str>,
+    /// The product.
+    pub product: Vec<Row>,
+    /// Readings tried on the way from the best of the product to the closest.
+    pub search: Vec<Row>,
+}
+
+/// Tries readings: one switch at a time, then the full product of those that
+/// move a verdict as far as `most` readings go, then from the best of these
+/// one switch at a time for as long as that improves it.
+///
+/// # Errors
+/// The first shot that can't be computed.
+pub fn scan(
+    most: usize,
+    accuracy: f64,
+    progress: &dyn Progress,
+) -> Result<Scan, ReproduceError> {
+    let scanner = Scanner {
+        judges: claims()?,
+        memory: Memory::default(),
+        accuracy,
+        progress,
+    };
+    let default = scanner.row(&Reading::default())?;
+    let readings = singles(&Reading::default());
+    progress.begin("readings, one switch at a time", readings.len() as u64);
+    let single = scanner.rows(&readings)?;
+    let (product_of, left_out) = factors(&default, &single, most);
+    let readings = product(&product_of);
+    progress.begin("readings, full product", readings.len() as u64);
+    let product = scanner.rows(&readings)?;
+    let start = best(single.iter().chain(&product).chain([&default])).clone();
+    let search = scanner.climb(start)?;
+    Ok(Scan {
+        claims: scanner.judges.into_iter().map(|judge| judge.claim).collect(),
+        default,
+        single,
+        product_of,
+        left_out,
+        product,
+        search,
+    })
+}
+
+impl Scan {
+    /// Every reading that was tried, the default first.
+    pub fn rows(&self) -> impl Iterator<Item = &Row> {
+        let rest = self.single.iter().chain(&self.product).chain(&self.search);
+        std::iter::once(&self.default).chain(rest)
+    }
+
+    /// The reading that meets most claims; of equals, the one with fewest
+    /// changes.
+    #[must_use]
+    pub fn closest(&self) -> &Row {
+        best(self.rows())
+    }
+
+    /// For each claim that the default reading does not fully meet, the best
+    /// reading that meets it better.
+    #[must_use]
+    pub fn prices(&self) -> Vec<Price> {
+        let open = self.default.verdicts.iter().enumerate();
+        let open = open.filter(|(_, verdict)| **verdict != Verdict::Holds);
+        open.map(|(claim, verdict)| self.price(claim, *verdict)).collect()
+    }
+
+    fn price(&self, claim: usize, verdict: Verdict) -> Price {
+        let score = |row: &&Row| row.verdicts.get(claim).map_or(0.0, |v| v.score());
+        let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
+        let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
+        let row = better.reduce(|a, b| if closer(b, a) { b } else { a });
+        Price {
+            claim,
+            row: row.cloned(),
+        }
+    }
+}
+
+/// Whether one reading meets more than another, or as much with fewer changes.
+fn closer(one: &Row, other: &Row) -> bool {
+    let rank = |row: &Row| (row.score(), usize::MAX - row.reading.changes().len());
+    rank(one) > rank(other)
+}
+
+fn best<'a>(rows: impl IntoIterator<Item = &'a Row>) -> &'a Row {
+    let best = rows.into_iter().reduce(|a, b| if closer(b, a) { b } else { a });
+    best.expect("the default reading is always among the rows")
+}
+
+/// Every reading that differs from one in a single switch.
+fn singles(from: &Reading) -> Vec<Reading> {
+    let options = Reading::switches().iter();
+    let options = options.flat_map(|switch| switch.options.iter().map(|o| (switch.name, *o)));
+    let changed = options.filter(|(name, option)| from.get(name) != Some(option));
+    changed.filter_map(|(name, option)| from.with(name, option).ok()).collect()
+}
+
+/// A switch with the options that move a verdict, the default first.
+type Factor = (&'static str, Vec<&'static str>);
+
+/// Switches of the product, those that move most verdicts first, until the
+/// product would be too large; and those for which there was no room.
+fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<&'static str>) {
+    let mut moving: Vec<(usize, Factor)> = Vec::new();
+    for switch in Reading::switches() {
+        let mut options: Vec<&'static str> = switch.options.first().copied().into_iter().collect();
+        let mut moved = 0;
+        for row in single {
+            let changes = row.reading.changes();
+            let own = changes.iter().find(|(name, _)| *name == switch.name);
+            let verdicts = row.verdicts.iter().zip(&default.verdicts);
+            let count = verdicts.filter(|(a, b)| a != b).count();
+            if let (Some((_, option)), true) = (own, count > 0) {
+                options.push(option);
+                moved = moved.max(count);
+            }
+        }
+        if moved > 0 {
+            moving.push((moved, (switch.name, options)));
+        }
+    }
+    moving.sort_by_key(|(moved, _)| std::cmp::Reverse(*moved));
+    let (mut chosen, mut left_out, mut size) = (Vec::new(), Vec::new(), 1);
+    for (_, factor) in moving {
+        if size * factor.1.len() <= most {
+            size *= factor.1.len();
+            chosen.push(factor);
+        } else {
+            left_out.push(factor.0);
+        }
+    }
+    (chosen, left_out)
+}
+
+/// All combinations of the options.
+fn product(factors: &[Factor]) -> Vec<Reading> {
+    let start = vec![Reading::default()];
+    factors.iter().fold(start, |readings, (switch, options)| {
+        let with = |reading: &Reading| {
+            let each = options.iter().filter_map(|option| reading.with(switch, option).ok());
+            each.collect::<Vec<_>>()
+        };
+        readings.iter().flat_map(with).collect()
+    })
+}
+
+struct Scanner<'a> {
+    judges: Vec<Judge>,
+    memory: Memory,
+    accuracy: f64,
+    progress: &'a dyn Progress,
+}
+
+impl Scanner<'_> {
+    fn row(&self, reading: &Reading) -> Result<Row, ReproduceError> {
+        let how = Gathering {
+            reading: *reading,
+            speeds_m_s: &SCAN_SPEEDS_M_S,
+            accuracy: self.accuracy,
+            checked: false,
+        };
+        let evidence = gather_remembering(&how, &self.memory)?;
+        let findings = self.judges.iter().map(|judge| judge.decide(&evidence));
+        let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();
+        Ok(Row {
+            reading: *reading,
+            verdicts,
+            values,
+        })
+    }
+
+    fn rows(&self, readings: &[Reading]) -> Result<Vec<Row>, ReproduceError> {
+        let row = |reading: &Reading| {
+            let row = self.row(reading);
+            self.progress.advance();
+            row
+        };
+        readings.iter().map(row).collect()
+    }
+
+    /// From a reading, one switch at a time, for as long as that improves it.
+    fn climb(&self, mut at: Row) -> Result<Vec<Row>, ReproduceError> {
+        let mut tried = Vec::new();
+        loop {
+            let readings = singles(&at.reading);
+            self.progress.begin("readings, towards the paper", readings.len() as u64);
+            let rows = self.rows(&readings)?;
+            let next = best(rows.iter().chain([&at])).clone();
+            tried.extend(rows);
+            if next.score() <= at.score() {
+                return Ok(tried);
+            }
+            at = next;
+        }
+    }
+}

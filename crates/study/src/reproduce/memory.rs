@@ -1,0 +1,47 @@
+//! Shots that were computed before.
+
+use crate::Plan;
+use crate::claims::Point;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Mutex, PoisonError};
+
+/// Remembers shots by everything that decides them: many readings leave many
+/// of the paper's chains as they are.
+#[derive(Debug, Default)]
+pub struct Memory(Mutex<HashMap<[u64; 2], Point>>);
+
+impl Memory {
+    /// The remembered point of a plan, or a new one.
+    pub(super) fn point<E>(
+        &self,
+        plan: &Plan,
+        compute: impl FnOnce() -> Result<Point, E>,
+    ) -> Result<Point, E> {
+        let key = key(plan);
+        let known = self.lock().get(&key).cloned();
+        if let Some(point) = known {
+            return Ok(point);
+        }
+        let point = compute()?;
+        self.lock().insert(key, point.clone());
+        Ok(point)
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<[u64; 2], Point>> {
+        // A panic elsewhere leaves whole points behind.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Two independent hashes of a plan as written out, numbers to the last bit:
+/// among the thousands of plans of a scan no two share both.
+fn key(plan: &Plan) -> [u64; 2] {
+    let text = format!("{plan:?}");
+    [0_u8, 1].map(|salt| {
+        let mut hasher = DefaultHasher::new();
+        salt.hash(&mut hasher);
+        text.hash(&mut hasher);
+        hasher.finish()
+    })
+}

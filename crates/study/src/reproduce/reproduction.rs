@@ -1,0 +1,195 @@
+//! The whole of a reproduction, from shots to verdicts.
+
+use super::films::{Film, SignalShot, films, signals};
+use super::gather::{CASES, Cases, Gathering, gather};
+use super::provenance::{commit, machine};
+use super::{
+    Progress, Provenance, ReproduceError, SCAN_SPEEDS_M_S, SPEEDS_M_S, oils_csv,
+    power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv, write_atomically,
+};
+use crate::claims::{Evidence, Judged, claims, claims_json, claims_markdown, judge_all_rounded};
+use crate::readings::{Scan, rounded_evidence, scan, scan_csv, scan_markdown};
+use crate::{Plan, shoot};
+use hertzchain_experiment::Reading;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What to compute, and how well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Relative accuracy asked of the ToFs in the tables.
+    pub accuracy: f64,
+    /// Seed of the draws within rounding.
+    pub seed: u64,
+    /// Draws of the printed constants within their rounding.
+    pub draws: usize,
+    /// Most readings that are tried; 0 leaves the scan out.
+    pub readings: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            accuracy: 1e-8,
+            seed: 1,
+            draws: 64,
+            readings: 0,
+        }
+    }
+}
+
+impl Options {
+    /// With the scan over readings, and draws enough to see rare flips.
+    #[must_use]
+    pub fn with_readings(self) -> Self {
+        Self {
+            draws: 256,
+            readings: 512,
+            ..self
+        }
+    }
+}
+
+/// Accuracy of shots that only decide claims under rounding and readings.
+const SCAN_ACCURACY: f64 = 1e-5;
+
+/// Everything that was computed.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    /// What the paper leaves open, as read here.
+    pub reading: Reading,
+    /// The paper's chains.
+    pub cases: Cases,
+    /// Times of flight, peaks and the rest.
+    pub evidence: Evidence,
+    /// The claims with their verdicts.
+    pub judged: Vec<Judged>,
+    /// The signals of Fig. 2.
+    pub signals: Vec<SignalShot>,
+    /// One dry and one wet shot bead by bead.
+    pub films: Vec<Film>,
+    /// Which claims hold in which reading, if that was asked for.
+    pub scan: Option<Scan>,
+    /// Where the numbers come from.
+    pub provenance: Provenance,
+}
+
+/// Computes everything in the paper, for the default reading.
+///
+/// # Errors
+/// The first shot that can't be computed.
+pub fn reproduce(
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Reproduction, ReproduceError> {
+    let start = Instant::now();
+    let reading = Reading::default();
+    let cases = Cases::new(&reading)?;
+    let done = || progress.advance();
+    progress.begin("times of flight", ((CASES.len() + 1) * SPEEDS_M_S.len()) as u64);
+    let how = Gathering {
+        reading,
+        speeds_m_s: &SPEEDS_M_S,
+        accuracy: options.accuracy,
+        checked: true,
+    };
+    let evidence = gather(&how, &|_, _, _| {}, &done)?;
+    progress.begin("signals and films", 2);
+    let signals = signals(&cases, options.accuracy)?;
+    progress.advance();
+    let films = films(&cases)?;
+    progress.advance();
+    let judged = judged(options, &evidence, progress)?;
+    let scan = match options.readings {
+        0 => None,
+        most => Some(scan(most, SCAN_ACCURACY, progress)?),
+    };
+    Ok(Reproduction {
+        provenance: provenance(options, &cases, &evidence, start)?,
+        reading,
+        cases,
+        evidence,
+        judged,
+        signals,
+        films,
+        scan,
+    })
+}
+
+/// The claims, decided on the tables and under rounding.
+fn judged(
+    options: &Options,
+    evidence: &Evidence,
+    progress: &dyn Progress,
+) -> Result<Vec<Judged>, ReproduceError> {
+    let how = Gathering {
+        reading: Reading::default(),
+        speeds_m_s: &SCAN_SPEEDS_M_S,
+        accuracy: SCAN_ACCURACY,
+        checked: false,
+    };
+    progress.begin("rounding of the printed constants", options.draws as u64);
+    let printed = gather(&how, &|_, _, _| {}, &|| {})?;
+    let done = || progress.advance();
+    let draws = rounded_evidence(&how, options.seed, options.draws, &done)?;
+    Ok(judge_all_rounded(&claims()?, evidence, &printed, &draws))
+}
+
+fn provenance(
+    options: &Options,
+    cases: &Cases,
+    evidence: &Evidence,
+    start: Instant,
+) -> Result<Provenance, ReproduceError> {
+    let no_case = || ReproduceError::NoCase("hertz".to_owned());
+    let hertz = cases.get("hertz").ok_or_else(no_case)?;
+    let (plan, _warnings) = Plan::from_experiment(hertz, None)?;
+    let shot = shoot(&plan.with_accuracy(options.accuracy))
+        .map_err(|error| super::gather::failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
+    let points = evidence.curves.iter().flat_map(|curve| &curve.points);
+    Ok(Provenance {
+        version: env!("CARGO_PKG_VERSION"),
+        commit: commit(),
+        solver: shot.solver,
+        tolerance: shot.tolerance.unwrap_or(f64::NAN),
+        accuracy_asked: options.accuracy,
+        accuracy_reached: points.map(|p| p.accuracy_reached).fold(0.0, f64::max),
+        seed: options.seed,
+        draws: options.draws,
+        machine: machine(),
+        wall_time_s: start.elapsed().as_secs_f64(),
+    })
+}
+
+impl Reproduction {
+    /// Writes the tables, claims and provenance into a folder; returns what
+    /// was written.
+    ///
+    /// # Errors
+    /// The first file that can't be written; none is left half-written.
+    pub fn write_tables(&self, folder: &Path) -> Result<Vec<PathBuf>, ReproduceError> {
+        let reading = self.reading.to_string();
+        let json = |value| format!("{value:#}\n");
+        let mut files = vec![
+            ("tof.csv", tof_csv(&self.evidence)),
+            ("ratios.csv", ratios_csv(&self.evidence)),
+            ("power_laws.csv", power_laws_csv(&self.evidence)),
+            ("power_law_residuals.csv", power_law_residuals_csv(&self.evidence)),
+            ("oils.csv", oils_csv(&self.cases)?),
+            ("claims.json", json(claims_json(&self.judged, &reading))),
+            ("claims.md", claims_markdown(&self.judged, &reading)),
+        ];
+        if let Some(scan) = &self.scan {
+            files.push(("readings.csv", scan_csv(scan)));
+            files.push(("readings.md", scan_markdown(scan)));
+        }
+        files.push(("provenance.json", json(self.provenance.json())));
+        let mut written = Vec::new();
+        for (name, content) in files {
+            let path = folder.join(name);
+            write_atomically(&path, content.as_bytes())?;
+            written.push(path);
+        }
+        Ok(written)
+    }
+}
