@@ -9,7 +9,7 @@ use crate::system::System;
 use std::ops::Range;
 
 /// Bodies are woken and put to sleep in groups of this size.
-const GROUP: usize = 16;
+const GROUP: usize = 4;
 
 /// Chains shorter than this gain nothing from sleep behind the wave.
 const LONG_CHAIN: usize = 512;
@@ -128,7 +128,7 @@ impl Window {
         let quiet_until = (first..self.bodies.end - 1)
             .find(|&c| !self.is_quiet(system, state, c))
             .unwrap_or(self.bodies.end - 1);
-        let to = quiet_until.saturating_sub(2 * self.margin + GROUP);
+        let to = quiet_until.saturating_sub(self.margin + GROUP);
         if to <= first + GROUP {
             return;
         }
