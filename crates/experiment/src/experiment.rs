@@ -8,7 +8,7 @@ use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Far, Liquid, Near, SectionSpec, Solver, Spec};
+use crate::spec::{Liquid, Near, SectionSpec, Solver, Spec};
 use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Chain, Sensor, System};
@@ -214,7 +214,7 @@ impl Experiment {
     /// Whether bead N leans on something, so that there is a wall signal.
     #[must_use]
     pub fn has_wall(&self) -> bool {
-        matches!(self.spec.far, Far::HalfBead { .. } | Far::Plane { .. })
+        self.spec.has_wall()
     }
 
     /// The sensor bead n of the ToF.
@@ -231,7 +231,8 @@ impl Experiment {
         let wall = self.has_wall().then(|| Sensor::Contact(self.beads()));
         let channel = sensors
             .channel
-            .then_some(Sensor::BeadPlusWall(sensors.bead));
+            .as_ref()
+            .map(|_| Sensor::BeadPlusWall(sensors.bead));
         let first = [Some(Sensor::Bead(sensors.bead)), wall, channel];
         let mut all: Vec<Sensor> = first.into_iter().flatten().collect();
         let lists = [

@@ -165,6 +165,29 @@ fn a_sensor_outside_the_chain_is_told_the_chain() {
 }
 
 #[test]
+fn what_does_not_exist_has_no_sensor() {
+    let free = DRY.replace("kind = \"half-bead\"", "kind = \"free\"");
+    let finding = only(&free.replace("bead = 7", "contacts = [40]"));
+    assert!(
+        finding.one_line().contains("from 0 to 39"),
+        "{}",
+        finding.one_line()
+    );
+    let finding = only(&free.replace("bead = 7", "channel = true"));
+    assert!(finding.one_line().contains("there is no wall"));
+    let initial = DRY.replace(
+        "[striker]\nspeed = \"0.5 m/s\"",
+        "[[initial]]\nbead = 1\nvelocity = \"1 m/s\"",
+    );
+    let finding = only(&initial.replace("bead = 7", "velocities = [0]"));
+    assert!(
+        finding.one_line().contains("from 1 to 40"),
+        "{}",
+        finding.one_line()
+    );
+}
+
+#[test]
 fn contact_sections_meet_without_overlap_or_hole() {
     let two = |first: &str, second: &str| {
         let section = format!(
@@ -220,7 +243,7 @@ fn laws_and_their_parameters_are_looked_up_in_the_registry() {
         "coefficient = \"77 kg s/m\"",
     );
     let words = [
-        "`coefficient` is a quantity in m^-1 kg s",
+        "`coefficient` is a quantity in kg m^-1 s",
         "a cubic damping in kg s/m^2",
     ];
     check(
@@ -450,5 +473,9 @@ fn what_the_physics_refuses_is_found_in_the_file() {
     let mixed = format!(
         "{bare}[materials.a]\nyoung_modulus = 1\npoisson_ratio = 0\n[[beads]]\nmaterial = \"a\"\n"
     );
-    assert!(Experiment::from_text("test.toml", &mixed).is_err());
+    assert!(
+        only(&mixed)
+            .one_line()
+            .contains("no material, but others do")
+    );
 }

@@ -22,6 +22,7 @@ pub struct SectionSpec {
     /// Index of the effective material of both sides.
     pub(crate) material: Option<usize>,
     pub(crate) span: Range<usize>,
+    pub(crate) from_span: Range<usize>,
 }
 
 impl SectionSpec {
@@ -75,6 +76,7 @@ fn hertz(root: &View<'_>) -> SectionSpec {
         wet: false,
         material: None,
         span: root.span(),
+        from_span: root.span(),
     }
 }
 
@@ -97,6 +99,7 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
         wet: table.flag("wet"),
         material: materials.find(table)?,
         span: table.span(),
+        from_span: table.span_of("from"),
     })
 }
 
@@ -131,7 +134,7 @@ fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), Problem> {
         if section.from < next {
             let message = format!("contact {} belongs to two sections", section.from);
             let label = format!("expected a section that begins at contact {next} or later");
-            return Err(Problem::new(&section.span, message, label));
+            return Err(Problem::new(&section.from_span, message, label));
         }
         if section.from > next {
             return Err(uncovered(section, next, section.from - 1));

@@ -2,7 +2,7 @@
 
 use super::{Far, Near, Spec};
 use crate::finding::Problem;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 impl Spec {
     /// Everything must lie inside the chain, whatever a reading did to it.
@@ -15,28 +15,77 @@ impl Spec {
         }
         self.check_sensors(beads)?;
         for (gap, span) in &self.gaps {
-            inside("contact", gap.contact, 0, beads, span)?;
+            self.inside("contact", gap.contact, self.contacts(), span)?;
         }
         for (initial, span) in &self.initial {
-            inside("bead", initial.bead, 1, beads, span)?;
+            self.inside("bead", initial.bead, 1..=beads, span)?;
         }
         self.check_repeated()?;
         self.check_ring()
     }
 
+    /// Bodies that move: the beads, and body 0 if there is one.
+    fn bodies(&self) -> RangeInclusive<usize> {
+        usize::from(matches!(self.near, Near::Free))..=self.bead_count()
+    }
+
+    /// Contacts between two bodies; a free end has none.
+    fn contacts(&self) -> RangeInclusive<usize> {
+        let last = self.bead_count() - usize::from(matches!(self.far, Far::Free));
+        *self.bodies().start()..=last
+    }
+
     fn check_sensors(&self, beads: usize) -> Result<(), Problem> {
         let sensors = &self.sensors;
-        inside("sensor bead", sensors.bead, 1, beads, &sensors.span)?;
+        self.inside("sensor bead", sensors.bead, 1..=beads, &sensors.span)?;
         for (bead, span) in &sensors.beads {
-            inside("sensor bead", *bead, 1, beads, span)?;
+            self.inside("sensor bead", *bead, 1..=beads, span)?;
         }
         for (contact, span) in &sensors.contacts {
-            inside("contact", *contact, 0, beads, span)?;
+            self.inside("contact", *contact, self.contacts(), span)?;
         }
         for (body, span) in sensors.positions.iter().chain(&sensors.velocities) {
-            inside("body", *body, 0, beads, span)?;
+            self.inside("body", *body, self.bodies(), span)?;
         }
-        Ok(())
+        match &sensors.channel {
+            Some(span) if !self.has_wall() => {
+                let message = "the channel adds the wall's signal, but there is no wall";
+                Err(Problem::new(
+                    span,
+                    message,
+                    "expected a [far_end] to lean on",
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether bead N leans on something.
+    pub(crate) fn has_wall(&self) -> bool {
+        matches!(self.far, Far::HalfBead { .. } | Far::Plane { .. })
+    }
+
+    fn inside(
+        &self,
+        what: &str,
+        found: usize,
+        there: RangeInclusive<usize>,
+        span: &Range<usize>,
+    ) -> Result<(), Problem> {
+        if there.contains(&found) {
+            return Ok(());
+        }
+        let beads = self.bead_count();
+        let message = format!("{what} {found} is outside the chain of {beads} beads");
+        let label = match there.is_empty() {
+            true => "expected nothing: this chain has none".to_owned(),
+            false => format!(
+                "expected a number from {} to {}",
+                there.start(),
+                there.end()
+            ),
+        };
+        Err(Problem::new(span, message, label))
     }
 
     /// Two gaps in one contact, or two initial states of one bead.
@@ -61,21 +110,6 @@ impl Spec {
         }
         Ok(())
     }
-}
-
-fn inside(
-    what: &str,
-    found: usize,
-    least: usize,
-    most: usize,
-    span: &Range<usize>,
-) -> Result<(), Problem> {
-    if (least..=most).contains(&found) {
-        return Ok(());
-    }
-    let message = format!("{what} {found} is outside the chain of {most} beads");
-    let label = format!("expected a number from {least} to {most}");
-    Err(Problem::new(span, message, label))
 }
 
 fn repeated(what: &str, mut found: Vec<(usize, &Range<usize>)>) -> Result<(), Problem> {

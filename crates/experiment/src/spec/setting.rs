@@ -104,7 +104,8 @@ pub(crate) struct Sensors {
     pub(crate) contacts: Vec<(usize, Range<usize>)>,
     pub(crate) positions: Vec<(usize, Range<usize>)>,
     pub(crate) velocities: Vec<(usize, Range<usize>)>,
-    pub(crate) channel: bool,
+    /// Where the paper's channel is asked for.
+    pub(crate) channel: Option<Range<usize>>,
 }
 
 impl Sensors {
@@ -120,7 +121,9 @@ impl Sensors {
             contacts: list("contacts")?,
             positions: list("positions")?,
             velocities: list("velocities")?,
-            channel: table.is_some_and(|t| t.flag("channel")),
+            channel: table
+                .filter(|t| t.flag("channel"))
+                .map(|t| t.span_of("channel")),
         })
     }
 }

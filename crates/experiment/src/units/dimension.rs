@@ -12,7 +12,9 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimension([Exponent; 4]);
 
+/// Base units as they are stored, and the places in which they are written.
 const BASE: [&str; 4] = ["m", "kg", "s", "rad"];
+const WRITTEN: [usize; 4] = [1, 0, 2, 3];
 
 /// What people call a dimension: name, SI unit, an example.
 static NAMES: &[(&str, &str, &str)] = &[
@@ -109,7 +111,8 @@ impl Dimension {
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut parts = Vec::new();
-        for (power, unit) in self.0.iter().zip(BASE) {
+        for at in WRITTEN {
+            let (power, unit) = (self.0[at], BASE[at]);
             match (*power.numer(), *power.denom()) {
                 (0, _) => {}
                 (1, 1) => parts.push(unit.to_owned()),
