@@ -1,4 +1,4 @@
-"""Compares numbers.json with the design page's and published values it names; exit code 1 if one is out of tolerance."""
+"""Compares numbers.json with those of an earlier independent integration and with published values, as it names them; exit code 1 if one is out of tolerance."""
 
 import json
 import sys

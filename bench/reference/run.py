@@ -13,7 +13,7 @@ import numpy as np
 import cases as c
 import physics as p
 import restitution as r
-from sources import DESIGN, PUBLISHED
+from sources import EARLIER, PUBLISHED
 
 HERE = Path(__file__).parent
 FINE, COARSE = 1e-12, 1e-10
@@ -130,7 +130,7 @@ def measure(name, observe):
         value, other = float(value), float(coarse[quantity])
         error = max(abs(value - other) / abs(value), 1e-13) if value else abs(other)
         row = {"quantity": quantity, "value": value, "relative_error": float(f"{error:.1e}")}
-        known = {**DESIGN, **PUBLISHED}.get((name, quantity))
+        known = {**EARLIER, **PUBLISHED}.get((name, quantity))
         rows.append(row | ({"compare": known} if known else {}))
     return rows
 

@@ -1,0 +1,12 @@
+//! Stands where `crates/chain/src/laws/mod.rs` stands for a law that lives there.
+
+mod elastic_cone;
+
+pub use elastic_cone::ElasticCone;
+pub use hertzchain_chain::laws::*;
+
+pub static LAWS: &[Row] = &[
+    row::<ElasticHertz, 1>(),
+    row::<ElasticPower, 2>(),
+    row::<ElasticCone, 1>(),
+];
