@@ -1,0 +1,32 @@
+# Short names for the commands of README.md and CONTRIBUTING.md.
+
+# List them
+default:
+    @just --list
+
+# All tests
+test:
+    cargo test --workspace
+
+# Formatting and lints, warnings denied
+lint:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets --locked -- -D warnings
+
+# What must pass before a change goes in
+ci:
+    .ci/run
+
+# Everything in the paper, into reproduction/
+reproduce *options:
+    cargo run --release -- reproduce {{options}}
+
+# Reference numbers by a second program (needs Python; about three minutes)
+reference:
+    python3 -m venv target/reference
+    target/reference/bin/pip install --quiet -r bench/reference/requirements.txt
+    cd bench/reference && ../../target/reference/bin/python run.py && ../../target/reference/bin/python check.py
+
+# Documentation of all crates
+doc:
+    cargo doc --workspace --no-deps --open
