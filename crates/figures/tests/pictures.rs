@@ -90,6 +90,32 @@ fn every_kind_of_picture_is_well_formed_with_all_text_on_the_page() {
 }
 
 #[test]
+fn texts_of_a_picture_do_not_touch() {
+    for figure in every_kind() {
+        let tree = Tree::from_str(&figure.svg(), &Options::default()).expect("valid SVG");
+        let mut texts = Vec::new();
+        each_group(tree.root(), &mut |group| {
+            if group.id().starts_with('t') {
+                texts.push((group.id().to_owned(), group.abs_bounding_box()));
+            }
+        });
+        for (i, (a, first)) in texts.iter().enumerate() {
+            for (b, second) in &texts[..i] {
+                let apart = first.right() < second.left()
+                    || second.right() < first.left()
+                    || first.bottom() < second.top()
+                    || second.bottom() < first.top();
+                assert!(
+                    apart,
+                    "{a} at {first:?} touches {b} at {second:?} in {:?}",
+                    figure.size_mm()
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn the_same_input_gives_the_same_bytes() {
     for (a, b) in every_kind().iter().zip(&every_kind()) {
         assert_eq!(a.svg(), b.svg());

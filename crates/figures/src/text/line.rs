@@ -123,12 +123,14 @@ impl TextLine {
         let mut x = start;
         for c in run.text.chars() {
             let glyph = GlyphId::of(run.style, c);
-            self.glyphs.push(Placed {
-                glyph,
-                x,
-                up,
-                scale,
-            });
+            if !c.is_whitespace() {
+                self.glyphs.push(Placed {
+                    glyph,
+                    x,
+                    up,
+                    scale,
+                });
+            }
             self.plain.push(c);
             x += glyph.advance() * scale;
         }
