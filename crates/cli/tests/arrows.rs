@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 const ARROWS: &[(&str, &[&str])] = &[
     ("chain", &[]),
     ("signal", &[]),
-    ("figures", &[]),
     ("experiment", &["chain"]),
     ("study", &["chain", "experiment", "signal"]),
+    ("figures", &["chain", "experiment", "signal", "study"]),
     (
         "cli",
         &["chain", "experiment", "signal", "study", "figures"],
