@@ -75,9 +75,7 @@ impl Experiment {
         let source = Arc::new(NamedSource::new(name, text.to_owned()).with_language("toml"));
         let tree = document::parse(text).map_err(|problems| Mistakes::new(problems, &source))?;
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
-        let experiment = Self::from_tree(source, folder, tree, None)?;
-        experiment.system(None)?;
-        Ok(experiment)
+        Self::from_tree(source, folder, tree, None)
     }
 
     /// The experiment of a tree, in a reading or the tree's own.

@@ -33,6 +33,9 @@ pub(crate) struct Expected<'a> {
 
 impl Expected<'_> {
     fn dimension(&self) -> Dimension {
+        if self.unit == "1" {
+            return Dimension::NONE;
+        }
         units::parse_unit(self.unit).map_or(Dimension::NONE, |unit| unit.dimension)
     }
 
@@ -64,8 +67,8 @@ impl Expected<'_> {
     }
 
     fn number(&self, node: &Node, number: Number) -> Result<Si, Problem> {
-        let plain = self.units == Units::Dimensionless || self.dimension() == Dimension::NONE;
-        if plain || number.from_code {
+        let plain = number.from_code || self.units == Units::Dimensionless;
+        if plain || self.dimension() == Dimension::NONE {
             return Ok(Si {
                 value: number.value,
                 half_digit: number.half_digit,

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 fn exercise(text: &str) -> Result<(), TestCaseError> {
     match Experiment::from_text("any.toml", text) {
         Ok(experiment) => {
-            prop_assert!(experiment.system(None).is_ok());
+            prop_assert!(experiment.chain(None).is_ok());
+            let _ = experiment.system(None);
             let _ = experiment.system(Some(0.3));
             let _ = experiment.sensors();
             let within = Reading::default().with("striker", "within").unwrap();

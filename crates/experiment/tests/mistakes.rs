@@ -455,26 +455,32 @@ fn beads_need_a_mass_or_a_density() {
     assert!(finding.one_line().contains("the striker has no mass"));
 }
 
+/// The only mistake that shows when the chain is set up.
+fn refused(text: &str) -> Finding {
+    let experiment = Experiment::from_text("test.toml", text).unwrap();
+    let mistakes = experiment.system(None).unwrap_err();
+    assert_eq!(mistakes.findings().len(), 1, "{mistakes}");
+    mistakes.findings()[0].clone()
+}
+
 #[test]
 fn what_the_physics_refuses_is_found_in_the_file() {
     let free = DRY.replace("kind = \"half-bead\"", "kind = \"free\"");
     let push = "[near_end]\npush = \"constant\"\nforce = \"1 N\"\n";
-    let finding = only(&format!("{free}\n{push}"));
-    assert!(finding.text().contains("[far_end]"), "{}", finding.text());
+    let finding = refused(&format!("{free}\n{push}"));
+    assert_eq!(finding.text(), "[far_end]");
     assert!(finding.one_line().contains("no rest position"));
     let bare = "units = \"dimensionless\"\n[striker]\nspeed = 1\n[[beads]]\n[[contacts]]\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\"]\n";
-    let finding = only(bare);
-    check(
-        &finding,
-        6,
-        "\"damping_viscoelastic\"",
-        &["can't be used on contact 0", "`relaxation_time`"],
-    );
-    let mixed = format!(
-        "{bare}[materials.a]\nyoung_modulus = 1\npoisson_ratio = 0\n[[beads]]\nmaterial = \"a\"\n"
-    );
+    let words = ["can't be used on contact 0", "`relaxation_time`"];
+    check(&refused(bare), 6, "\"damping_viscoelastic\"", &words);
+}
+
+#[test]
+fn either_all_beads_have_a_material_or_none() {
+    let mixed = "units = \"dimensionless\"\n[striker]\nspeed = 1\n[[beads]]\n\
+                 [materials.a]\nyoung_modulus = 1\npoisson_ratio = 0\n[[beads]]\nmaterial = \"a\"\n";
     assert!(
-        only(&mixed)
+        only(mixed)
             .one_line()
             .contains("no material, but others do")
     );

@@ -67,12 +67,12 @@ impl Experiment {
     /// Every number that the file gives, in its order.
     #[must_use]
     pub fn numbers(&self) -> Vec<Named> {
-        let given = |slot: Slot| {
-            let si = slot.value?;
+        let given = |slot: Slot<'_>| {
+            let si = slot.value(self.units())?;
             Some(Named {
                 path: slot.path,
                 value: si.value,
-                unit: slot.unit,
+                unit: slot.unit.into_owned(),
                 half_digit: si.half_digit,
                 is_count: slot.is_count,
             })
@@ -85,9 +85,12 @@ impl Experiment {
     /// # Errors
     /// An unknown or ambiguous path, or a number that the file does not give.
     pub fn get(&self, path: &str) -> Result<f64, PathError> {
-        let slot = self.slot(path)?;
-        let value = slot.value.map(|si| si.value);
-        value.ok_or(PathError::NotGiven { path: slot.path })
+        let slots = self.slots();
+        let slot = find(&slots, path)?;
+        let value = slot.value(self.units()).map(|si| si.value);
+        value.ok_or_else(|| PathError::NotGiven {
+            path: slot.path.clone(),
+        })
     }
 
     /// This experiment with named numbers set, in SI.
@@ -144,7 +147,7 @@ impl Experiment {
         self.set(&[("striker.speed", speed_m_s)])
     }
 
-    fn slots(&self) -> Vec<Slot> {
+    fn slots(&self) -> Vec<Slot<'_>> {
         slots::all(self.tree(), self.units())
     }
 
@@ -152,45 +155,44 @@ impl Experiment {
         &self,
         values: impl Iterator<Item = (&'a str, Value)>,
     ) -> Result<Self, PathError> {
+        let slots = self.slots();
         let mut tree = self.tree().clone();
         for (path, value) in values {
-            let slot = self.slot(path)?;
-            assign(&mut tree, &slot.steps, value);
+            assign(&mut tree, &find(&slots, path)?.steps, value);
         }
         Ok(self.with_tree(tree)?)
     }
+}
 
-    /// The slot of a path or of an end of one: given numbers come first.
-    fn slot(&self, path: &str) -> Result<Slot, PathError> {
-        let slots = self.slots();
-        if let Some(exact) = slots.iter().find(|slot| slot.path == path) {
-            return Ok(exact.clone());
-        }
-        let ending = format!(".{path}");
-        let fitting: Vec<&Slot> = slots.iter().filter(|s| s.path.ends_with(&ending)).collect();
-        let given: Vec<&Slot> = fitting
-            .iter()
-            .copied()
-            .filter(|s| s.value.is_some())
-            .collect();
-        match (&given[..], &fitting[..]) {
-            ([only], _) | ([], [only]) => Ok((*only).clone()),
-            ([], []) => Err(PathError::Unknown {
-                path: path.to_owned(),
-                nearest: nearest_path(path, &slots),
-            }),
-            ([], several) | (several, _) => Err(PathError::Ambiguous {
-                path: path.to_owned(),
-                candidates: several.iter().map(|slot| slot.path.clone()).collect(),
-            }),
-        }
+/// The slot of a path or of an end of one: given numbers come first.
+fn find<'a, 'b>(slots: &'b [Slot<'a>], path: &str) -> Result<&'b Slot<'a>, PathError> {
+    if let Some(exact) = slots.iter().find(|slot| slot.path == path) {
+        return Ok(exact);
+    }
+    let ending = format!(".{path}");
+    let fitting: Vec<&Slot<'_>> = slots.iter().filter(|s| s.path.ends_with(&ending)).collect();
+    let given: Vec<&Slot<'_>> = fitting
+        .iter()
+        .copied()
+        .filter(|s| s.node.is_some())
+        .collect();
+    match (&given[..], &fitting[..]) {
+        ([only], _) | ([], [only]) => Ok(only),
+        ([], []) => Err(PathError::Unknown {
+            path: path.to_owned(),
+            nearest: nearest_path(path, slots),
+        }),
+        ([], several) | (several, _) => Err(PathError::Ambiguous {
+            path: path.to_owned(),
+            candidates: several.iter().map(|slot| slot.path.clone()).collect(),
+        }),
     }
 }
 
 /// The path nearest to a mistyped one, by the whole or by its end.
-fn nearest_path(path: &str, slots: &[Slot]) -> Option<String> {
+fn nearest_path(path: &str, slots: &[Slot<'_>]) -> Option<String> {
     let depth = path.split('.').count();
-    let end = |slot: &Slot| {
+    let end = |slot: &Slot<'_>| {
         let parts: Vec<&str> = slot.path.split('.').collect();
         parts[parts.len().saturating_sub(depth)..].join(".")
     };

@@ -5,16 +5,40 @@ use crate::document::{Node, Value};
 use crate::keys::{Fields, Key, Kind, Limits, ROOT};
 use crate::laws;
 use crate::value::{Expected, Si, Units};
+use std::borrow::Cow;
 
 /// A place for a number.
 #[derive(Clone, Debug)]
-pub(super) struct Slot {
+pub(super) struct Slot<'a> {
     pub(super) path: String,
     pub(super) steps: Vec<Step>,
-    pub(super) unit: String,
+    pub(super) unit: Cow<'static, str>,
     /// `None` where the file gives nothing.
-    pub(super) value: Option<Si>,
+    pub(super) node: Option<&'a Node>,
     pub(super) is_count: bool,
+}
+
+impl Slot<'_> {
+    /// The value in SI, where the file gives one.
+    pub(super) fn value(&self, units: Units) -> Option<Si> {
+        let node = self.node?;
+        if self.is_count {
+            return match &node.value {
+                Value::Number(number) => Some(Si {
+                    value: number.value,
+                    half_digit: 0.0,
+                }),
+                _ => None,
+            };
+        }
+        let expected = Expected {
+            name: &self.path,
+            unit: &self.unit,
+            limits: Limits::ANY,
+            units,
+        };
+        expected.read(node).ok()
+    }
 }
 
 /// One step down the tree.
@@ -57,7 +81,7 @@ impl Way {
 }
 
 /// All places of a checked file.
-pub(super) fn all(tree: &Node, units: Units) -> Vec<Slot> {
+pub(super) fn all(tree: &Node, units: Units) -> Vec<Slot<'_>> {
     let mut walk = Walk {
         units,
         slots: Vec::new(),
@@ -66,29 +90,29 @@ pub(super) fn all(tree: &Node, units: Units) -> Vec<Slot> {
     walk.slots
 }
 
-struct Walk {
+struct Walk<'a> {
     units: Units,
-    slots: Vec<Slot>,
+    slots: Vec<Slot<'a>>,
 }
 
-impl Walk {
-    fn table(&mut self, node: Option<&Node>, fields: &'static Fields, way: &Way) {
+impl<'a> Walk<'a> {
+    fn table(&mut self, node: Option<&'a Node>, fields: &'static Fields, way: &Way) {
         for key in fields.keys {
             let value = node.and_then(|node| node.get(key.name));
             self.value(key, value, &way.key(key.name));
         }
     }
 
-    fn value(&mut self, key: &'static Key, node: Option<&Node>, way: &Way) {
+    fn value(&mut self, key: &'static Key, node: Option<&'a Node>, way: &Way) {
         match (&key.kind, node) {
-            (Kind::Quantity(unit, _), _) => self.number(unit, node, way),
+            (Kind::Quantity(unit, _), _) => self.push((*unit).into(), node, false, way),
             (Kind::Scaled(unit, _), Some(law)) if matches!(law.value, Value::Table(_)) => {
-                for (part, unit) in POWER_LAW.into_iter().zip([unit, "1"]) {
-                    self.number(unit, law.get(part), &way.key(part));
+                for (part, unit) in POWER_LAW.into_iter().zip([*unit, "1"]) {
+                    self.push(unit.into(), law.get(part), false, &way.key(part));
                 }
             }
-            (Kind::Scaled(unit, _), _) => self.number(unit, node, way),
-            (Kind::Count { .. }, _) => self.count(node, way),
+            (Kind::Scaled(unit, _), _) => self.push((*unit).into(), node, false, way),
+            (Kind::Count { .. }, _) => self.push("1".into(), node, true, way),
             (Kind::Table(fields), _) => self.table(node, fields, way),
             (Kind::Tables(fields), Some(list)) => {
                 for (index, member) in list.members().iter().enumerate() {
@@ -116,7 +140,7 @@ impl Walk {
     }
 
     /// A law's parameters; the path has the law's name in place of its index.
-    fn law(&mut self, member: &Node, way: &Way, index: usize) {
+    fn law(&mut self, member: &'a Node, way: &Way, index: usize) {
         let Ok(row) = laws::row_of(member) else {
             return;
         };
@@ -125,39 +149,17 @@ impl Walk {
         for parameter in row.info.parameters {
             let unit = laws::unit(parameter, row, member, self.units);
             let name = parameter.name;
-            self.number(&unit, member.get(name), &at.key(name));
+            self.push(unit.into(), member.get(name), false, &at.key(name));
         }
     }
 
-    fn number(&mut self, unit: &str, node: Option<&Node>, way: &Way) {
-        let expected = Expected {
-            name: &way.path,
-            unit,
-            limits: Limits::ANY,
-            units: self.units,
-        };
-        let value = node.and_then(|node| expected.read(node).ok());
-        self.push(unit, value, false, way);
-    }
-
-    fn count(&mut self, node: Option<&Node>, way: &Way) {
-        let value = match node.map(|node| &node.value) {
-            Some(Value::Number(number)) => Some(Si {
-                value: number.value,
-                half_digit: 0.0,
-            }),
-            _ => None,
-        };
-        self.push("1", value, true, way);
-    }
-
-    fn push(&mut self, unit: &str, value: Option<Si>, is_count: bool, way: &Way) {
+    fn push(&mut self, unit: Cow<'static, str>, node: Option<&'a Node>, count: bool, way: &Way) {
         self.slots.push(Slot {
             path: way.path.clone(),
             steps: way.steps.clone(),
-            unit: unit.to_owned(),
-            value,
-            is_count,
+            unit,
+            node,
+            is_count: count,
         });
     }
 }
