@@ -45,12 +45,15 @@ impl Stretch {
         self.start_s + self.length_s
     }
 
-    /// Signs of the rate at the two ends, from one-sided five-point slopes.
-    fn end_slopes(&self) -> [f64; 2] {
+    /// Slopes at the two ends from one-sided five-point formulas, and how much
+    /// the slope changes over the quarter of the step next to each end.
+    fn end_slopes(&self) -> [(f64, f64); 2] {
         let [f0, f1, f2, f3, f4] = self.values;
+        let start = -25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4;
+        let end = 25.0 * f4 - 48.0 * f3 + 36.0 * f2 - 16.0 * f1 + 3.0 * f0;
         [
-            -25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4,
-            25.0 * f4 - 48.0 * f3 + 36.0 * f2 - 16.0 * f1 + 3.0 * f0,
+            (start, 12.0 * (f0 - 2.0 * f1 + f2)),
+            (end, 12.0 * (f2 - 2.0 * f3 + f4)),
         ]
     }
 }
@@ -116,9 +119,27 @@ impl Signal {
         }
     }
 
+    /// Values up to this are no signal.
+    fn silence(&self, piece: &Piece<'_>) -> f64 {
+        match self.sensor {
+            Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
+            _ => piece.system().scales().silent_force_n,
+        }
+    }
+
+    /// A slope right in sign: near a maximum the samples alone may not be.
+    fn slope(&self, piece: &Piece<'_>, theta: f64, slope: f64, change: f64) -> f64 {
+        match slope.abs() < change.abs() {
+            true => piece.signal_rate(self.sensor, theta),
+            false => slope,
+        }
+    }
+
     /// Adds the maxima of one step, and the one between it and the last.
     fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
-        let [start_slope, end_slope] = stretch.end_slopes();
+        let slopes = stretch.end_slopes();
+        let [start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
+            .map(|(theta, (slope, change))| self.slope(piece, theta, slope, change));
         let [start, .., end] = stretch.values;
         let floor = JUMP * self.largest;
         if let Some((time_s, value, slope)) = self.before {
@@ -153,7 +174,7 @@ impl Observer for Signal {
         let size = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
-        if size <= KEPT * self.largest || size == 0.0 {
+        if size <= KEPT * self.largest || size <= self.silence(piece) {
             self.before = None;
             return Flow::Continue;
         }

@@ -62,6 +62,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         scales: Scales {
             speed_m_s: 1.0,
             time_s: 1.0,
+            silent_force_n: 0.0,
         },
     };
     system.has_memory = system
@@ -471,9 +472,13 @@ fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
     } else {
         1.0
     };
+    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
+    let static_force = system.static_force_n.iter().copied().fold(0.0, f64::max);
+    let silent_force_n = (1e-9 * lightest * speed / time_s).max(1e-13 * static_force);
     Scales {
         speed_m_s: speed,
         time_s,
+        silent_force_n,
     }
 }
 

@@ -53,6 +53,9 @@ pub struct Scales {
     pub speed_m_s: f64,
     /// Contact time in s: overlap at which a pair stops, over the speed.
     pub time_s: f64,
+    /// Forces in N below this are rounding of the static forces, or nine
+    /// orders below those of the impact: no signal.
+    pub silent_force_n: f64,
 }
 
 /// A chain at static equilibrium, ready to be set in motion.

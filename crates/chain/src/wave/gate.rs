@@ -31,6 +31,8 @@ pub(super) struct Event {
 /// Looks for changes of mode at the end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
+    tolerance: f64,
+    time_s: f64,
     /// Velocity change in m/s that is within a step's error.
     slight_speed: f64,
     /// Overlap in m that counts as 0 when a step was made to end there.
@@ -50,12 +52,20 @@ impl Watch {
     pub fn new(system: &System, tolerance: f64) -> Self {
         let scales = system.scales();
         Self {
-            slight_speed: 0.01 * tolerance * scales.speed_m_s,
-            landing: 0.1 * tolerance * scales.speed_m_s * scales.time_s,
+            tolerance,
+            time_s: scales.time_s,
+            slight_speed: 0.0,
+            landing: 0.0,
             speed: scales.speed_m_s,
             overlap_alone: system.tension == Tension::Allowed && !system.has_memory,
             last: vec![(-1.0, 0); system.contacts()],
         }
+    }
+
+    /// Measures changes against the speed at which contacts move now.
+    pub fn rescale(&mut self, speed_m_s: f64) {
+        self.slight_speed = 0.01 * self.tolerance * speed_m_s;
+        self.landing = 0.1 * self.tolerance * speed_m_s * self.time_s;
     }
 
     /// The change a contact has made by the end of a step, judged from the

@@ -311,6 +311,7 @@ impl<'a> Wave<'a> {
     fn adaptive_step(&mut self, tolerance: f64) -> Result<f64, SolveError> {
         let mut h = self.proposed_s.min(self.longest());
         self.aimed = None;
+        self.watch.rescale(self.speed_scale());
         loop {
             self.check_work()?;
             self.stages(h);
