@@ -1,7 +1,7 @@
 //! The files that come with the program, against the numbers they stand for.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use hertzchain_chain::{Chain, FarEnd, Material, Pair, Start};
+use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Start};
 use hertzchain_experiment::{examples, preset, presets};
 
 fn chain(name: &str, speed_m_s: Option<f64>) -> Chain {
@@ -175,4 +175,96 @@ fn an_unknown_preset_names_the_nearest() {
         text.contains("hertz-viscoelastic") && text.contains("did you mean `pump`"),
         "{text}"
     );
+}
+
+/// Hertz stiffness of two bodies, as the laws of a contact see them.
+fn stiffness(chain: &Chain, contact: usize, left: &Bead, right: (f64, Material)) -> f64 {
+    let section = chain
+        .sections
+        .iter()
+        .find(|s| s.contacts.contains(&contact));
+    let pair = Pair {
+        left: left.material,
+        right: right.1,
+        radius_m: (1.0 / left.radius_m + 1.0 / right.0).recip(),
+        mass_kg: left.mass_kg,
+    };
+    section.unwrap().laws[0].coefficients(&pair).unwrap()[0]
+}
+
+#[test]
+fn examples_have_the_masses_and_stiffnesses_of_an_independent_program() {
+    let body = |bead: &Bead| (bead.radius_m, bead.material);
+    // Sixteen digits of the other program; the order of products differs.
+    let same = |found: f64, expected: f64| assert!(relative(found, expected) < 4e-15, "{found}");
+
+    let dimer = chain("dimer-steel-ptfe", None);
+    let [steel, ptfe, ..] = &dimer.beads[..] else {
+        panic!("two beads")
+    };
+    same(steel.mass_kg, 0.003614094086506307);
+    same(ptfe.mass_kg, 0.000983937115051342);
+    same(stiffness(&dimer, 1, steel, body(ptfe)), 119414718.64581832);
+
+    let intruder = chain("light-intruder", None);
+    assert_eq!(
+        (intruder.beads.len(), intruder.beads[19].mass_kg),
+        (40, 0.0010675)
+    );
+    let light = stiffness(
+        &intruder,
+        20,
+        &intruder.beads[19],
+        body(&intruder.beads[20]),
+    );
+    same(light, 7179152642.276926);
+
+    let pressed = chain("precompressed", None);
+    same(pressed.beads[0].mass_kg, 0.00208568241876724);
+    let uniform = stiffness(&pressed, 1, &pressed.beads[0], body(&pressed.beads[1]));
+    same(uniform, 7404415573.845457);
+    assert_eq!(pressed.push.force_n(), 30.0);
+
+    let heavy = chain("heavy-striker", None);
+    let Start::Striker { bead, .. } = &heavy.start else {
+        panic!("a striker")
+    };
+    same(bead.mass_kg, 5.0 * 0.00854);
+    same(
+        stiffness(&heavy, 0, bead, body(&heavy.beads[0])),
+        9877478598.039879,
+    );
+
+    let vertical = chain("vertical-on-specimen", None);
+    let last = vertical.beads.last().unwrap();
+    let FarEnd::Plane { material } = vertical.far else {
+        panic!("a plane")
+    };
+    same(last.mass_kg, 0.02823437411966145);
+    same(
+        stiffness(&vertical, 20, last, (f64::INFINITY, material)),
+        452179960.5782284,
+    );
+}
+
+#[test]
+fn a_vertical_chain_rests_under_its_own_weight() {
+    let (system, _) = preset("vertical-on-specimen")
+        .unwrap()
+        .system(None)
+        .unwrap();
+    let overlap = |contact| system.static_contact(contact).overlap_m;
+    // The law is inverted by bisection; the other program takes a power.
+    assert!(relative(overlap(1), 9.303316424286104e-8) < 1e-13);
+    assert!(relative(overlap(19), 6.624303059702357e-7) < 1e-13);
+}
+
+#[test]
+fn an_exponent_section_has_its_own_law_in_its_own_unit() {
+    let chain = chain("exponent-section", None);
+    let ranges: Vec<_> = chain.sections.iter().map(|s| s.contacts.clone()).collect();
+    assert_eq!(ranges, [0..=14, 15..=25, 26..=40]);
+    let pair = pair(chain.beads[0].material, 0.00635, 0.00854);
+    let law = &chain.sections[1].laws[0];
+    assert_eq!(law.coefficients(&pair).unwrap(), [2.5e12, 2.0]);
 }
