@@ -1,6 +1,8 @@
 //! From a chain to columns, with every value checked on the way.
 
-use super::statics::{elastic_force, static_overlap, turning_time};
+use super::check::{check_values, contact_exists};
+use super::scales::scales;
+use super::statics::{elastic_force, static_overlap};
 use super::{Scales, SectionColumns, Spring, System, TermColumns};
 use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Section, Start};
 use crate::laws::{Columns, Nature};
@@ -75,132 +77,6 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     set_in_motion(chain, &mut system);
     system.scales = scales(&system, &pairs);
     Ok(system)
-}
-
-fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() && value > 0.0 {
-        true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "positive and finite",
-        }),
-    }
-}
-
-fn finite(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() {
-        true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "finite",
-        }),
-    }
-}
-
-fn at_least_zero(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() && value >= 0.0 {
-        true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "0 or more, and finite",
-        }),
-    }
-}
-
-fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> {
-    positive(|| format!("radius of {}", name()), bead.radius_m)?;
-    positive(|| format!("mass of {}", name()), bead.mass_kg)
-}
-
-fn check_values(chain: &Chain) -> Result<(), ChainError> {
-    if chain.beads.is_empty() {
-        return Err(ChainError::Layout("a chain needs at least one bead".into()));
-    }
-    for (i, bead) in chain.beads.iter().enumerate() {
-        check_bead(bead, || format!("bead {}", i + 1))?;
-    }
-    check_start(chain)?;
-    check_far(&chain.far)?;
-    at_least_zero(|| "push on bead 1 in N".into(), chain.push.force_n())?;
-    if let Push::Spring { stiffness_n_m, .. } = chain.push {
-        at_least_zero(|| "stiffness of the push in N/m".into(), stiffness_n_m)?;
-    }
-    finite(|| "incline in rad".into(), chain.incline_rad)?;
-    at_least_zero(|| "gravity in m/s²".into(), chain.gravity_m_s2)?;
-    chain.suspension_m.map_or(Ok(()), |length| {
-        positive(|| "suspension in m".into(), length)
-    })?;
-    for gap in &chain.gaps {
-        contact_exists(chain, gap.contact, "a gap")?;
-        at_least_zero(|| format!("gap of contact {} in m", gap.contact), gap.gap_m)?;
-    }
-    for initial in &chain.initial {
-        if !(1..=chain.beads.len()).contains(&initial.bead) {
-            let what = format!(
-                "bead {} has an initial state but is not in the chain",
-                initial.bead
-            );
-            return Err(ChainError::Layout(what));
-        }
-        finite(
-            || format!("displacement of bead {}", initial.bead),
-            initial.displacement_m,
-        )?;
-        finite(
-            || format!("velocity of bead {}", initial.bead),
-            initial.velocity_m_s,
-        )?;
-    }
-    Ok(())
-}
-
-fn contact_exists(chain: &Chain, contact: usize, who: &str) -> Result<(), ChainError> {
-    match contact <= chain.beads.len() {
-        true => Ok(()),
-        false => Err(ChainError::Layout(format!(
-            "{who} names contact {contact}, but contacts are 0..={}",
-            chain.beads.len()
-        ))),
-    }
-}
-
-fn check_start(chain: &Chain) -> Result<(), ChainError> {
-    let periodic = matches!(chain.far, FarEnd::Periodic { .. });
-    if periodic && !matches!(chain.start, Start::Free) {
-        return Err(ChainError::Layout(
-            "a ring has no end to strike or drive".into(),
-        ));
-    }
-    match &chain.start {
-        Start::Striker { bead, speed_m_s } => {
-            check_bead(bead, || "the striker".into())?;
-            positive(|| "speed of the striker in m/s".into(), *speed_m_s)
-        }
-        Start::Driven { bead, .. } => positive(|| "radius of the driven end".into(), bead.radius_m),
-        Start::Free => Ok(()),
-    }
-}
-
-fn check_far(far: &FarEnd) -> Result<(), ChainError> {
-    match *far {
-        FarEnd::HalfBead { radius_m, .. } => {
-            positive(|| "radius of the half-bead".into(), radius_m)
-        }
-        FarEnd::Stop {
-            radius_m, mass_kg, ..
-        } => {
-            positive(|| "radius of the half-bead".into(), radius_m)?;
-            positive(|| "mass of the stop".into(), mass_kg)
-        }
-        FarEnd::PlaneStop { mass_kg, .. } => positive(|| "mass of the stop".into(), mass_kg),
-        FarEnd::Periodic { force_n } => {
-            at_least_zero(|| "static force of the ring".into(), force_n)
-        }
-        FarEnd::Plane { .. } | FarEnd::Free => Ok(()),
-    }
 }
 
 fn near_side(chain: &Chain) -> Option<Side> {
@@ -454,74 +330,5 @@ fn set_in_motion(chain: &Chain, system: &mut System) {
         let last = system.bodies() - 1;
         system.displacement_m[last] = system.displacement_m[1];
         system.velocity_m_s[last] = system.velocity_m_s[1];
-    }
-}
-
-/// The speed that moves the chain and the shortest time in which a pair of
-/// its bodies turns round at that speed.
-fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
-    let speed = characteristic_speed(system);
-    let time = pairs
-        .iter()
-        .enumerate()
-        .filter_map(|(c, pair)| pair.map(|pair| (c, pair.mass_kg)))
-        .map(|(c, mass)| statics_time(system, c, mass, speed))
-        .fold(f64::INFINITY, f64::min);
-    let time_s = if time.is_finite() && time > 0.0 {
-        time
-    } else {
-        1.0
-    };
-    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
-    let static_force = system.static_force_n.iter().copied().fold(0.0, f64::max);
-    let silent_force_n = (1e-9 * lightest * speed / time_s).max(1e-13 * static_force);
-    Scales {
-        speed_m_s: speed,
-        time_s,
-        silent_force_n,
-    }
-}
-
-fn statics_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
-    let mass = if mass_kg.is_finite() {
-        mass_kg
-    } else {
-        system.mass_kg[1]
-    };
-    turning_time(system, contact, mass, speed_m_s)
-}
-
-fn characteristic_speed(system: &System) -> f64 {
-    let driven = system
-        .motion
-        .as_ref()
-        .map_or(0.0, |motion| motion.largest_speed_m_s());
-    let moving = system
-        .velocity_m_s
-        .iter()
-        .fold(driven, |most, v| most.max(v.abs()));
-    if moving > 0.0 {
-        return moving;
-    }
-    // Only displaced: the speed that the largest stored energy can give.
-    let displaced = system
-        .displacement_m
-        .iter()
-        .fold(0.0_f64, |most, x| most.max(x.abs()));
-    let swinging = displaced * system.pendulum_per_s2.sqrt();
-    let stored = (0..system.contacts())
-        .map(|c| system.stored_energy(c, system.offset_m[c].max(0.0) + displaced))
-        .fold(0.0_f64, f64::max);
-    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
-    let released = if system.pendulum_per_s2 > 0.0 {
-        0.0
-    } else {
-        (2.0 * stored / lightest).sqrt()
-    };
-    let speed = swinging.max(released);
-    if speed.is_finite() && speed > 0.0 {
-        speed
-    } else {
-        1.0
     }
 }

@@ -1,7 +1,9 @@
 //! A chain made ready for the loop: one column of numbers a quantity.
 
 mod assemble;
+mod check;
 mod contact;
+mod scales;
 mod statics;
 
 pub use statics::StaticContact;

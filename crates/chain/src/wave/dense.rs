@@ -1,6 +1,7 @@
 //! A finished step as a continuous function of time.
 
-use super::energy::{Budget, Meter};
+use super::energy::Budget;
+use super::meter::Meter;
 use super::state::{Mode, State};
 use super::table::{DEGREE, Table};
 use crate::chain::Tension;

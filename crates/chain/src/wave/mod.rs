@@ -5,6 +5,8 @@ mod dormand_prince;
 mod energy;
 mod forces;
 mod gate;
+mod meter;
+mod outcome;
 mod rk4;
 mod run;
 mod state;
@@ -16,7 +18,8 @@ mod window;
 pub use dense::Piece;
 pub use energy::{Budget, Dissipated};
 pub(crate) use gate::bracketed_root;
-pub use run::{Flow, Limits, Observer, Outcome, SolveError, Work, run};
+pub use outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
+pub use run::run;
 pub use table::Table;
 
 /// How a method chooses its steps.

@@ -1,0 +1,74 @@
+//! The size of speeds, times and forces in a shot, known before it begins.
+
+use super::statics::turning_time;
+use super::{Scales, System};
+use crate::material::Pair;
+
+/// The speed that moves the chain and the shortest time in which a pair of
+/// its bodies turns round at that speed.
+pub(super) fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
+    let speed = characteristic_speed(system);
+    let time = pairs
+        .iter()
+        .enumerate()
+        .filter_map(|(c, pair)| pair.map(|pair| (c, pair.mass_kg)))
+        .map(|(c, mass)| statics_time(system, c, mass, speed))
+        .fold(f64::INFINITY, f64::min);
+    let time_s = if time.is_finite() && time > 0.0 {
+        time
+    } else {
+        1.0
+    };
+    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
+    let static_force = system.static_force_n.iter().copied().fold(0.0, f64::max);
+    let silent_force_n = (1e-9 * lightest * speed / time_s).max(1e-13 * static_force);
+    Scales {
+        speed_m_s: speed,
+        time_s,
+        silent_force_n,
+    }
+}
+
+fn statics_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
+    let mass = if mass_kg.is_finite() {
+        mass_kg
+    } else {
+        system.mass_kg[1]
+    };
+    turning_time(system, contact, mass, speed_m_s)
+}
+
+fn characteristic_speed(system: &System) -> f64 {
+    let driven = system
+        .motion
+        .as_ref()
+        .map_or(0.0, |motion| motion.largest_speed_m_s());
+    let moving = system
+        .velocity_m_s
+        .iter()
+        .fold(driven, |most, v| most.max(v.abs()));
+    if moving > 0.0 {
+        return moving;
+    }
+    // Only displaced: the speed that the largest stored energy can give.
+    let displaced = system
+        .displacement_m
+        .iter()
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    let swinging = displaced * system.pendulum_per_s2.sqrt();
+    let stored = (0..system.contacts())
+        .map(|c| system.stored_energy(c, system.offset_m[c].max(0.0) + displaced))
+        .fold(0.0_f64, f64::max);
+    let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
+    let released = if system.pendulum_per_s2 > 0.0 {
+        0.0
+    } else {
+        (2.0 * stored / lightest).sqrt()
+    };
+    let speed = swinging.max(released);
+    if speed.is_finite() && speed > 0.0 {
+        speed
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,195 @@
+//! Work along the steps of a shot.
+
+use super::energy::{Budget, Dissipated, gravity, kinetic, preload, rest_energy, stop, stored};
+use super::forces::Pass;
+use super::state::State;
+use crate::laws::Nature;
+use crate::system::{SectionColumns, System, TermColumns};
+use std::ops::Range;
+
+/// Integrates powers along the steps of a method.
+#[derive(Clone, Debug)]
+pub(crate) struct Meter {
+    /// Laws whose work is not all stored.
+    laws: Vec<&'static str>,
+    /// Powers of the laws, then of the cut, then of the driven end; a row a stage.
+    powers_w: Vec<Vec<f64>>,
+    work_j: Vec<f64>,
+    start_j: f64,
+    most_driven_j: f64,
+    rest_elastic_j: f64,
+    start_plastic_j: Vec<f64>,
+}
+
+impl Meter {
+    pub fn new(system: &System, state: &State, stages: usize) -> Self {
+        let mut laws: Vec<&'static str> = lossy(system).map(|term| term.law.info().name).collect();
+        laws.sort_unstable();
+        laws.dedup();
+        let slots = laws.len() + 2;
+        let mut meter = Self {
+            laws,
+            powers_w: vec![vec![0.0; slots]; stages],
+            work_j: vec![0.0; slots],
+            start_j: 0.0,
+            most_driven_j: 0.0,
+            rest_elastic_j: rest_energy(system),
+            start_plastic_j: Vec::new(),
+        };
+        meter.start_plastic_j = meter
+            .laws
+            .iter()
+            .map(|law| stored(system, state, Some(law)))
+            .collect();
+        meter.start_j = meter.budget(system, state).accounted_j();
+        meter
+    }
+
+    /// Powers at one stage, from the force pass just done.
+    pub fn stage(
+        &mut self,
+        stage: usize,
+        system: &System,
+        pass: &mut Pass,
+        contacts: Range<usize>,
+        driven_speed_m_s: f64,
+    ) {
+        let powers = &mut self.powers_w[stage];
+        powers.fill(0.0);
+        let (cut, driven) = (self.laws.len(), self.laws.len() + 1);
+        powers[cut] = cut_power(system, pass, contacts.clone());
+        if system.motion.is_some() {
+            powers[driven] = (pass.dynamic[1] + system.static_force_n[0]) * driven_speed_m_s;
+        }
+        for section in &system.sections {
+            let part =
+                section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);
+            for (term, gated) in with_gates(section).filter(|_| !part.is_empty()) {
+                let name = term.law.info().name;
+                if let Some(slot) = self.laws.iter().position(|&law| law == name) {
+                    powers[slot] += term_power(section, term, gated, pass, part.clone());
+                }
+            }
+        }
+    }
+
+    /// Adds the step's work: Σ h b_s P_s.
+    pub fn finish_step(&mut self, step_s: f64, weights: &[f64]) {
+        for (weight, powers) in weights.iter().zip(&self.powers_w) {
+            for (work, power) in self.work_j.iter_mut().zip(powers) {
+                *work += step_s * weight * power;
+            }
+        }
+        self.most_driven_j = self.most_driven_j.max(self.work_j[self.laws.len() + 1]);
+    }
+
+    /// Error of the step's work, as a fraction of the energy put in.
+    pub fn error(&self, step_s: f64, weights: &[f64]) -> f64 {
+        let input = self.start_j.abs() + self.most_driven_j;
+        if input == 0.0 {
+            return 0.0;
+        }
+        let slots = 0..self.work_j.len();
+        let error = |slot: usize| -> f64 {
+            let rows = weights.iter().zip(&self.powers_w);
+            rows.map(|(weight, powers)| weight * powers[slot]).sum()
+        };
+        slots
+            .map(|slot| (step_s * error(slot) / input).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// The last stage of a step is the first of the next.
+    pub fn carry_over(&mut self) {
+        let last = self.powers_w.len() - 1;
+        self.powers_w.swap(0, last);
+    }
+
+    /// All terms at a state that the meter has followed.
+    pub fn budget(&self, system: &System, state: &State) -> Budget {
+        let driven_j = self.work_j[self.laws.len() + 1];
+        let dissipated = self.laws.iter().enumerate().map(|(slot, law)| {
+            let start = self.start_plastic_j.get(slot).copied().unwrap_or(0.0);
+            let kept = stored(system, state, Some(law)) - start;
+            Dissipated {
+                law,
+                energy_j: self.work_j[slot] - kept,
+            }
+        });
+        Budget {
+            time_s: state.time_s,
+            start_j: self.start_j,
+            driven_j,
+            input_j: self.start_j.abs() + self.most_driven_j,
+            kinetic_j: kinetic(system, state),
+            elastic_j: stored(system, state, None) - self.rest_elastic_j,
+            dissipated: dissipated.collect(),
+            clipped_j: self.work_j[self.laws.len()],
+            gravity_j: gravity(system, state),
+            preload_j: preload(system, state),
+            stop_j: stop(system, state),
+        }
+    }
+}
+
+/// Terms whose work is not all stored.
+fn lossy(system: &System) -> impl Iterator<Item = &TermColumns> {
+    system
+        .sections
+        .iter()
+        .flat_map(SectionColumns::terms)
+        .filter(|term| term.law.info().nature != Nature::Elastic)
+}
+
+fn with_gates(section: &SectionColumns) -> impl Iterator<Item = (&TermColumns, bool)> {
+    let gated = section.gated.iter().map(|term| (term, true));
+    gated.chain(section.ungated.iter().map(|term| (term, false)))
+}
+
+/// Σ F δ̇ of one term over consecutive contacts.
+fn term_power(
+    section: &SectionColumns,
+    term: &TermColumns,
+    gated: bool,
+    pass: &mut Pass,
+    contacts: Range<usize>,
+) -> f64 {
+    let force = &mut pass.scratch[contacts.clone()];
+    force.fill(0.0);
+    let seen = crate::laws::Contacts {
+        overlap: &pass.overlap[contacts.clone()],
+        root: &pass.root[contacts.clone()],
+        rate: &pass.rate[contacts.clone()],
+        largest: &pass.largest[contacts.clone()],
+    };
+    term.law.add_forces(
+        &term.columns,
+        contacts.start - section.contacts.start,
+        seen,
+        force,
+    );
+    let (touching, rate) = (&pass.touching[contacts.clone()], &pass.rate[contacts]);
+    let acting = force
+        .iter()
+        .zip(touching)
+        .map(|(f, on)| if gated && *on == 0.0 { 0.0 } else { *f });
+    acting.zip(rate).map(|(f, rate)| f * rate).sum()
+}
+
+/// Σ (F_clipped − F_unclipped) δ̇.
+fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
+    if system.tension == crate::chain::Tension::Allowed {
+        return 0.0;
+    }
+    contacts
+        .map(|c| {
+            let acting = pass.dynamic[c + 1] + system.static_force_n[c];
+            let gated = if pass.touching[c] > 0.0 {
+                pass.closed_force[c]
+            } else {
+                0.0
+            };
+            (acting - gated - pass.across[c]) * pass.rate[c]
+        })
+        .sum()
+}
