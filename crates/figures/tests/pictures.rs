@@ -89,29 +89,30 @@ fn every_kind_of_picture_is_well_formed_with_all_text_on_the_page() {
     }
 }
 
+/// No two texts touch.
+fn check_apart(svg: &str) {
+    let tree = Tree::from_str(svg, &Options::default()).expect("valid SVG");
+    let mut texts = Vec::new();
+    each_group(tree.root(), &mut |group| {
+        if group.id().starts_with('t') {
+            texts.push((group.id().to_owned(), group.abs_bounding_box()));
+        }
+    });
+    for (i, (a, first)) in texts.iter().enumerate() {
+        for (b, second) in &texts[..i] {
+            let apart = first.right() < second.left()
+                || second.right() < first.left()
+                || first.bottom() < second.top()
+                || second.bottom() < first.top();
+            assert!(apart, "{a} at {first:?} touches {b} at {second:?}");
+        }
+    }
+}
+
 #[test]
 fn texts_of_a_picture_do_not_touch() {
     for figure in every_kind() {
-        let tree = Tree::from_str(&figure.svg(), &Options::default()).expect("valid SVG");
-        let mut texts = Vec::new();
-        each_group(tree.root(), &mut |group| {
-            if group.id().starts_with('t') {
-                texts.push((group.id().to_owned(), group.abs_bounding_box()));
-            }
-        });
-        for (i, (a, first)) in texts.iter().enumerate() {
-            for (b, second) in &texts[..i] {
-                let apart = first.right() < second.left()
-                    || second.right() < first.left()
-                    || first.bottom() < second.top()
-                    || second.bottom() < first.top();
-                assert!(
-                    apart,
-                    "{a} at {first:?} touches {b} at {second:?} in {:?}",
-                    figure.size_mm()
-                );
-            }
-        }
+        check_apart(&figure.svg());
     }
 }
 
@@ -256,7 +257,9 @@ proptest! {
             recorder: "charge amplifier".into(),
             ..RigDrawing::default()
         };
-        check(&rig.figure().svg());
+        let svg = rig.figure().svg();
+        check(&svg);
+        check_apart(&svg);
     }
 
     #[test]

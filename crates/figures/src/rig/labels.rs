@@ -44,8 +44,8 @@ impl Labels {
     }
 
     pub(super) fn draw(mut self, svg: &mut Svg) {
-        spread(&mut self.above);
-        spread(&mut self.below);
+        arrange(&mut self.above);
+        arrange(&mut self.below);
         for label in &self.above {
             let top = ABOVE - LEADING * (label.lines.len() as f64 - 1.0);
             let bend = Point::new(label.centre, ABOVE + 4.0);
@@ -78,20 +78,29 @@ fn draw_label(svg: &mut Svg, label: &Label, top: f64, leader: &[Point]) {
     }
 }
 
-/// Moves labels sideways, in their order, until none overlap and all are on the page.
-fn spread(labels: &mut [Label]) {
+/// Moves labels sideways, in the order of what they name, until none overlap.
+fn arrange(labels: &mut [Label]) {
     labels.sort_by(|a, b| a.anchor.x.total_cmp(&b.anchor.x));
+    let widths: Vec<f64> = labels.iter().map(Label::width).collect();
+    let mut centres: Vec<f64> = labels.iter().map(|l| l.anchor.x).collect();
+    spread(&mut centres, &widths);
+    labels
+        .iter_mut()
+        .zip(centres)
+        .for_each(|(label, x)| label.centre = x);
+}
+
+/// Moves texts of the given widths apart, keeping their order, and onto the page.
+pub(super) fn spread(centres: &mut [f64], widths: &[f64]) {
     let mut left = 0.0;
-    for label in labels.iter_mut() {
-        let half = 0.5 * label.width();
-        label.centre = label.anchor.x.max(left + half);
-        left = label.centre + half + GAP;
+    for (centre, width) in centres.iter_mut().zip(widths) {
+        *centre = centre.max(left + 0.5 * width);
+        left = *centre + 0.5 * width + GAP;
     }
     let mut right = WIDTH;
-    for label in labels.iter_mut().rev() {
-        let half = 0.5 * label.width();
-        label.centre = label.centre.min(right - half);
-        right = label.centre - half - GAP;
+    for (centre, width) in centres.iter_mut().zip(widths).rev() {
+        *centre = centre.min(right - 0.5 * width);
+        right = *centre - 0.5 * width - GAP;
     }
 }
 
@@ -103,7 +112,7 @@ mod tests {
     fn crowded_labels_are_spread_without_overlap() {
         let at = |x: f64| label(Point::new(x, 50.0), "steel stop");
         let mut labels = vec![at(490.0), at(480.0), at(485.0), at(10.0)];
-        spread(&mut labels);
+        arrange(&mut labels);
         for pair in labels.windows(2) {
             let gap = pair[1].centre - pair[0].centre;
             // Rounding of a sum of a few lengths.

@@ -1,6 +1,6 @@
 //! The row of beads with its contacts and the sensor bead.
 
-use super::labels::Labels;
+use super::labels::{Labels, spread};
 use super::layout::Layout;
 use super::{AXIS, FONT, INK, RigDrawing, millimetres};
 use crate::draw::{Colour, Paint, PathData, Point, Svg};
@@ -14,6 +14,8 @@ const OIL: Colour = Colour(224, 160, 30);
 pub(super) const PIEZO: Colour = Colour(150, 40, 110);
 /// Height of the line that groups dry and wet contacts.
 const BRACE: f64 = 111.0;
+/// Widest text of one such group.
+const WIDEST: f64 = 150.0;
 
 /// Draws oil, beads and elisions, and labels them.
 pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
@@ -116,29 +118,77 @@ fn label_beads(rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
     labels.above(Point::new(*x, AXIS - 0.8 * layout.radius()), &text);
 }
 
+/// A line under a group of contacts with its text.
+struct Brace {
+    from: f64,
+    to: f64,
+    text: TextLine,
+    colour: Colour,
+}
+
 /// Lines under the row that say which contacts are dry and which wet.
 pub(super) fn draw_braces(svg: &mut Svg, rig: &RigDrawing, layout: &Layout) {
     let leader = rig.sensor().and_then(|n| layout.bead(n));
-    for (first, last, wet) in groups(rig) {
-        let from = layout.contact(first) - 0.22 * layout.diameter;
-        let to = layout.contact(last) + 0.22 * layout.diameter;
-        let contacts = if first == last {
-            format!("contact {first}")
-        } else {
-            format!("contacts {first}–{last}")
-        };
-        let text = match (wet, rig.liquid.is_empty()) {
-            (false, _) => format!("{contacts} dry"),
-            (true, true) => format!("{contacts} wet"),
-            (true, false) => format!("{contacts} wet: {}", rig.liquid),
-        };
-        let colour = if wet {
+    let braces: Vec<Brace> = groups(rig)
+        .into_iter()
+        .map(|g| brace(rig, layout, g))
+        .collect();
+    let widths: Vec<f64> = braces.iter().map(|b| b.text.width()).collect();
+    let mut centres: Vec<f64> = braces
+        .iter()
+        .map(|b| brace_text(b.from, b.to, 0.5 * b.text.width(), leader))
+        .collect();
+    spread(&mut centres, &widths);
+    for (brace, centre) in braces.iter().zip(centres) {
+        draw_brace(svg, brace, centre);
+    }
+}
+
+fn brace(rig: &RigDrawing, layout: &Layout, (first, last, wet): (usize, usize, bool)) -> Brace {
+    let contacts = if first == last {
+        format!("contact {first}")
+    } else {
+        format!("contacts {first}–{last}")
+    };
+    let text = match (wet, rig.liquid.is_empty()) {
+        (false, _) => format!("{contacts} dry"),
+        (true, true) => format!("{contacts} wet"),
+        (true, false) => format!("{contacts} wet: {}", rig.liquid),
+    };
+    Brace {
+        from: layout.contact(first) - 0.22 * layout.diameter,
+        to: layout.contact(last) + 0.22 * layout.diameter,
+        text: TextLine::new(&text, FONT).fitted(WIDEST),
+        colour: if wet {
             OIL.mixed(Colour::BLACK, 0.3)
         } else {
             INK
-        };
-        draw_brace(svg, (from, to), &text, colour, leader);
+        },
     }
+}
+
+fn draw_brace(svg: &mut Svg, brace: &Brace, centre: f64) {
+    let Brace {
+        from,
+        to,
+        text,
+        colour,
+    } = brace;
+    let corners = [
+        (*from, BRACE - 4.0),
+        (*from, BRACE),
+        (*to, BRACE),
+        (*to, BRACE - 4.0),
+    ];
+    let mut path = PathData::new();
+    path.polyline(&corners.map(|(x, y)| Point::new(x, y)));
+    svg.path(&path, &Paint::line(*colour, 0.9));
+    text.draw(
+        svg,
+        Point::new(centre, BRACE + 8.5),
+        Anchor::CENTRE,
+        *colour,
+    );
 }
 
 /// Middle of a brace's text: the middle, or off the leader that runs through it.
@@ -149,27 +199,6 @@ fn brace_text(from: f64, to: f64, half: f64, leader: Option<f64>) -> f64 {
         Some(x) => x + half + 4.0,
         None => middle,
     }
-}
-
-fn draw_brace(
-    svg: &mut Svg,
-    (from, to): (f64, f64),
-    text: &str,
-    colour: Colour,
-    leader: Option<f64>,
-) {
-    let corners = [
-        (from, BRACE - 4.0),
-        (from, BRACE),
-        (to, BRACE),
-        (to, BRACE - 4.0),
-    ];
-    let mut path = PathData::new();
-    path.polyline(&corners.map(|(x, y)| Point::new(x, y)));
-    svg.path(&path, &Paint::line(colour, 0.9));
-    let line = TextLine::new(text, FONT).fitted((to - from).max(40.0));
-    let centre = brace_text(from, to, 0.5 * line.width(), leader);
-    line.draw(svg, Point::new(centre, BRACE + 8.5), Anchor::CENTRE, colour);
 }
 
 /// Neighbouring contacts of one kind: first, last, wet.
