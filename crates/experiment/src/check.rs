@@ -2,7 +2,7 @@
 
 use crate::document::{Entry, Node, Value};
 use crate::finding::Problem;
-use crate::keys::{Fields, Key, Kind, Limits, Need, Variants};
+use crate::keys::{self, Fields, Key, Kind, Limits, Need, Variants};
 use crate::laws;
 use crate::nearest;
 use crate::value::{Expected, Units};
@@ -51,7 +51,12 @@ impl Check {
             label
         };
         let near = nearest::of(&entry.key, known);
-        self.add(Problem::new(&entry.key_span, message, label).nearest(near));
+        let problem = Problem::new(&entry.key_span, message, label);
+        let problem = match keys::home(&entry.key) {
+            Some(place) => problem.help(format!("`{}` belongs {place}", entry.key)),
+            None => problem,
+        };
+        self.add(problem.nearest(near));
     }
 
     fn needed(&mut self, key: &Key, node: &Node, fields: &Fields) {

@@ -50,6 +50,15 @@ fn an_unknown_key_names_the_nearest_and_all() {
 }
 
 #[test]
+fn a_key_in_the_wrong_table_is_sent_home() {
+    let finding = after("bead = 7", "bead = 7\ntension = \"clipped\"");
+    let words = ["`tension` belongs at the top of the file"];
+    check(&finding, line_of("bead = 7") + 1, "tension", &words);
+    let finding = after("title =", "incline = \"1 deg\"\ntitle =");
+    check(&finding, 1, "incline", &["`incline` belongs into [track]"]);
+}
+
+#[test]
 fn a_wrong_dimension_names_the_expected_unit() {
     let finding = after("\"6.35 mm\"\nmass", "\"6.35 kg\"\nmass");
     let words = ["`radius` is a mass", "a length in m", "\"6.35 mm\""];

@@ -130,3 +130,24 @@ impl Key {
         Self { need, ..self }
     }
 }
+
+/// Where a key belongs that stands in the wrong table, in words.
+pub(crate) fn home(key: &str) -> Option<String> {
+    if ROOT.key(key).is_some() {
+        return Some("at the top of the file, before the first table".to_owned());
+    }
+    let tables = ROOT.keys.iter().flat_map(|key| tables_of(&key.kind));
+    let mut holding = tables.filter(|fields| fields.key(key).is_some());
+    holding
+        .next()
+        .map(|fields| format!("into {}", fields.title))
+}
+
+/// The tables that a key of the file may hold.
+fn tables_of(kind: &'static Kind) -> Vec<&'static Fields> {
+    match kind {
+        Kind::Table(fields) | Kind::Tables(fields) | Kind::Named(fields) => vec![fields],
+        Kind::Variants(variants) => variants.options.iter().map(|(_, fields)| fields).collect(),
+        _ => Vec::new(),
+    }
+}
