@@ -127,3 +127,28 @@ fn force_passes_per_shot_are_no_more_than_pinned() {
         );
     }
 }
+
+#[test]
+fn an_accuracy_beyond_rounding_is_refused_with_the_time_and_the_contact() {
+    let system = System::new(&row(5, 0.5, vec![hertz()])).unwrap();
+    let method = DormandPrince { tolerance: 1e-22 };
+    let error = run(&system, &method, Limits::until(1e-3), &mut [])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("cannot reach the asked accuracy"), "{error}");
+    assert!(
+        error.contains("t = ") && error.contains("contact "),
+        "{error}"
+    );
+}
+
+#[test]
+fn work_has_a_limit_that_is_reported() {
+    let system = System::new(&row(5, 0.5, vec![hertz()])).unwrap();
+    let limits = Limits {
+        force_passes: 100,
+        ..Limits::until(1e-3)
+    };
+    let error = run(&system, &DormandPrince { tolerance: 1e-9 }, limits, &mut []).unwrap_err();
+    assert!(error.to_string().contains("gave up"), "{error}");
+}

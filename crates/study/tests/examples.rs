@@ -265,13 +265,14 @@ fn newtons_cradle_does_not_send_one_ball_alone() {
 }
 
 #[test]
-fn every_built_in_experiment_runs() {
+fn every_built_in_experiment_balances_its_energy_to_the_accuracy_asked() {
     for preset in presets() {
-        let experiment = example(preset.name);
-        let (plan, _) = Plan::from_experiment(&experiment, None).unwrap();
-        let shot = shoot(&plan.with_accuracy(1e-5).with_budget()).unwrap();
-        let residual = shot.budget.unwrap().relative_residual();
-        assert!(residual.abs() < 1e-5, "{}: {residual:e}", preset.name);
+        for accuracy in [1e-6, 1e-9] {
+            let (plan, _) = Plan::from_experiment(&example(preset.name), None).unwrap();
+            let shot = shoot(&plan.with_accuracy(accuracy).with_budget()).unwrap();
+            let residual = shot.budget.unwrap().relative_residual();
+            assert!(residual.abs() < accuracy, "{}: {residual:e}", preset.name);
+        }
     }
 }
 
