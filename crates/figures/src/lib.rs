@@ -8,6 +8,8 @@
 //! `\alpha` are set as in TeX; outside everything is literal apart from
 //! commands such as `\mu`. Equal input gives equal bytes.
 
+pub mod paper;
+
 mod animation;
 mod axis;
 mod chart;

@@ -121,7 +121,10 @@ impl Curve {
         };
         let last = self.points.len().saturating_sub(1);
         let slope = |(i, p): (usize, &Point)| {
-            let around = (self.points.get(i.saturating_sub(1)), self.points.get((i + 1).min(last)));
+            let around = (
+                self.points.get(i.saturating_sub(1)),
+                self.points.get((i + 1).min(last)),
+            );
             match around {
                 (Some(before), Some(after)) if before.speed_m_s < after.speed_m_s => {
                     exponent(before, after) * p.tof_s(branch) / p.speed_m_s

@@ -69,7 +69,12 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
             format!("{} to {}", digits(low), digits(high))
         });
         let value = value_text(finding.value, finding.accuracy);
-        let row = [&judged.claim.statement, judged.verdict.name(), &value, &range];
+        let row = [
+            &judged.claim.statement,
+            judged.verdict.name(),
+            &value,
+            &range,
+        ];
         let _ = writeln!(page, "| {} |", row.join(" | "));
     }
     page.push_str("\n## One by one\n");
@@ -96,13 +101,20 @@ fn section(page: &mut String, judged: &Judged) {
     let _ = writeln!(page, "- Threshold: {threshold}. {}", claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
     if let Some(rounded) = &judged.rounded {
-        let counts = Verdict::ALL.iter().zip(rounded.verdicts).filter(|(_, count)| *count > 0);
+        let counts = Verdict::ALL
+            .iter()
+            .zip(rounded.verdicts)
+            .filter(|(_, count)| *count > 0);
         let counts: Vec<String> = counts
             .map(|(verdict, count)| format!("{verdict} in {count}"))
             .collect();
         let printed = finding.verdict;
         let range = rounded.range.map_or(String::new(), |(low, high)| {
-            format!("; the value lies between {} and {}", digits(low), digits(high))
+            format!(
+                "; the value lies between {} and {}",
+                digits(low),
+                digits(high)
+            )
         });
         let _ = writeln!(
             page,

@@ -66,7 +66,9 @@ pub fn judge_all_rounded(
     reference: &Evidence,
     draws: &[Evidence],
 ) -> Vec<Judged> {
-    let all = judges.iter().map(|judge| decide(judge, printed, reference, draws));
+    let all = judges
+        .iter()
+        .map(|judge| decide(judge, printed, reference, draws));
     all.collect()
 }
 
@@ -78,7 +80,11 @@ fn decide(judge: &Judge, printed: &Evidence, reference: &Evidence, draws: &[Evid
     let flips = rounded.as_ref().is_some_and(|r| r.flips(unrounded));
     Judged {
         claim: judge.claim.clone(),
-        verdict: if flips { Verdict::NotDecidable } else { finding.verdict },
+        verdict: if flips {
+            Verdict::NotDecidable
+        } else {
+            finding.verdict
+        },
         finding,
         rounded,
     }

@@ -18,7 +18,10 @@ pub fn scan_csv(scan: &Scan) -> String {
         let options = Reading::switches().iter();
         let options = options.map(|s| row.reading.get(s.name).unwrap_or_default().to_owned());
         let verdicts = row.verdicts.iter().map(|verdict| verdict.name().to_owned());
-        let fields: Vec<String> = options.chain([row.score().to_string()]).chain(verdicts).collect();
+        let fields: Vec<String> = options
+            .chain([row.score().to_string()])
+            .chain(verdicts)
+            .collect();
         let _ = writeln!(csv, "{}", fields.join(","));
     }
     csv
@@ -32,7 +35,9 @@ pub fn scan_markdown(scan: &Scan) -> String {
         "The paper leaves open what these switches decide. The score counts a claim that holds as \
          1 and one that holds in part as 1/2; rounding of the printed constants is left aside here.\n\n",
     );
-    page.push_str("## One switch at a time\n\n| reading | score | gained | lost |\n|---|---|---|---|\n");
+    page.push_str(
+        "## One switch at a time\n\n| reading | score | gained | lost |\n|---|---|---|---|\n",
+    );
     let _ = writeln!(page, "| default | {} | | |", scan.default.score());
     for row in &scan.single {
         table_row(&mut page, scan, row);
@@ -46,18 +51,29 @@ pub fn scan_markdown(scan: &Scan) -> String {
 fn table_row(page: &mut String, scan: &Scan, row: &Row) {
     let (gained, lost) = row.against(&scan.default);
     let (gained, lost) = (names(scan, &gained), names(scan, &lost));
-    let _ = writeln!(page, "| {} | {} | {gained} | {lost} |", row.reading, row.score());
+    let _ = writeln!(
+        page,
+        "| {} | {} | {gained} | {lost} |",
+        row.reading,
+        row.score()
+    );
 }
 
 /// Names of claims, by index.
 fn names(scan: &Scan, claims: &[usize]) -> String {
-    let names = claims.iter().filter_map(|i| scan.claims.get(*i)).map(|claim| claim.id.as_str());
+    let names = claims
+        .iter()
+        .filter_map(|i| scan.claims.get(*i))
+        .map(|claim| claim.id.as_str());
     names.collect::<Vec<_>>().join(", ")
 }
 
 fn product(page: &mut String, scan: &Scan) {
     page.push_str("\n## Full product\n\n");
-    let factors = scan.product_of.iter().map(|(name, options)| format!("{name} ({})", options.len()));
+    let factors = scan
+        .product_of
+        .iter()
+        .map(|(name, options)| format!("{name} ({})", options.len()));
     let factors: Vec<String> = factors.collect();
     let _ = writeln!(
         page,
@@ -77,7 +93,9 @@ fn product(page: &mut String, scan: &Scan) {
     let mut rows: Vec<&Row> = scan.product.iter().collect();
     rows.sort_by(|a, b| {
         let changes = |row: &Row| row.reading.changes().len();
-        b.score().total_cmp(&a.score()).then(changes(a).cmp(&changes(b)))
+        b.score()
+            .total_cmp(&a.score())
+            .then(changes(a).cmp(&changes(b)))
     });
     for row in rows.into_iter().take(10) {
         table_row(page, scan, row);
@@ -96,11 +114,20 @@ fn closest(page: &mut String, scan: &Scan) {
         scan.default.score(),
         scan.claims.len()
     );
-    let or_none = |list: String| if list.is_empty() { "nothing".to_owned() } else { list };
+    let or_none = |list: String| {
+        if list.is_empty() {
+            "nothing".to_owned()
+        } else {
+            list
+        }
+    };
     let _ = writeln!(page, "- Gained: {}.", or_none(names(scan, &gained)));
     let _ = writeln!(page, "- Lost: {}.", or_none(names(scan, &lost)));
     let unmet = row.verdicts.iter().enumerate();
-    let unmet: Vec<usize> = unmet.filter(|(_, v)| **v == Verdict::Fails).map(|(i, _)| i).collect();
+    let unmet: Vec<usize> = unmet
+        .filter(|(_, v)| **v == Verdict::Fails)
+        .map(|(i, _)| i)
+        .collect();
     let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
 }
 
@@ -117,12 +144,19 @@ fn prices(page: &mut String, scan: &Scan) {
         let default = verdict(&scan.default);
         match &price.row {
             None => {
-                let _ = writeln!(page, "| {name} | {default} | {default} | no reading tried | | |");
+                let _ = writeln!(
+                    page,
+                    "| {name} | {default} | {default} | no reading tried | | |"
+                );
             }
             Some(row) => {
                 let lost = names(scan, &row.against(&scan.default).1);
                 let (best, score) = (verdict(row), row.score());
-                let _ = writeln!(page, "| {name} | {default} | {best} | {} | {score} | {lost} |", row.reading);
+                let _ = writeln!(
+                    page,
+                    "| {name} | {default} | {best} | {} | {score} | {lost} |",
+                    row.reading
+                );
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Constants drawn anew within half a unit of their last printed digit.
 
+use crate::claims::Oil;
 use hertzchain_chain::laws::{DampingCubic, law};
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Start};
-use crate::claims::Oil;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -94,12 +94,20 @@ impl Draw {
             cubic_kg_s_m2: within(half::CUBIC_KG_S_M2),
             mass_kg: within(half::MASS_KG),
             radius_m: within(half::RADIUS_M),
-            oils: LIQUIDS.map(|row| (row.0, WetOffsets::draw(&mut within, row))).to_vec(),
+            oils: LIQUIDS
+                .map(|row| (row.0, WetOffsets::draw(&mut within, row)))
+                .to_vec(),
         }
     }
 
     /// Changes a chain of a case, hit at a speed.
-    pub fn change(&self, case: &str, speed_m_s: f64, prefactors: Option<Prefactors>, chain: &mut Chain) {
+    pub fn change(
+        &self,
+        case: &str,
+        speed_m_s: f64,
+        prefactors: Option<Prefactors>,
+        chain: &mut Chain,
+    ) {
         for bead in &mut chain.beads {
             self.change_bead(bead);
         }
@@ -109,7 +117,9 @@ impl Draw {
         self.change_far_end(&mut chain.far);
         let oil = self.oils.iter().find(|(name, _)| *name == case);
         for section in &mut chain.sections {
-            if let (Some(material), Some((_, oil)), Some(at_1)) = (&mut section.material, oil, prefactors) {
+            if let (Some(material), Some((_, oil)), Some(at_1)) =
+                (&mut section.material, oil, prefactors)
+            {
                 oil.change(material, speed_m_s, at_1);
             }
             for term in &mut section.laws {
@@ -123,7 +133,11 @@ impl Draw {
     /// The cubic law with its drawn coefficient, in place of the printed one.
     fn cubic(&self, name: &str) -> Option<std::sync::Arc<dyn hertzchain_chain::laws::Law>> {
         let coefficient_kg_s_m2 = PRINTED_CUBIC_KG_S_M2 + self.cubic_kg_s_m2;
-        (name == "damping_cubic").then(|| law(DampingCubic { coefficient_kg_s_m2 }))
+        (name == "damping_cubic").then(|| {
+            law(DampingCubic {
+                coefficient_kg_s_m2,
+            })
+        })
     }
 
     fn change_bead(&self, bead: &mut Bead) {
@@ -134,7 +148,10 @@ impl Draw {
 
     fn change_far_end(&self, far: &mut FarEnd) {
         match far {
-            FarEnd::HalfBead { radius_m, material } | FarEnd::Stop { radius_m, material, .. } => {
+            FarEnd::HalfBead { radius_m, material }
+            | FarEnd::Stop {
+                radius_m, material, ..
+            } => {
                 *radius_m += self.radius_m;
                 self.change_steel(material);
             }
@@ -148,7 +165,10 @@ impl Draw {
     fn change_steel(&self, material: &mut Material) {
         material.young_modulus_pa += self.young_modulus_pa;
         material.poisson_ratio += self.poisson_ratio;
-        for viscosity in [&mut material.shear_viscosity_pa_s, &mut material.bulk_viscosity_pa_s] {
+        for viscosity in [
+            &mut material.shear_viscosity_pa_s,
+            &mut material.bulk_viscosity_pa_s,
+        ] {
             // A chain without viscosity, or without bulk viscosity, stays so.
             if *viscosity > 0.0 {
                 *viscosity += self.viscosity_pa_s;

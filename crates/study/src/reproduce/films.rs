@@ -1,15 +1,19 @@
 //! Shots looked at over time, for pictures.
 
-use super::gather::{Cases, failed, plan};
 use super::ReproduceError;
+use super::gather::{Cases, failed, plan};
 use crate::shoot;
 use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::Budget;
 use rayon::prelude::*;
 
 /// Case and speed in m/s of the four panels of the paper's Fig. 2.
-pub const SIGNAL_SHOTS: [(&str, f64); 4] =
-    [("dry", 0.1368), ("pump", 1.152), ("gear", 0.1396), ("motor", 0.3993)];
+pub const SIGNAL_SHOTS: [(&str, f64); 4] = [
+    ("dry", 0.1368),
+    ("pump", 1.152),
+    ("gear", 0.1396),
+    ("motor", 0.3993),
+];
 
 /// One dry and one wet shot that are followed bead by bead, at the same
 /// speed: that of the split pulse of the paper's Fig. 2 (d).
@@ -59,7 +63,10 @@ const FILM_ACCURACY: f64 = 1e-9;
 /// # Errors
 /// The first shot that can't be computed.
 pub fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
-    SIGNAL_SHOTS.par_iter().map(|(case, speed)| signal(cases, case, *speed, accuracy)).collect()
+    SIGNAL_SHOTS
+        .par_iter()
+        .map(|(case, speed)| signal(cases, case, *speed, accuracy))
+        .collect()
 }
 
 fn signal(
@@ -76,7 +83,10 @@ fn signal(
     let trace = shot.trace.unwrap_or_default();
     let peaks = shot.passage.map_or(Vec::new(), |p| {
         let all = [Some(p.incident), Some(p.wall), p.reflected];
-        all.into_iter().flatten().map(|peak| (peak.time_s, peak.value)).collect()
+        all.into_iter()
+            .flatten()
+            .map(|peak| (peak.time_s, peak.value))
+            .collect()
     });
     Ok(SignalShot {
         case: case.to_owned(),
@@ -92,7 +102,10 @@ fn signal(
 /// # Errors
 /// The first shot that can't be computed.
 pub fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
-    FILM_SHOTS.par_iter().map(|(case, speed)| film(cases, case, *speed)).collect()
+    FILM_SHOTS
+        .par_iter()
+        .map(|(case, speed)| film(cases, case, *speed))
+        .collect()
 }
 
 fn film(cases: &Cases, case: &str, speed_m_s: f64) -> Result<Film, ReproduceError> {

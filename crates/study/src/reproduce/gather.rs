@@ -10,7 +10,14 @@ use hertzchain_experiment::{Experiment, Reading, preset};
 use rayon::prelude::*;
 
 /// The paper's chains, in the order of the tables.
-pub const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gear", "motor"];
+pub const CASES: [&str; 6] = [
+    "hertz",
+    "hertz-viscoelastic",
+    "dry",
+    "pump",
+    "gear",
+    "motor",
+];
 
 /// The wet ones.
 pub const OILS: [&str; 3] = ["pump", "gear", "motor"];
@@ -45,14 +52,18 @@ impl Cases {
     /// # Errors
     /// A reading that leaves something outside a chain.
     pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
-        let held = reading.with("preload", "constant").map_err(ReproduceError::Reading)?;
+        let held = reading
+            .with("preload", "constant")
+            .map_err(ReproduceError::Reading)?;
         let named = CASES.map(|case| (case, case, *reading));
         let all = named.into_iter().chain([(HELD, "dry", held)]);
         let open = |(case, file, reading): (&'static str, &str, Reading)| {
             let experiment = preset(file).map_err(ReproduceError::Preset)?;
             Ok((case, experiment.with_reading(&reading)?))
         };
-        all.map(open).collect::<Result<_, ReproduceError>>().map(Self)
+        all.map(open)
+            .collect::<Result<_, ReproduceError>>()
+            .map(Self)
     }
 
     /// The experiment of a case.
@@ -155,10 +166,18 @@ fn point(
 ) -> Result<Point, ReproduceError> {
     let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
     let (n, beads) = (plan.sensor_bead, plan.chain.beads.len());
-    let sensors = vec![Sensor::Bead(n), Sensor::Position(1), Sensor::Position(beads)];
+    let sensors = vec![
+        Sensor::Bead(n),
+        Sensor::Position(1),
+        Sensor::Position(beads),
+    ];
     let plan = plan.watching(sensors, Some(SAMPLED_S));
     let compute = || {
-        let shot = if how.checked { shoot_checked(&plan) } else { shoot(&plan) };
+        let shot = if how.checked {
+            shoot_checked(&plan)
+        } else {
+            shoot(&plan)
+        };
         let shot = shot.map_err(|error| failed(case, speed_m_s, error))?;
         Ok(read_off(&plan, speed_m_s, &shot))
     };
@@ -226,13 +245,16 @@ fn second_return(plan: &Plan, shot: &Shot, passage: &Passage) -> Option<f64> {
     let until = first.time_s + 2.0 * n / (beads - n) * back;
     let trace = shot.trace.as_ref()?;
     let samples = trace.columns.first()?;
-    let tops = samples.windows(3).zip(trace.time_s.iter().skip(1)).filter_map(|(w, time)| {
-        let [left, middle, right] = [w.first()?, w.get(1)?, w.get(2)?];
-        let other = *time > passage.wall.time_s
-            && *time < until
-            && (time - first.time_s).abs() > 0.25 * width;
-        (other && middle > left && middle >= right).then_some(top(*left, *middle, *right))
-    });
+    let tops = samples
+        .windows(3)
+        .zip(trace.time_s.iter().skip(1))
+        .filter_map(|(w, time)| {
+            let [left, middle, right] = [w.first()?, w.get(1)?, w.get(2)?];
+            let other = *time > passage.wall.time_s
+                && *time < until
+                && (time - first.time_s).abs() > 0.25 * width;
+            (other && middle > left && middle >= right).then_some(top(*left, *middle, *right))
+        });
     Some(tops.fold(0.0, f64::max))
 }
 

@@ -1,8 +1,8 @@
 //! Everything in the paper, computed anew.
 
 mod error;
-mod films;
 mod files;
+mod films;
 mod gather;
 mod memory;
 mod progress;

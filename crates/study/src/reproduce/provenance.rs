@@ -56,7 +56,10 @@ impl Provenance {
 #[must_use]
 pub fn commit() -> Option<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let git = source.ancestors().map(|folder| folder.join(".git")).find(|git| git.is_dir())?;
+    let git = source
+        .ancestors()
+        .map(|folder| folder.join(".git"))
+        .find(|git| git.is_dir())?;
     let head = fs::read_to_string(git.join("HEAD")).ok()?;
     let head = head.trim();
     let Some(branch) = head.strip_prefix("ref: ") else {

@@ -44,14 +44,18 @@ impl Options {
     pub fn with_readings(self) -> Self {
         Self {
             draws: 256,
-            readings: 512,
+            readings: 1200,
             ..self
         }
     }
 }
 
-/// Accuracy of shots that only decide claims under rounding and readings.
-const SCAN_ACCURACY: f64 = 1e-5;
+/// Accuracy of shots that only tell whether rounding can change a verdict.
+const DRAW_ACCURACY: f64 = 1e-5;
+
+/// Accuracy of shots that decide claims in other readings: dips of a ratio and
+/// residuals in standard errors need more than the crossing of 1 does.
+const SCAN_ACCURACY: f64 = 1e-6;
 
 /// Everything that was computed.
 #[derive(Clone, Debug)]
@@ -86,7 +90,10 @@ pub fn reproduce(
     let reading = Reading::default();
     let cases = Cases::new(&reading)?;
     let done = || progress.advance();
-    progress.begin("times of flight", ((CASES.len() + 1) * SPEEDS_M_S.len()) as u64);
+    progress.begin(
+        "times of flight",
+        ((CASES.len() + 1) * SPEEDS_M_S.len()) as u64,
+    );
     let how = Gathering {
         reading,
         speeds_m_s: &SPEEDS_M_S,
@@ -125,7 +132,7 @@ fn judged(
     let how = Gathering {
         reading: Reading::default(),
         speeds_m_s: &SCAN_SPEEDS_M_S,
-        accuracy: SCAN_ACCURACY,
+        accuracy: DRAW_ACCURACY,
         checked: false,
     };
     progress.begin("rounding of the printed constants", options.draws as u64);
@@ -174,7 +181,10 @@ impl Reproduction {
             ("tof.csv", tof_csv(&self.evidence)),
             ("ratios.csv", ratios_csv(&self.evidence)),
             ("power_laws.csv", power_laws_csv(&self.evidence)),
-            ("power_law_residuals.csv", power_law_residuals_csv(&self.evidence)),
+            (
+                "power_law_residuals.csv",
+                power_law_residuals_csv(&self.evidence),
+            ),
             ("oils.csv", oils_csv(&self.cases)?),
             ("claims.json", json(claims_json(&self.judged, &reading))),
             ("claims.md", claims_markdown(&self.judged, &reading)),

@@ -18,7 +18,13 @@ impl Csv {
     fn row(&mut self, names: &[&str], speed_m_s: Option<f64>, numbers: &[f64]) {
         let mut fields: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         fields.extend(speed_m_s.map(|speed| speed.to_string()));
-        let number = |n: &f64| if n.is_finite() { format!("{n:.12e}") } else { String::new() };
+        let number = |n: &f64| {
+            if n.is_finite() {
+                format!("{n:.12e}")
+            } else {
+                String::new()
+            }
+        };
         fields.extend(numbers.iter().map(number));
         let _ = writeln!(self.0, "{}", fields.join(","));
     }

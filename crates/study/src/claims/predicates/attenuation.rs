@@ -10,7 +10,10 @@ pub(super) fn attenuates_more(claim: &Claim, evidence: &Evidence) -> Finding {
         return missing();
     };
     let left = |p: &Point| {
-        [("wall", p.wall_peak_n / p.sensor_peak_n), ("return", p.returning_peak_n / p.sensor_peak_n)]
+        [
+            ("wall", p.wall_peak_n / p.sensor_peak_n),
+            ("return", p.returning_peak_n / p.sensor_peak_n),
+        ]
     };
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for case in &claim.cases {

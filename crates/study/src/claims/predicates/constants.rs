@@ -24,9 +24,10 @@ pub(super) fn dynamic_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
 pub(super) fn viscosity_ratio(claim: &Claim, evidence: &Evidence) -> Finding {
     let oil = |i: usize| evidence.oil(claim.cases.get(i)?);
     match (oil(0), oil(1)) {
-        (Some(a), Some(b)) => {
-            near(claim, a.dynamic_viscosity_pa_s() / b.dynamic_viscosity_pa_s())
-        }
+        (Some(a), Some(b)) => near(
+            claim,
+            a.dynamic_viscosity_pa_s() / b.dynamic_viscosity_pa_s(),
+        ),
         _ => missing(),
     }
 }

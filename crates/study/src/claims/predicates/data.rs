@@ -8,7 +8,10 @@ use crate::claims::{Claim, Evidence, Finding, Tally};
 pub(super) fn overlaps_data(claim: &Claim, evidence: &Evidence) -> Finding {
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for peak in &evidence.digitised {
-        let Some(p) = evidence.curve(&peak.case).and_then(|curve| curve.at(peak.speed_m_s)) else {
+        let Some(p) = evidence
+            .curve(&peak.case)
+            .and_then(|curve| curve.at(peak.speed_m_s))
+        else {
             continue;
         };
         let model = p.sensor_peak_n / p.wall_peak_n;

@@ -13,7 +13,11 @@ pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
         // 1 − R² is the residuals' sum of squares over that of ln T; to first
         // order an error of every ToF moves it by twice its share of a residual.
         let of_residual = accuracy(curve) * (fit.residuals.len() as f64 / sum).sqrt();
-        Some((fit.r_squared, fit.r_squared - claim.threshold, 2.0 * left * of_residual))
+        Some((
+            fit.r_squared,
+            fit.r_squared - claim.threshold,
+            2.0 * left * of_residual,
+        ))
     })
 }
 
@@ -24,17 +28,31 @@ pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> Finding {
         let fit = curve.weighted_power_law(branch).ok()?;
         let errors = curve.standard_errors_s(branch);
         let tofs = curve.tofs_s(branch);
-        let relative: Vec<f64> = errors.iter().zip(&tofs).map(|(error, tof)| error / tof).collect();
+        let relative: Vec<f64> = errors
+            .iter()
+            .zip(&tofs)
+            .map(|(error, tof)| error / tof)
+            .collect();
         let scaled = fit.residuals.iter().zip(&relative);
-        let value = scaled.map(|(r, error)| (r.exp_m1() / error).abs()).fold(0.0, f64::max);
+        let value = scaled
+            .map(|(r, error)| (r.exp_m1() / error).abs())
+            .fold(0.0, f64::max);
         let finest = relative.iter().copied().fold(f64::INFINITY, f64::min);
-        Some((value, claim.threshold - value, 2.0 * accuracy(curve) / finest))
+        Some((
+            value,
+            claim.threshold - value,
+            2.0 * accuracy(curve) / finest,
+        ))
     })
 }
 
 /// Relative accuracy of a curve's ToFs.
 fn accuracy(curve: &Curve) -> f64 {
-    curve.points.iter().map(|p| p.accuracy_reached).fold(0.0, f64::max)
+    curve
+        .points
+        .iter()
+        .map(|p| p.accuracy_reached)
+        .fold(0.0, f64::max)
 }
 
 /// What a fit is judged by: the value, its margin and their accuracy.

@@ -19,7 +19,10 @@ static PREDICATES: &[(&str, Predicate)] = &[
     ("pulses-separate", passages::pulses_separate),
     ("return-takes-longer", passages::return_takes_longer),
     ("return-is-split", passages::return_is_split),
-    ("loosening-lengthens-return", passages::loosening_lengthens_return),
+    (
+        "loosening-lengthens-return",
+        passages::loosening_lengthens_return,
+    ),
     ("return-scatters-more", passages::return_scatters_more),
     ("gaps-open", passages::gaps_open),
     ("tof-falls", monotony::tof_falls),
@@ -35,7 +38,10 @@ static PREDICATES: &[(&str, Predicate)] = &[
     ("ratio-has-dips", ratios::has_dips),
     ("trends-alike", trends::alike),
     ("trend-against-viscosity", trends::against_viscosity),
-    ("viscosity-orders-ratios", trends::viscosity_does_not_order_ratios),
+    (
+        "viscosity-orders-ratios",
+        trends::viscosity_does_not_order_ratios,
+    ),
     ("attenuates-more", attenuation::attenuates_more),
     ("dynamic-viscosity", constants::dynamic_viscosity),
     ("viscosity-ratio", constants::viscosity_ratio),
@@ -53,7 +59,11 @@ pub(super) fn find(name: &str) -> Option<Predicate> {
 
 /// The curves of a claim's cases, if none is missing.
 fn curves<'a>(claim: &Claim, evidence: &'a Evidence) -> Option<Vec<&'a Curve>> {
-    let curves: Option<Vec<_>> = claim.cases.iter().map(|case| evidence.curve(case)).collect();
+    let curves: Option<Vec<_>> = claim
+        .cases
+        .iter()
+        .map(|case| evidence.curve(case))
+        .collect();
     curves.filter(|curves| !curves.is_empty())
 }
 

@@ -14,7 +14,10 @@ pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
     for curve in curves {
         for p in within(claim, curve) {
             let [incoming, wall, returning] = p.widths_s;
-            let pairs = [(p.tof_incident_s, incoming + wall), (p.tof_reflected_s, wall + returning)];
+            let pairs = [
+                (p.tof_incident_s, incoming + wall),
+                (p.tof_reflected_s, wall + returning),
+            ];
             for (tof, widths) in pairs {
                 let value = tof / (0.5 * widths);
                 let accuracy = value * p.accuracy_reached;
@@ -41,7 +44,9 @@ pub(super) fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding
             let value = p.tof_reflected_s / p.tof_incident_s;
             let accuracy = 2.0 * value * p.accuracy_reached;
             tally.margin(value - claim.threshold, accuracy);
-            worst.see(value - claim.threshold, value, accuracy, || place(&curve.case, p));
+            worst.see(value - claim.threshold, value, accuracy, || {
+                place(&curve.case, p)
+            });
         }
     }
     worst.finding(tally)
@@ -94,7 +99,9 @@ pub(super) fn loosening_lengthens_return(claim: &Claim, evidence: &Evidence) -> 
         let value = increase(loose) - increase(p);
         let accuracy = 2.0 * (p.accuracy_reached + loose.accuracy_reached);
         tally.margin(value - claim.threshold, accuracy);
-        worst.see(value - claim.threshold, value, accuracy, || place(&free.case, p));
+        worst.see(value - claim.threshold, value, accuracy, || {
+            place(&free.case, p)
+        });
     }
     worst.finding(tally)
 }

@@ -66,7 +66,10 @@ fn crossings(ratios: &[Ratio]) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
 /// The ratio crosses 1 once, upward, within the threshold of the printed
 /// speed; once upward elsewhere holds in part.
 pub(super) fn crosses(claim: &Claim, evidence: &Evidence) -> Finding {
-    let ratios = claim.cases.first().map_or(Vec::new(), |case| evidence.ratios(case));
+    let ratios = claim
+        .cases
+        .first()
+        .map_or(Vec::new(), |case| evidence.ratios(case));
     let Some(expected) = claim.expected.first() else {
         return missing();
     };
@@ -118,7 +121,9 @@ pub(super) fn mainly_rises(claim: &Claim, evidence: &Evidence) -> Finding {
         let met = value > claim.threshold && ends > first.accuracy_reached;
         tally.answer(met);
         let margin = if met { value } else { value - 1.0 };
-        worst.see(margin, value, 0.0, || format!("{case}, from end to end {ends:+.5}"));
+        worst.see(margin, value, 0.0, || {
+            format!("{case}, from end to end {ends:+.5}")
+        });
     }
     worst.finding(tally)
 }
@@ -132,18 +137,21 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
         if ratios.is_empty() {
             return missing();
         }
-        let accuracy = ratios.iter().map(|r| r.accuracy_reached).fold(0.0, f64::max);
-        let (mut highest, mut fall, mut at) = (f64::NEG_INFINITY, 0.0, f64::NAN);
+        let accuracy = ratios
+            .iter()
+            .map(|r| r.accuracy_reached)
+            .fold(0.0, f64::max);
+        // Negative where the ratio rises throughout: the smallest rise.
+        let (mut highest, mut fall, mut at) = (f64::NAN, f64::NEG_INFINITY, f64::NAN);
         for r in &ratios {
-            highest = r.incident.max(highest);
             if highest - r.incident > fall {
                 (fall, at) = (highest - r.incident, r.speed_m_s);
             }
+            highest = r.incident.max(highest);
         }
         tally.margin(fall - claim.threshold, 2.0 * accuracy);
-        worst.see(fall - claim.threshold, fall, 2.0 * accuracy, || match at.is_nan() {
-            true => format!("{case}, which nowhere falls"),
-            false => format!("{case}, lowest at {at} m/s"),
+        worst.see(fall - claim.threshold, fall, 2.0 * accuracy, || {
+            format!("{case} at {at} m/s")
         });
     }
     worst.finding(tally)

@@ -47,7 +47,10 @@ pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
     let [one, alike, other] = &claim.cases[..] else {
         return missing();
     };
-    let correlations = (correlation(evidence, one, alike), correlation(evidence, one, other));
+    let correlations = (
+        correlation(evidence, one, alike),
+        correlation(evidence, one, other),
+    );
     let viscosity = |case: &str| Some(evidence.oil(case)?.dynamic_viscosity_pa_s().ln());
     let viscosities = (viscosity(one), viscosity(alike), viscosity(other));
     let ((Some(near), Some(far)), (Some(a), Some(b), Some(c))) = (correlations, viscosities) else {
@@ -75,18 +78,28 @@ pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence
         }
     }
     oils.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let speeds = oils.first().map_or(Vec::new(), |(_, ratios)| ratios.clone());
+    let speeds = oils
+        .first()
+        .map_or(Vec::new(), |(_, ratios)| ratios.clone());
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for (i, first) in speeds.iter().enumerate() {
-        let row: Vec<f64> = oils.iter().filter_map(|(_, r)| Some(r.get(i)?.incident)).collect();
-        let steps: Vec<f64> = row.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
+        let row: Vec<f64> = oils
+            .iter()
+            .filter_map(|(_, r)| Some(r.get(i)?.incident))
+            .collect();
+        let steps: Vec<f64> = row
+            .windows(2)
+            .filter_map(|w| Some(w.last()? - w.first()?))
+            .collect();
         // Out of order by as much as the smaller of the largest rise and fall.
         let rise = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let fall = -steps.iter().copied().fold(f64::INFINITY, f64::min);
         let value = rise.min(fall);
         let accuracy = 2.0 * first.accuracy_reached;
         tally.margin(value - claim.threshold, accuracy);
-        worst.see(value - claim.threshold, value, accuracy, || format!("{} m/s", first.speed_m_s));
+        worst.see(value - claim.threshold, value, accuracy, || {
+            format!("{} m/s", first.speed_m_s)
+        });
     }
     worst.finding(tally)
 }

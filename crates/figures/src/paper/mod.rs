@@ -1,0 +1,105 @@
+//! The paper's figures, composed from a reproduction.
+//!
+//! The rest of this crate draws plain data; only this module knows what the
+//! data are.
+
+mod energy;
+mod ratios;
+mod readings;
+mod rig;
+mod signals;
+mod space_time;
+mod times;
+
+pub use rig::rig;
+
+use crate::{Colour, Figure, FigureError, Marker};
+use hertzchain_study::reproduce::{ReproduceError, Reproduction, write_atomically};
+use std::path::{Path, PathBuf};
+
+/// A picture that can't be made or written.
+#[derive(Debug, thiserror::Error)]
+pub enum PaperError {
+    /// It can't be rendered.
+    #[error("{name}: {error}")]
+    Figure {
+        /// Name of the figure.
+        name: &'static str,
+        /// Why.
+        error: FigureError,
+    },
+    /// It can't be computed or written.
+    #[error(transparent)]
+    Reproduce(#[from] ReproduceError),
+}
+
+/// What journals ask of line drawings in PNG.
+const DOTS_PER_INCH: f64 = 300.0;
+
+/// All figures of a reproduction with their names.
+///
+/// # Errors
+/// A chain that can't be set up.
+pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, PaperError> {
+    let mut figures = vec![
+        ("figure1", rig::figure(&of.cases)?),
+        ("figure2", signals::figure(&of.signals)),
+        ("figure3", times::figure(&of.evidence)),
+        ("figure4", ratios::figure(&of.evidence)),
+        ("space_time", space_time::figure(&of.films)),
+        ("energy", energy::figure(&of.films)),
+    ];
+    if let Some(scan) = &of.scan {
+        figures.push(("readings", readings::figure(scan)));
+    }
+    Ok(figures)
+}
+
+/// Writes all figures of a reproduction into a folder, each as SVG and PNG;
+/// returns what was written.
+///
+/// # Errors
+/// The first picture that can't be made or written; none is left half-written.
+pub fn write(of: &Reproduction, folder: &Path) -> Result<Vec<PathBuf>, PaperError> {
+    let mut written = Vec::new();
+    for (name, figure) in figures(of)? {
+        let png = figure.png(DOTS_PER_INCH);
+        let png = png.map_err(|error| PaperError::Figure { name, error })?;
+        for (ending, content) in [("svg", figure.svg().into_bytes()), ("png", png)] {
+            let path = folder.join(format!("{name}.{ending}"));
+            write_atomically(&path, &content)?;
+            written.push(path);
+        }
+    }
+    Ok(written)
+}
+
+/// How a case is named in legends.
+fn label(case: &str) -> &str {
+    match case {
+        "pump" => "pump oil DS19",
+        "gear" => "gear oil EP 80W-90",
+        "motor" => "motor oil SAE 0W-30",
+        "hertz" => "Hertz",
+        "hertz-viscoelastic" => "Hertz + viscoelastic",
+        other => other,
+    }
+}
+
+/// The paper's symbols, and one colour a liquid in all figures.
+fn look(case: &str) -> (Marker, Colour) {
+    match case {
+        "pump" => (Marker::Triangle, Colour::GREEN),
+        "gear" => (Marker::Square, Colour::BLUE),
+        "motor" => (Marker::Circle, Colour::VERMILION),
+        _ => (Marker::OpenCircle, Colour::BLACK),
+    }
+}
+
+/// Times or forces in another unit.
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| value * factor).collect()
+}
+
+/// Microseconds in a second.
+const US: f64 = 1e6;
