@@ -1,6 +1,7 @@
 //! The keys of an experiment file, declared once: the check of a file, its
 //! reading, the JSON Schema and the parameter paths all go by these tables.
 
+mod ends;
 mod tables;
 
 pub(crate) use tables::{MOST_BEADS, ROOT};

@@ -1,21 +1,26 @@
 //! Every table of an experiment file.
 
-use super::{Fields, Key, Kind, Limits, Need, Variants};
+use super::ends::{DRIVEN, FAR_END, NEAR_END, STRIKER};
+use super::{Fields, Key, Kind, Limits, Need};
 use crate::reading;
 use std::f64::consts::FRAC_PI_2;
 
 /// Longest chain: what fits into memory with all that a shot needs.
 pub(crate) const MOST_BEADS: i64 = 2_000_000;
 
-const fn positive(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+pub(super) const fn positive(name: &'static str, unit: &'static str, about: &'static str) -> Key {
     Key::new(name, Kind::Quantity(unit, Limits::POSITIVE), about)
 }
 
-const fn not_negative(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+pub(super) const fn not_negative(
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+) -> Key {
     Key::new(name, Kind::Quantity(unit, Limits::NOT_NEGATIVE), about)
 }
 
-const fn any(name: &'static str, unit: &'static str, about: &'static str) -> Key {
+pub(super) const fn any(name: &'static str, unit: &'static str, about: &'static str) -> Key {
     Key::new(name, Kind::Quantity(unit, Limits::ANY), about)
 }
 
@@ -24,11 +29,11 @@ const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
     Key::new(name, Kind::Count { least, most }, about)
 }
 
-const fn text(name: &'static str, about: &'static str) -> Key {
+pub(super) const fn text(name: &'static str, about: &'static str) -> Key {
     Key::new(name, Kind::Text, about)
 }
 
-const MATERIAL_NAME: Key = text("material", "name of a material");
+pub(super) const MATERIAL_NAME: Key = text("material", "name of a material");
 
 const POISSON: Limits = Limits::new(-1.0, 1.0, false, "between -1 and 1");
 const ACCURACY: Limits = Limits::new(1e-13, 1e-2, true, "between 1e-13 and 1e-2");
@@ -61,74 +66,6 @@ static MATERIAL: Fields = Fields {
             "bulk viscosity η2; default: as shear_viscosity",
         ),
         positive("density", "kg/m^3", "density, for beads without a mass"),
-    ],
-};
-
-static STRIKER: Fields = Fields {
-    title: "[striker]",
-    keys: &[
-        positive("speed", "m/s", "speed toward the chain at first touch").needed(Need::Always),
-        positive("radius", "m", "radius; default: as bead 1"),
-        positive(
-            "mass",
-            "kg",
-            "mass; default: as bead 1, or from the material's density",
-        ),
-        MATERIAL_NAME,
-    ],
-};
-
-const DRIVEN_RADIUS: Key = positive(
-    "radius",
-    "m",
-    "radius of the driven body; default: as bead 1",
-);
-const AMPLITUDE: Key = any("amplitude", "m", "largest displacement").needed(Need::Always);
-
-static DRIVEN: Variants = Variants {
-    title: "[driven]",
-    tag: "motion",
-    options: &[
-        (
-            "sine",
-            Fields {
-                title: "[driven] with motion = \"sine\"",
-                keys: &[
-                    AMPLITUDE,
-                    positive("frequency", "Hz", "frequency").needed(Need::Always),
-                    DRIVEN_RADIUS,
-                    MATERIAL_NAME,
-                ],
-            },
-        ),
-        (
-            "pulse",
-            Fields {
-                title: "[driven] with motion = \"pulse\"",
-                keys: &[
-                    AMPLITUDE,
-                    positive("duration", "s", "duration of the push").needed(Need::Always),
-                    DRIVEN_RADIUS,
-                    MATERIAL_NAME,
-                ],
-            },
-        ),
-        (
-            "table",
-            Fields {
-                title: "[driven] with motion = \"table\"",
-                keys: &[
-                    Key::new("times", Kind::Quantities("s"), "times, increasing"),
-                    Key::new("positions", Kind::Quantities("m"), "positions, one a time"),
-                    text(
-                        "file",
-                        "CSV file with columns time_s,position_m, beside this file",
-                    ),
-                    DRIVEN_RADIUS,
-                    MATERIAL_NAME,
-                ],
-            },
-        ),
     ],
 };
 
@@ -177,88 +114,6 @@ static SECTION: Fields = Fields {
             "wet",
             Kind::Flag,
             "whether the contacts are wet, for readings",
-        ),
-    ],
-};
-
-const HALF_BEAD_RADIUS: Key =
-    positive("radius", "m", "radius of the half-bead; default: as bead N");
-const STOP_MASS: Key = positive("mass", "kg", "mass of the stop").needed(Need::Always);
-
-static FAR_END: Variants = Variants {
-    title: "[far_end]",
-    tag: "kind",
-    options: &[
-        (
-            "half-bead",
-            Fields {
-                title: "[far_end] with kind = \"half-bead\"",
-                keys: &[HALF_BEAD_RADIUS, MATERIAL_NAME],
-            },
-        ),
-        (
-            "plane",
-            Fields {
-                title: "[far_end] with kind = \"plane\"",
-                keys: &[MATERIAL_NAME],
-            },
-        ),
-        (
-            "stop",
-            Fields {
-                title: "[far_end] with kind = \"stop\"",
-                keys: &[STOP_MASS, HALF_BEAD_RADIUS, MATERIAL_NAME],
-            },
-        ),
-        (
-            "plane-stop",
-            Fields {
-                title: "[far_end] with kind = \"plane-stop\"",
-                keys: &[STOP_MASS, MATERIAL_NAME],
-            },
-        ),
-        (
-            "periodic",
-            Fields {
-                title: "[far_end] with kind = \"periodic\"",
-                keys: &[not_negative(
-                    "force",
-                    "N",
-                    "static force around the ring; default 0",
-                )],
-            },
-        ),
-        (
-            "free",
-            Fields {
-                title: "[far_end] with kind = \"free\"",
-                keys: &[],
-            },
-        ),
-    ],
-};
-
-static NEAR_END: Variants = Variants {
-    title: "[near_end]",
-    tag: "push",
-    options: &[
-        (
-            "constant",
-            Fields {
-                title: "[near_end] with push = \"constant\"",
-                keys: &[not_negative("force", "N", "force on bead 1").needed(Need::Always)],
-            },
-        ),
-        (
-            "spring",
-            Fields {
-                title: "[near_end] with push = \"spring\"",
-                keys: &[
-                    not_negative("force", "N", "force on bead 1 at rest").needed(Need::Always),
-                    not_negative("stiffness", "N/m", "stiffness of the spring")
-                        .needed(Need::Always),
-                ],
-            },
         ),
     ],
 };
