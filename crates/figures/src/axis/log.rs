@@ -17,8 +17,8 @@ const CHOICES: [(&[u32], i32); 8] = [
 
 /// Beyond this many decades, multiples of a power of ten say nothing.
 const MANY_DECADES: f64 = 3.0;
-/// Beyond this many decades, ticks between them only blacken the frame.
-const NO_MINOR_DECADES: f64 = 9.0;
+/// In decades shorter than this, ticks between powers of ten only blacken the frame, points.
+const SHORT_DECADE: f64 = 14.0;
 
 pub(super) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     let found = CHOICES
@@ -30,7 +30,7 @@ pub(super) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     if found.len() < 3 && scale.decades() < 1.0 {
         return even_steps(scale, room);
     }
-    let minor = unlabelled(scale, &found);
+    let minor = unlabelled(scale, room, &found);
     let sparse = found.len() < 2;
     let ticks = Ticks {
         major: found,
@@ -76,12 +76,9 @@ fn labelled(scale: &Scale, mantissas: &[u32], every: i32) -> Vec<Tick> {
         .collect()
 }
 
-fn unlabelled(scale: &Scale, major: &[Tick]) -> Vec<f64> {
-    let mantissas: &[u32] = if scale.decades() > NO_MINOR_DECADES {
-        &[1]
-    } else {
-        CHOICES[0].0
-    };
+fn unlabelled(scale: &Scale, room: &Room, major: &[Tick]) -> Vec<f64> {
+    let crowded = room.length < SHORT_DECADE * scale.decades();
+    let mantissas: &[u32] = if crowded { &[1] } else { CHOICES[0].0 };
     let mut found: Vec<f64> = labelled(scale, mantissas, 1)
         .iter()
         .map(|t| t.value)

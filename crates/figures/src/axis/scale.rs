@@ -32,6 +32,11 @@ impl Extent {
         }
     }
 
+    /// The lowest and highest value, if any.
+    pub(crate) fn ends(&self) -> Option<(f64, f64)> {
+        (self.lo <= self.hi).then_some((self.lo, self.hi))
+    }
+
     /// A scale that holds all values with `pad` of the length free at both ends.
     pub(crate) fn scale(self, pad: f64) -> Scale {
         let Self { lo, hi, log } = self;

@@ -6,6 +6,8 @@ use crate::draw::{Point, Rect};
 /// Edge of a cell in points, on posters a share of the frame.
 const CELL: f64 = 2.0;
 const MOST_CELLS: f64 = 600.0;
+/// Places tried along either side of a frame.
+const FINE: u32 = 32;
 
 /// A coarse grid over a frame that counts what lies where.
 #[derive(Debug, Clone)]
@@ -104,15 +106,17 @@ impl Occupancy {
 /// Places for a box of the given size in `frame`: the corners first, then along
 /// the edges, then inside.
 pub(crate) fn places(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
-    // Sixteenths, the rounder ones first.
-    const STEPS: [f64; 17] = [
-        1.0, 0.0, 0.5, 0.25, 0.75, 0.125, 0.875, 0.375, 0.625, 0.0625, 0.9375, 0.1875, 0.8125,
-        0.3125, 0.6875, 0.4375, 0.5625,
-    ];
+    // The right and upper end first: there legends are looked for.
+    let steps: Vec<f64> = (0..=FINE)
+        .rev()
+        .map(|i| f64::from(i) / f64::from(FINE))
+        .collect();
     let mut shares = vec![(1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-    shares.extend(STEPS.iter().flat_map(|s| [(*s, 0.0), (*s, 1.0)]));
-    shares.extend(STEPS.iter().flat_map(|s| [(1.0, *s), (0.0, *s)]));
-    shares.extend(STEPS.iter().flat_map(|a| STEPS.map(|d| (*a, d))));
+    shares.extend(steps.iter().flat_map(|s| [(*s, 0.0), (*s, 1.0)]));
+    shares.extend(steps.iter().flat_map(|s| [(1.0, 1.0 - s), (0.0, 1.0 - s)]));
+    for across in &steps {
+        shares.extend(steps.iter().map(|d| (*across, 1.0 - d)));
+    }
     let at = |(across, down): (f64, f64)| {
         let x = frame.x0 + across * (frame.width() - width).max(0.0);
         let y = frame.y0 + down * (frame.height() - height).max(0.0);

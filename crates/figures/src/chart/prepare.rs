@@ -122,29 +122,39 @@ impl Prepared {
 /// The x scale of a chart: as asked for, or around the data.
 pub(crate) fn x_scale(chart: &Chart, style: &Style) -> Scale {
     let mut extent = Extent::new(chart.x.log);
-    for series in &chart.series {
-        for (i, x) in series.x.iter().take(series.y.len()).enumerate() {
-            let error = series.x_error.get(i).copied().unwrap_or(0.0);
-            [*x, x - error, x + error]
-                .into_iter()
-                .for_each(|v| extent.add(v));
-        }
-    }
+    chart.series.iter().for_each(|s| add_x(&mut extent, s));
     if let Some(layer) = &chart.heat {
         extent.add(layer.x.0);
         extent.add(layer.x.1);
     }
-    // Lines and maps fill the frame from edge to edge; points need air.
-    let points = chart
+    chosen(&chart.x).unwrap_or_else(|| with_air(chart, extent, style.pad))
+}
+
+/// Lines and maps fill the frame from edge to edge; points near an edge need air there.
+fn with_air(chart: &Chart, extent: Extent, pad: f64) -> Scale {
+    let (tight, airy) = (extent.scale(0.0), extent.scale(pad));
+    let mut points = Extent::new(chart.x.log);
+    let dotted = chart
         .series
         .iter()
-        .any(|s| matches!(s.kind, Kind::Points(_) | Kind::LinePoints(_)));
-    let pad = if points && chart.heat.is_none() {
-        style.pad
-    } else {
-        0.0
+        .filter(|s| matches!(s.kind, Kind::Points(_) | Kind::LinePoints(_)));
+    dotted.for_each(|s| add_x(&mut points, s));
+    let Some((first, last)) = points.ends().filter(|_| chart.heat.is_none()) else {
+        return tight;
     };
-    chosen(&chart.x).unwrap_or_else(|| extent.scale(pad))
+    let near = |value: f64, edge: f64| tight.share(value).is_some_and(|s| (s - edge).abs() < pad);
+    let lo = if near(first, 0.0) { airy.lo } else { tight.lo };
+    let hi = if near(last, 1.0) { airy.hi } else { tight.hi };
+    Scale { lo, hi, ..tight }
+}
+
+fn add_x(extent: &mut Extent, series: &Series) {
+    for (i, (x, _)) in series.xy().enumerate() {
+        let error = series.x_error.get(i).copied().unwrap_or(0.0);
+        [x, x - error, x + error]
+            .into_iter()
+            .for_each(|v| extent.add(v));
+    }
 }
 
 /// The y scale of a chart: as asked for, or around the data.
