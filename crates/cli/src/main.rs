@@ -1,3 +1,38 @@
 //! The `hertzchain` program: one file a verb, no logic of its own.
 
-fn main() {}
+mod arguments;
+mod failure;
+mod folder;
+mod format;
+mod input;
+mod json;
+mod pictures;
+mod print;
+mod verbs;
+
+use arguments::{Program, Verb};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(Program::parse().verb) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(verb: Verb) -> Result<(), Failure> {
+    match verb {
+        Verb::Reproduce(arguments) => verbs::reproduce::run(&arguments),
+        Verb::Shot(arguments) => verbs::shot::run(&arguments),
+        Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
+        Verb::Check(arguments) => verbs::check::run(&arguments),
+        Verb::Theory(arguments) => verbs::theory::run(&arguments),
+        Verb::Laws(arguments) => verbs::laws::run(&arguments),
+        Verb::Presets(arguments) => verbs::presets::run(&arguments),
+        Verb::Schema => verbs::schema::run(),
+        Verb::Completions { shell } => verbs::completions::run(shell),
+        Verb::Man { out } => verbs::man::run(out.as_deref()),
+    }
+}

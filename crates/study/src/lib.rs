@@ -14,7 +14,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod claims;
+pub mod readings;
+pub mod reproduce;
+
 mod accuracy;
+mod describe;
 mod duration;
 mod error;
 mod flight;
@@ -23,9 +28,10 @@ mod shot;
 mod speeds;
 mod sweep;
 
+pub use describe::{Group, Row, Value, describe, describe_theory};
 pub use error::StudyError;
 pub use flight::Flight;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
-pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds};
+pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
 pub use sweep::{Point, PointError, Settings, Sweep, sweep};

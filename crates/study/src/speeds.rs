@@ -9,7 +9,7 @@ pub const MOST_SPEEDS: usize = 100_000;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpeedError {
     /// Not a number with a unit.
-    #[error("`{text}`: {error}; expected a speed such as 0.5 or \"0.5 m/s\"")]
+    #[error("`{text}`: {error}; expected a number with a unit, such as \"0.5 m/s\"")]
     Unit {
         /// The text.
         text: String,
@@ -24,6 +24,17 @@ pub enum SpeedError {
         /// What it is.
         found: String,
     },
+    /// Another quantity than a time.
+    #[error("`{text}` is {found}, not a time such as \"2 ms\"")]
+    NotATime {
+        /// The text.
+        text: String,
+        /// What it is.
+        found: String,
+    },
+    /// Time that does not pass.
+    #[error("a time of {0} s is not positive")]
+    TimeNotPositive(f64),
     /// Nothing moves, or backward.
     #[error("a speed of {0} m/s is not positive")]
     NotPositive(f64),
@@ -60,6 +71,32 @@ pub fn parse_speed(text: &str) -> Result<f64, SpeedError> {
         Ok(quantity.value)
     } else {
         Err(SpeedError::NotPositive(quantity.value))
+    }
+}
+
+/// A time in s from "1e-3", "2 ms" or "1 us".
+///
+/// # Errors
+/// See [`SpeedError`].
+pub fn parse_time(text: &str) -> Result<f64, SpeedError> {
+    let given = |error| SpeedError::Unit {
+        text: text.to_owned(),
+        error,
+    };
+    let quantity = parse_quantity(text.trim()).map_err(given)?;
+    let fits = |unit: &str| {
+        parse_unit(unit).is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension))
+    };
+    if !fits("1") && !fits("s") {
+        return Err(SpeedError::NotATime {
+            text: text.to_owned(),
+            found: quantity.dimension.name(),
+        });
+    }
+    if quantity.value > 0.0 {
+        Ok(quantity.value)
+    } else {
+        Err(SpeedError::TimeNotPositive(quantity.value))
     }
 }
 

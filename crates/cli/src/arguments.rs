@@ -1,0 +1,217 @@
+//! The command line, declared once: help, man pages and completions follow.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use hertzchain_study::{parse_speed, parse_time};
+use std::path::PathBuf;
+
+/// Rows of beads and their solitary waves.
+///
+/// A row of touching balls is hit at one end; a solitary wave runs down it. This
+/// program computes what sensors in the row see and when, for the chains of
+/// the paper by Labbé, Vergara and Olivares and for your own.
+#[derive(Debug, Parser)]
+#[command(name = "hertzchain", version, arg_required_else_help = true)]
+pub struct Program {
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Compute everything in the paper: tables, figures, verdicts on its claims
+    Reproduce(Reproduce),
+    /// Compute one shot: times of flight, peaks, rebound, energy
+    Shot(Shot),
+    /// Compute times of flight against speed, with power-law fits
+    Sweep(Sweep),
+    /// Check an experiment file and print what was understood; run nothing
+    Check(Check),
+    /// Print what theory says of a chain's waves
+    Theory(Check),
+    /// List every contact law with its equation, parameters and source
+    Laws(Laws),
+    /// List the experiments that come with the program, or print one
+    Presets(Presets),
+    /// Print the JSON Schema of experiment files, for editors
+    Schema,
+    /// Print a completion script for a shell
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the manual page, or write one page a verb into a folder
+    Man {
+        /// Folder to write into
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+}
+
+/// Which experiment.
+#[derive(Debug, Args)]
+pub struct Input {
+    /// Experiment file (TOML); the preset `dry` when neither is given
+    #[arg(value_name = "FILE", conflicts_with = "preset")]
+    pub file: Option<PathBuf>,
+    /// An experiment that comes with the program; `hertzchain presets` lists them
+    #[arg(long, short, value_name = "NAME")]
+    pub preset: Option<String>,
+}
+
+/// How to compute, in place of what the experiment says.
+#[derive(Debug, Args)]
+pub struct How {
+    /// Relative accuracy of times of flight, such as 1e-6
+    #[arg(long, short, value_name = "NUMBER", value_parser = accuracy)]
+    pub accuracy: Option<f64>,
+    /// How the motion is computed
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub solver: Option<Solver>,
+    /// Step of a fixed-step solver, such as "1 us"; found by halving when absent
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub step: Option<f64>,
+    /// Duration of a shot, such as "2 ms"; until the reflected pulse has passed when absent
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub duration: Option<f64>,
+    /// Where a pulse is timed
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub pick: Option<Pick>,
+    /// Compute again more tightly and print the accuracy reached
+    #[arg(long)]
+    pub check: bool,
+}
+
+fn accuracy(text: &str) -> Result<f64, String> {
+    let number: f64 = text
+        .parse()
+        .map_err(|_| "expected a number such as 1e-6".to_owned())?;
+    match (1e-13..=1e-2).contains(&number) {
+        true => Ok(number),
+        false => Err("expected a number between 1e-13 and 1e-2".to_owned()),
+    }
+}
+
+/// Solvers by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Solver {
+    /// Embedded pair with adaptive steps that end at contact changes
+    Adaptive,
+    /// Classical Runge–Kutta with fixed steps
+    Rk4,
+    /// Velocity Verlet with fixed steps
+    Verlet,
+}
+
+/// Picks by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Pick {
+    /// At its maximum
+    Peak,
+    /// At 10 % of the maximum on the rising flank
+    #[value(name = "flank-10")]
+    Flank10,
+    /// At 50 % of the maximum on the rising flank
+    #[value(name = "flank-50")]
+    Flank50,
+    /// By cross-correlation of the pulses
+    CrossCorrelation,
+}
+
+/// Arguments of `shot`.
+#[derive(Debug, Args)]
+pub struct Shot {
+    /// Which experiment.
+    #[command(flatten)]
+    pub input: Input,
+    /// Speed of the striker, such as "0.5 m/s" or 0.5
+    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_negative_numbers = true)]
+    pub speed: Option<f64>,
+    /// How to compute.
+    #[command(flatten)]
+    pub how: How,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write traces (CSV) and figures (SVG, PNG) into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Also write positions, velocities and forces of all bodies as NPY
+    #[arg(long, requires = "out")]
+    pub npy: bool,
+    /// Write a moving picture of the shot as one HTML file, into --out or here
+    #[arg(long)]
+    pub animate: bool,
+}
+
+/// Arguments of `sweep`.
+#[derive(Debug, Args)]
+pub struct Sweep {
+    /// Which experiment.
+    #[command(flatten)]
+    pub input: Input,
+    /// Speeds in m/s: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT
+    #[arg(
+        long,
+        value_name = "SPEEDS",
+        default_value = "log:0.075:1.23:25",
+        allow_hyphen_values = true
+    )]
+    pub speeds: String,
+    /// How to compute.
+    #[command(flatten)]
+    pub how: How,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write the table (CSV) and a figure (SVG, PNG) into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads; all cores when absent
+    #[arg(long, value_name = "COUNT")]
+    pub threads: Option<std::num::NonZeroUsize>,
+}
+
+/// Arguments of `check` and `theory`.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Which experiment.
+    #[command(flatten)]
+    pub input: Input,
+    /// Speed of the striker, such as "0.5 m/s" or 0.5
+    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_negative_numbers = true)]
+    pub speed: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `laws`.
+#[derive(Debug, Args)]
+pub struct Laws {
+    /// Only this law
+    pub name: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `presets`.
+#[derive(Debug, Args)]
+pub struct Presets {
+    /// Print this one's file, to start your own from
+    pub name: Option<String>,
+}
+
+/// Arguments of `reproduce`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// Folder to write into
+    #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
+    pub out: PathBuf,
+    /// Also scan what the paper leaves open: which claims hold in which reading
+    #[arg(long)]
+    pub readings: bool,
+}

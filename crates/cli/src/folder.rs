@@ -1,0 +1,70 @@
+//! An output folder whose files are there whole or not at all.
+
+use crate::failure::Failure;
+use hertzchain_figures::Figure;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Resolution of PNG pictures in dots per inch.
+const DPI: f64 = 300.0;
+
+/// A folder that was found writable.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    written: Vec<PathBuf>,
+}
+
+impl Folder {
+    /// Makes the folder if need be and checks that it can be written to,
+    /// before anything is computed for it.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let refused = |error: io::Error| {
+            Failure::User(format!("cannot write into {}: {error}", path.display()))
+        };
+        fs::create_dir_all(path).map_err(refused)?;
+        let probe = path.join(format!(".hertzchain-{}.probe", std::process::id()));
+        fs::write(&probe, b"")
+            .and_then(|()| fs::remove_file(&probe))
+            .map_err(refused)?;
+        Ok(Self {
+            path: path.to_owned(),
+            written: Vec::new(),
+        })
+    }
+
+    /// Writes a file beside its place, then renames it.
+    pub fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
+        let path = self.path.join(name);
+        let beside = self
+            .path
+            .join(format!(".{name}.{}.part", std::process::id()));
+        let result = fs::write(&beside, content).and_then(|()| fs::rename(&beside, &path));
+        if let Err(error) = result {
+            // The first error counts; nothing half-written stays.
+            let _ = fs::remove_file(&beside);
+            return Err(Failure::Ours(format!("{}: {error}", path.display())));
+        }
+        self.written.push(path);
+        Ok(())
+    }
+
+    /// Writes a figure as SVG and PNG.
+    pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
+        self.write(&format!("{name}.svg"), figure.svg().as_bytes())?;
+        let png = figure
+            .png(DPI)
+            .map_err(|error| Failure::Ours(format!("{name}.png: {error}")))?;
+        self.write(&format!("{name}.png"), &png)
+    }
+
+    /// What was written, one path a line.
+    pub fn list(&self) -> String {
+        let lines = self
+            .written
+            .iter()
+            .map(|path| format!("  {}\n", path.display()));
+        lines.collect()
+    }
+}

@@ -1,0 +1,122 @@
+//! Results as JSON, full precision, SI units in the names.
+
+use hertzchain_chain::observe::Maximum;
+use hertzchain_chain::wave::Budget;
+use hertzchain_signal::{FitError, PowerLaw};
+use hertzchain_study::{Group, Point, Shot, Value};
+use serde_json::{Value as Json, json};
+
+fn peak(maximum: &Maximum) -> Json {
+    json!({ "time_s": maximum.time_s, "value": maximum.value })
+}
+
+fn peaks(maxima: &[Maximum]) -> Json {
+    maxima.iter().map(peak).collect()
+}
+
+/// One shot.
+pub fn shot(shot: &Shot) -> Json {
+    json!({
+        "tof_incident_s": shot.flight.map(|flight| flight.incident_s),
+        "tof_reflected_s": shot.flight.and_then(|flight| flight.reflected_s),
+        "accuracy_asked": shot.accuracy_asked,
+        "accuracy_reached": shot.accuracy_reached,
+        "passage": passage(shot),
+        "sensor_maxima": peaks(&shot.sensor_maxima),
+        "pulse_speed_beads_per_s": shot.pulse_speed_beads_s,
+        "striker_rebound": shot.rebound.map(|rebound| json!({
+            "first_separation_time_s": rebound.first.map(|first| first.0),
+            "first_separation_m_s": rebound.first.map(|first| first.1),
+            "end_m_s": rebound.end_m_s,
+        })),
+        "energy": shot.budget.as_ref().map(budget),
+        "duration_s": shot.duration_s,
+        "solver": shot.solver,
+        "tolerance": shot.tolerance,
+        "step_s": shot.step_s,
+        "force_passes": shot.work.force_passes,
+        "steps": shot.work.steps,
+        "notes": shot.notes,
+    })
+}
+
+fn passage(shot: &Shot) -> Json {
+    match &shot.passage {
+        Err(error) => json!({ "missing": error.to_string() }),
+        Ok(seen) => json!({
+            "incident": peak(&seen.incident),
+            "wall": peak(&seen.wall),
+            "reflected": seen.reflected.as_ref().map(peak),
+            "wall_maxima": peaks(&seen.wall_maxima),
+            "incident_width_s": seen.incident_width_s,
+            "wall_width_s": seen.wall_width_s,
+            "reflected_width_s": seen.reflected_width_s,
+        }),
+    }
+}
+
+fn budget(budget: &Budget) -> Json {
+    let lines = budget.dissipated.iter();
+    let dissipated: serde_json::Map<String, Json> = lines
+        .map(|line| (line.law.to_owned(), json!(line.energy_j)))
+        .collect();
+    json!({
+        "time_s": budget.time_s,
+        "start_j": budget.start_j,
+        "driven_j": budget.driven_j,
+        "kinetic_j": budget.kinetic_j,
+        "elastic_j": budget.elastic_j,
+        "dissipated_j": dissipated,
+        "clipped_j": budget.clipped_j,
+        "gravity_j": budget.gravity_j,
+        "preload_j": budget.preload_j,
+        "stop_j": budget.stop_j,
+        "residual_j": budget.residual_j(),
+        "relative_residual": budget.relative_residual(),
+    })
+}
+
+/// One speed of a sweep.
+pub fn point(point: &Point) -> Json {
+    match &point.shot {
+        Err(error) => json!({ "speed_m_s": point.speed_m_s, "error": error.to_string() }),
+        Ok(result) => {
+            let mut json = shot(result);
+            if let Some(object) = json.as_object_mut() {
+                object.insert("speed_m_s".to_owned(), json!(point.speed_m_s));
+                object.insert("warnings".to_owned(), json!(point.warnings));
+            }
+            json
+        }
+    }
+}
+
+/// A fit of times against speed.
+pub fn fit(fit: &Result<PowerLaw, FitError>) -> Json {
+    match fit {
+        Err(error) => json!({ "missing": error.to_string() }),
+        Ok(law) => json!({
+            "prefactor_s": law.prefactor,
+            "prefactor_error_s": law.prefactor_error,
+            "exponent": law.exponent,
+            "exponent_error": law.exponent_error,
+            "covariance": law.covariance,
+            "r_squared": law.r_squared,
+            "residuals": law.residuals,
+        }),
+    }
+}
+
+/// A description.
+pub fn groups(groups: &[Group]) -> Json {
+    let row = |row: &hertzchain_study::Row| {
+        let value = match &row.value {
+            Value::Number(number) => json!(number),
+            Value::Range(least, most) => json!([least, most]),
+            Value::Text(text) => json!(text),
+        };
+        json!({ "name": row.name.trim(), "value": value, "unit": row.unit })
+    };
+    let group = |group: &Group| json!({ "title": group.title, "rows": group.rows.iter().map(row).collect::<Json>() });
+    groups.iter().map(group).collect()
+}

@@ -1,0 +1,27 @@
+//! `hertzchain check`: what was understood; runs nothing.
+
+use crate::arguments::Check;
+use crate::failure::{Failure, print_warnings};
+use crate::{format, input, json, print};
+use hertzchain_study::describe;
+use serde_json::json;
+
+/// Runs the verb.
+pub fn run(arguments: &Check) -> Result<(), Failure> {
+    if arguments.input.file.is_none() && arguments.input.preset.is_none() {
+        return Err(Failure::User(
+            "check needs an experiment: FILE or --preset NAME".into(),
+        ));
+    }
+    let experiment = input::open(&arguments.input)?;
+    let (chain, warnings) = experiment.chain(arguments.speed)?;
+    let groups = describe(&experiment, &chain)?;
+    if arguments.json {
+        let warnings: Vec<String> = warnings.iter().map(|w| w.one_line()).collect();
+        return print::print_json(
+            &json!({ "groups": json::groups(&groups), "warnings": warnings }),
+        );
+    }
+    print_warnings(&warnings);
+    print::print(&format::groups(&groups, experiment.units()))
+}

@@ -1,0 +1,14 @@
+//! `hertzchain completions`: a script for a shell.
+
+use crate::arguments::Program;
+use crate::failure::Failure;
+use crate::print;
+use clap::CommandFactory;
+use clap_complete::{Shell, generate};
+
+/// Runs the verb.
+pub fn run(shell: Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    generate(shell, &mut Program::command(), "hertzchain", &mut script);
+    print::print(&String::from_utf8_lossy(&script))
+}

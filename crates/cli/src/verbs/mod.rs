@@ -1,0 +1,12 @@
+//! One file a verb.
+
+pub mod check;
+pub mod completions;
+pub mod laws;
+pub mod man;
+pub mod presets;
+pub mod reproduce;
+pub mod schema;
+pub mod shot;
+pub mod sweep;
+pub mod theory;

@@ -1,0 +1,54 @@
+//! `hertzchain shot`: one shot.
+
+mod report;
+mod traces;
+
+use crate::arguments::Shot as Arguments;
+use crate::failure::{Failure, print_warnings};
+use crate::folder::Folder;
+use crate::{input, json, print};
+use hertzchain_experiment::Experiment;
+use hertzchain_study::{Plan, shoot, shoot_checked};
+use serde_json::json;
+use std::path::Path;
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let experiment = input::open(&arguments.input)?;
+    let (mut plan, warnings) = Plan::from_experiment(&experiment, arguments.speed)?;
+    input::adjust(&arguments.how, &mut plan);
+    input::check_step(&arguments.how, &plan)?;
+    plan.budget = true;
+    let folder = open_folder(arguments)?;
+    let shot = if arguments.how.check {
+        shoot_checked(&plan)?
+    } else {
+        shoot(&plan)?
+    };
+    print_warnings(&warnings);
+    if arguments.json {
+        let mut result = json::shot(&shot);
+        if let Some(object) = result.as_object_mut() {
+            object.insert("experiment".to_owned(), json!(experiment.name()));
+            object.insert("speed_m_s".to_owned(), json!(speed(arguments, &experiment)));
+        }
+        print::print_json(&result)?;
+    } else {
+        print::print(&report::text(&experiment, &plan, &shot))?;
+    }
+    folder.map_or(Ok(()), |folder| {
+        traces::write(folder, arguments, &experiment, &plan, &shot)
+    })
+}
+
+fn speed(arguments: &Arguments, experiment: &Experiment) -> Option<f64> {
+    arguments.speed.or(experiment.speed_m_s())
+}
+
+fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
+    match (&arguments.out, arguments.animate) {
+        (Some(out), _) => Folder::open(out).map(Some),
+        (None, true) => Folder::open(Path::new(".")).map(Some),
+        (None, false) => Ok(None),
+    }
+}

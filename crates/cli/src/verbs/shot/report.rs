@@ -1,0 +1,164 @@
+//! A shot in words.
+
+use crate::format::{Style, digits, pairs};
+use crate::print::heading;
+use hertzchain_chain::Start;
+use hertzchain_chain::observe::{Maximum, Passage};
+use hertzchain_chain::wave::Budget;
+use hertzchain_experiment::Experiment;
+use hertzchain_study::{Plan, Shot};
+
+type Rows = Vec<(String, String)>;
+
+/// Everything that was asked of the shot.
+pub fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
+    let style = Style::of_accuracy(plan.accuracy, experiment.units());
+    let mut text = format!("{}\n", heading(experiment.title()));
+    if let Start::Striker { speed_m_s, .. } = &plan.chain.start {
+        let speed = Style::brief(style.units).quantity(*speed_m_s, "m/s");
+        text += &format!("Striker at {speed}, {}\n", experiment.reading());
+    }
+    text += &format!("\n{}", pairs(&flight(style, shot)));
+    text += &match &shot.passage {
+        Ok(seen) => format!("\n{}\n{}", heading("Pulses"), pairs(&pulses(style, seen))),
+        Err(reason) => format!("\n{reason}\n"),
+    };
+    if let Some(budget) = &shot.budget {
+        text += &format!(
+            "\n{}\n{}",
+            heading("Energy at the end"),
+            pairs(&energy(style, budget))
+        );
+    }
+    text += &format!(
+        "\n{}\n{}",
+        heading("Computation"),
+        pairs(&computation(style, shot))
+    );
+    for note in &shot.notes {
+        text += &format!("\nNote: {note}.\n");
+    }
+    text
+}
+
+fn flight(style: Style, shot: &Shot) -> Rows {
+    let brief = Style::brief(style.units);
+    let mut rows = Rows::new();
+    if let Some(flight) = shot.flight {
+        let reflected = flight.reflected_s.map(|time| style.quantity(time, "s"));
+        rows.push((
+            "incident time of flight".into(),
+            style.quantity(flight.incident_s, "s"),
+        ));
+        let reflected = reflected.unwrap_or_else(|| "no pulse came back".into());
+        rows.push(("reflected time of flight".into(), reflected));
+    }
+    if let Some(speed) = shot.pulse_speed_beads_s {
+        let speed = brief.quantity(speed, "beads/s");
+        rows.push(("pulse speed, sensor bead to wall".into(), speed));
+    }
+    if let Some(rebound) = shot.rebound {
+        let first = match rebound.first {
+            None => "it never left bead 1".to_owned(),
+            Some((time, velocity)) => {
+                format!(
+                    "{} at {}",
+                    brief.quantity(velocity, "m/s"),
+                    brief.quantity(time, "s")
+                )
+            }
+        };
+        rows.push(("striker when it first separates".into(), first));
+        rows.push((
+            "striker at the end".into(),
+            brief.quantity(rebound.end_m_s, "m/s"),
+        ));
+    }
+    if shot.flight.is_none() {
+        let peaks = shot.sensor_maxima.iter().take(5);
+        rows.extend(peaks.map(|peak| ("peak of the sensor bead".into(), at(brief, peak))));
+    }
+    rows
+}
+
+fn at(style: Style, peak: &Maximum) -> String {
+    format!(
+        "{} at {}",
+        style.quantity(peak.value, "N"),
+        style.quantity(peak.time_s, "s")
+    )
+}
+
+fn pulses(style: Style, seen: &Passage) -> Rows {
+    let brief = Style::brief(style.units);
+    let mut rows = Rows::new();
+    let mut pulse = |name: &str, peak: &Maximum, width: Option<f64>| {
+        let width = width.map_or(String::new(), |width| {
+            format!(", {} wide at half maximum", brief.quantity(width, "s"))
+        });
+        rows.push((name.to_owned(), format!("{}{width}", at(brief, peak))));
+    };
+    pulse(
+        "sensor bead, incident",
+        &seen.incident,
+        seen.incident_width_s,
+    );
+    pulse("wall", &seen.wall, seen.wall_width_s);
+    if let Some(peak) = &seen.reflected {
+        pulse("sensor bead, reflected", peak, seen.reflected_width_s);
+    }
+    let others: Vec<&Maximum> = (seen.sensor_maxima.iter())
+        .filter(|peak| **peak != seen.incident && Some(**peak) != seen.reflected)
+        .collect();
+    rows.extend(
+        others
+            .iter()
+            .map(|peak| ("sensor bead, also".to_owned(), at(brief, peak))),
+    );
+    rows
+}
+
+fn energy(style: Style, budget: &Budget) -> Rows {
+    let brief = Style::brief(style.units);
+    let mut rows = Rows::new();
+    let mut line = |name: &str, value: f64| {
+        if value != 0.0 {
+            rows.push((name.to_owned(), brief.quantity(value, "J")));
+        }
+    };
+    line("at the start", budget.start_j);
+    line("put in by the driven end", budget.driven_j);
+    line("kinetic", budget.kinetic_j);
+    line("elastic", budget.elastic_j);
+    for lost in &budget.dissipated {
+        line(&format!("dissipated by {}", lost.law), lost.energy_j);
+    }
+    line("clipped", budget.clipped_j);
+    line("gravity", budget.gravity_j);
+    line("preload", budget.preload_j);
+    line("stop", budget.stop_j);
+    let residual = format!("{} of the input", digits(budget.relative_residual(), 2));
+    rows.push(("residual".to_owned(), residual));
+    rows
+}
+
+fn computation(style: Style, shot: &Shot) -> Rows {
+    let brief = Style::brief(style.units);
+    let mut rows = vec![
+        ("duration".to_owned(), brief.quantity(shot.duration_s, "s")),
+        ("solver".to_owned(), shot.solver.clone()),
+        ("accuracy asked".to_owned(), digits(shot.accuracy_asked, 2)),
+    ];
+    if let Some(reached) = shot.accuracy_reached {
+        rows.push(("accuracy reached".to_owned(), digits(reached, 2)));
+    }
+    if let Some(tolerance) = shot.tolerance {
+        rows.push(("tolerance per step".to_owned(), digits(tolerance, 2)));
+    }
+    if let Some(step) = shot.step_s {
+        rows.push(("step".to_owned(), brief.quantity(step, "s")));
+    }
+    let work = format!("{} in {} steps", shot.work.force_passes, shot.work.steps);
+    rows.push(("force passes".to_owned(), work));
+    rows
+}

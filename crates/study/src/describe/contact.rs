@@ -1,0 +1,156 @@
+//! Contacts: their laws and the constants that follow from the materials.
+
+use super::Group;
+use super::chain::short;
+use hertzchain_chain::laws::{Nature, Source};
+use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
+use hertzchain_experiment::{Experiment, LawSpec};
+
+/// One side of a contact: radius in m, mass in kg, material.
+type Side = (f64, f64, Material);
+
+const FIXED: f64 = f64::INFINITY;
+
+fn of(bead: &Bead) -> Side {
+    (bead.radius_m, bead.mass_kg, bead.material)
+}
+
+fn near(chain: &Chain) -> Option<Side> {
+    match &chain.start {
+        Start::Striker { bead, .. } => Some(of(bead)),
+        Start::Driven { bead, .. } => Some((bead.radius_m, FIXED, bead.material)),
+        Start::Free => None,
+    }
+}
+
+fn far(chain: &Chain) -> Option<Side> {
+    match chain.far {
+        FarEnd::HalfBead { radius_m, material } => Some((radius_m, FIXED, material)),
+        FarEnd::Plane { material } => Some((FIXED, FIXED, material)),
+        FarEnd::Stop {
+            radius_m,
+            material,
+            mass_kg,
+        } => Some((radius_m, mass_kg, material)),
+        FarEnd::PlaneStop { material, mass_kg } => Some((FIXED, mass_kg, material)),
+        FarEnd::Periodic { .. } => chain.beads.first().map(of),
+        FarEnd::Free => None,
+    }
+}
+
+/// Product over sum, with the limit for an infinite partner.
+fn reduced(one: f64, two: f64) -> f64 {
+    match (one.is_infinite(), two.is_infinite()) {
+        (true, _) => two,
+        (_, true) => one,
+        _ => one * two / (one + two),
+    }
+}
+
+/// The two bodies of a contact; `None` where one is missing.
+pub(super) fn pair(chain: &Chain, contact: usize) -> Option<Pair> {
+    let beads = chain.beads.len();
+    let side = |body: usize| match body {
+        0 => near(chain),
+        body if body > beads => far(chain),
+        body => chain.beads.get(body - 1).map(of),
+    };
+    let (left, right) = (side(contact)?, side(contact + 1)?);
+    let material = section(chain, contact).and_then(|section| section.material);
+    Some(Pair {
+        left: material.unwrap_or(left.2),
+        right: material.unwrap_or(right.2),
+        radius_m: reduced(left.0, right.0),
+        mass_kg: reduced(left.1, right.1),
+    })
+}
+
+pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
+    chain
+        .sections
+        .iter()
+        .find(|section| section.contacts.contains(&contact))
+}
+
+/// Stiffness k and exponent n of F = k δⁿ, where one elastic power law acts.
+pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
+    let pair = pair(chain, contact)?;
+    let laws = &section(chain, contact)?.laws;
+    let mut elastic = laws
+        .iter()
+        .filter(|law| law.info().nature != Nature::Dissipative);
+    let (law, more) = (elastic.next()?, elastic.next());
+    if more.is_some() {
+        return None;
+    }
+    match (law.info().name, law.coefficients(&pair).ok()?.as_slice()) {
+        ("elastic_hertz", &[stiffness]) => Some((stiffness, 1.5)),
+        ("elastic_power", &[stiffness, exponent]) => Some((stiffness, exponent)),
+        _ => None,
+    }
+}
+
+/// A group a section.
+pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
+    let specs = experiment.sections();
+    let described = specs.iter().zip(&chain.sections);
+    described
+        .map(|(spec, section)| {
+            let (first, last) = (*section.contacts.start(), *section.contacts.end());
+            let wet = if spec.wet { ", wet" } else { "" };
+            let mut group = Group::new(format!("Contacts {first} to {last}{wet}"));
+            let pairs: Vec<Pair> = unlike(chain, section.contacts.clone().collect());
+            spec.laws
+                .iter()
+                .for_each(|law| describe_law(&mut group, law, &pairs));
+            group
+        })
+        .collect()
+}
+
+/// The pairs of contacts that differ from the one before.
+fn unlike(chain: &Chain, contacts: Vec<usize>) -> Vec<Pair> {
+    let mut pairs: Vec<Pair> = contacts
+        .into_iter()
+        .filter_map(|c| pair(chain, c))
+        .collect();
+    pairs.dedup();
+    pairs
+}
+
+fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[Pair]) {
+    let info = &law.row.info;
+    group.text(info.name, info.equation);
+    for parameter in info.parameters {
+        let given = law.given.iter().find(|(name, _)| *name == parameter.name);
+        let name = format!("  {}", parameter.name);
+        match (given, parameter.source) {
+            (Some((_, value)), _) => group.number(name, *value, parameter.unit),
+            (None, Source::Default(value)) => group.number(name, value, parameter.unit),
+            (None, _) => derived(group, law, name, parameter.name, pairs),
+        }
+    }
+}
+
+/// What materials decide.
+fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pairs: &[Pair]) {
+    let relaxation = match law.name() {
+        "damping_brilliantov_1996" => Material::relaxation_time_1996_s,
+        _ => Material::relaxation_time_s,
+    };
+    let (values, unit): (Vec<f64>, _) = match parameter {
+        "stiffness" => (
+            pairs.iter().map(Pair::hertz_stiffness).collect(),
+            "N/m^(3/2)",
+        ),
+        "relaxation_time" => {
+            let time = |pair: &Pair| pair.mean_relaxation_time_s(relaxation);
+            (pairs.iter().map(time).collect(), "s")
+        }
+        _ => return group.text(name, "from the materials"),
+    };
+    match values.iter().any(|value| value.is_nan()) {
+        true => group.text(name, format!("not defined ({})", short(f64::NAN))),
+        false => group.spread(format!("{name} (from the materials)"), &values, unit),
+    }
+}

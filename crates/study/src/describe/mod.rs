@@ -1,0 +1,125 @@
+//! What was understood of an experiment, in SI, and what follows from it
+//! without running anything.
+
+mod chain;
+mod contact;
+mod rest;
+mod theory;
+
+use crate::error::StudyError;
+use hertzchain_chain::{Chain, System};
+use hertzchain_experiment::{Experiment, Units};
+
+/// A value of one row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the row's unit.
+    Number(f64),
+    /// From a least to a largest number.
+    Range(f64, f64),
+    /// Words.
+    Text(String),
+}
+
+/// One line: a name, its value and unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What it is.
+    pub name: String,
+    /// Its value.
+    pub value: Value,
+    /// Unit; empty for plain numbers, words and dimensionless chains.
+    pub unit: String,
+}
+
+/// Lines that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// What they are about.
+    pub title: String,
+    /// The lines.
+    pub rows: Vec<Row>,
+}
+
+impl Group {
+    fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            rows: Vec::new(),
+        }
+    }
+
+    fn put(&mut self, name: impl Into<String>, value: Value, unit: &str) {
+        self.rows.push(Row {
+            name: name.into(),
+            value,
+            unit: unit.to_owned(),
+        });
+    }
+
+    fn number(&mut self, name: impl Into<String>, value: f64, unit: &str) {
+        self.put(name, Value::Number(value), unit);
+    }
+
+    fn text(&mut self, name: impl Into<String>, text: impl Into<String>) {
+        self.put(name, Value::Text(text.into()), "");
+    }
+
+    /// A number, or a range if the values differ.
+    fn spread(&mut self, name: impl Into<String>, values: &[f64], unit: &str) {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        match values.len() {
+            0 => {}
+            _ if least == most => self.number(name, least, unit),
+            _ => self.put(name, Value::Range(least, most), unit),
+        }
+    }
+}
+
+/// An experiment in SI with what follows from it: contact constants, static
+/// overlaps, linear waves, time scales, the pulse that theory expects.
+///
+/// `speed_m_s` replaces the file's own. The chain must be that of the
+/// experiment at this speed.
+///
+/// # Errors
+/// A chain that can't be set up.
+pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, StudyError> {
+    let system = System::new(chain)?;
+    let mut groups = vec![
+        chain::experiment(experiment, chain),
+        chain::beads(chain),
+        chain::ends(chain),
+    ];
+    groups.extend(contact::sections(experiment, chain));
+    groups.push(rest::at_rest(chain, &system));
+    groups.extend(rest::linear_waves(chain, &system));
+    groups.push(theory::scales(&system));
+    groups.extend(theory::expected(experiment, chain));
+    groups.retain(|group| !group.rows.is_empty());
+    if experiment.units() == Units::Dimensionless {
+        let rows = groups.iter_mut().flat_map(|group| &mut group.rows);
+        rows.for_each(|row| row.unit.clear());
+    }
+    Ok(groups)
+}
+
+/// What theory says of a chain's waves: the exact lattice solitary wave, the
+/// long-wave theory, linear waves under preload, the collision of two beads.
+///
+/// # Errors
+/// A chain that can't be set up.
+pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, StudyError> {
+    let system = System::new(chain)?;
+    let mut groups: Vec<Group> = theory::collision(chain).into_iter().collect();
+    groups.extend(theory::solitary(chain));
+    groups.extend(theory::long_wave(chain));
+    groups.extend(rest::linear_waves(chain, &system));
+    groups.extend(theory::expected(experiment, chain));
+    if experiment.units() == Units::Dimensionless {
+        let rows = groups.iter_mut().flat_map(|group| &mut group.rows);
+        rows.for_each(|row| row.unit.clear());
+    }
+    Ok(groups)
+}
