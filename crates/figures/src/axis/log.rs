@@ -17,8 +17,6 @@ const CHOICES: [(&[u32], i32); 8] = [
 
 /// Beyond this many decades, multiples of a power of ten say nothing.
 const MANY_DECADES: f64 = 3.0;
-/// In decades shorter than this, ticks between powers of ten only blacken the frame, points.
-const SHORT_DECADE: f64 = 14.0;
 
 pub(super) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     let found = CHOICES
@@ -30,7 +28,7 @@ pub(super) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     if found.len() < 3 && scale.decades() < 1.0 {
         return even_steps(scale, room);
     }
-    let minor = unlabelled(scale, room, &found);
+    let minor = unlabelled(scale, &found);
     let sparse = found.len() < 2;
     let ticks = Ticks {
         major: found,
@@ -76,8 +74,11 @@ fn labelled(scale: &Scale, mantissas: &[u32], every: i32) -> Vec<Tick> {
         .collect()
 }
 
-fn unlabelled(scale: &Scale, room: &Room, major: &[Tick]) -> Vec<f64> {
-    let crowded = room.length < SHORT_DECADE * scale.decades();
+/// Ticks between the labels. Where powers of ten go without a label only they
+/// are marked, so that a short tick always means the same.
+fn unlabelled(scale: &Scale, major: &[Tick]) -> Vec<f64> {
+    let labels_missing = |p: &Tick| major.iter().all(|t| t.value != p.value);
+    let crowded = labelled(scale, &[1], 1).iter().any(labels_missing);
     let mantissas: &[u32] = if crowded { &[1] } else { CHOICES[0].0 };
     let mut found: Vec<f64> = labelled(scale, mantissas, 1)
         .iter()
