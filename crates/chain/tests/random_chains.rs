@@ -127,7 +127,7 @@ proptest! {
     fn every_random_chain_moves_finitely_and_balances_its_energy(chain in chain()) {
         let system = System::new(&chain).unwrap();
         let duration = 60.0 * system.scales().time_s;
-        let limits = Limits { budget: true, force_passes: 400_000, ..Limits::until(duration) };
+        let limits = Limits { budget: true, force_passes: Some(400_000), ..Limits::until(duration) };
         let outcome = match run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut []) {
             Ok(outcome) => outcome,
             // A clear refusal is an answer; it must name a contact or a time.
@@ -161,7 +161,7 @@ proptest! {
             ..common::row(4, 1.0, vec![])
         };
         if let Ok(system) = System::new(&chain) {
-            let limits = Limits { force_passes: 10_000, ..Limits::until(1e-4) };
+            let limits = Limits { force_passes: Some(10_000), ..Limits::until(1e-4) };
             let _ = run(&system, &DormandPrince { tolerance: 1e-6 }, limits, &mut []);
         }
     }

@@ -8,12 +8,7 @@ use crate::material::Pair;
 /// its bodies turns round at that speed.
 pub(super) fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
     let speed = characteristic_speed(system);
-    let time = pairs
-        .iter()
-        .enumerate()
-        .filter_map(|(c, pair)| pair.map(|pair| (c, pair.mass_kg)))
-        .map(|(c, mass)| statics_time(system, c, mass, speed))
-        .fold(f64::INFINITY, f64::min);
+    let time = shortest_time(system, pairs, speed);
     let time_s = if time.is_finite() && time > 0.0 {
         time
     } else {
@@ -27,6 +22,15 @@ pub(super) fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
         time_s,
         silent_force_n,
     }
+}
+
+/// Shortest turning time of all contacts; equal neighbours share theirs.
+fn shortest_time(system: &System, pairs: &[Option<Pair>], speed_m_s: f64) -> f64 {
+    let kind = |c: usize| (pairs[c], system.section_of[c], system.offset_m[c]);
+    (0..pairs.len())
+        .filter(|&c| c == 0 || kind(c) != kind(c - 1))
+        .filter_map(|c| Some(statics_time(system, c, pairs[c]?.mass_kg, speed_m_s)))
+        .fold(f64::INFINITY, f64::min)
 }
 
 fn statics_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {

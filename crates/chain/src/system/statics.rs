@@ -46,26 +46,29 @@ pub(super) fn elastic_force(system: &System, contact: usize, overlap: f64) -> f6
     system.unclipped_force(contact, Closed::new(overlap.max(0.0), 0.0))
 }
 
-/// Smallest bracket [0, upper] in which a rising function passes a level.
-fn bracket(rising: impl Fn(f64) -> f64, level: f64) -> Option<f64> {
-    let mut upper = 1e-300_f64;
-    while rising(upper) < level {
-        upper *= 16.0;
-        if upper > 1e300 {
+/// A factor of 16 within which a rising function passes a level, looked for
+/// outward from the micrometre at which contacts live.
+fn bracket(rising: impl Fn(f64) -> f64, level: f64) -> Option<(f64, f64)> {
+    let mut high = 1e-6;
+    while rising(high) < level {
+        high *= 16.0;
+        if high > 1e300 {
             return None;
         }
     }
-    Some(upper)
+    while high > 1e-300 && rising(high / 16.0) >= level {
+        high /= 16.0;
+    }
+    Some((high / 16.0, high))
 }
 
-/// Where a rising function passes a level, to the last bit that bisection
-/// on the floating-point grid can tell.
-fn invert(rising: impl Fn(f64) -> f64, level: f64) -> Option<f64> {
-    let mut high = bracket(&rising, level)?;
-    let mut low = if high <= 1e-300 { 0.0 } else { high / 16.0 };
+/// Where a rising function passes a level, by bisection down to a relative
+/// width; width 0 means to the last bit.
+fn invert(rising: impl Fn(f64) -> f64, level: f64, width: f64) -> Option<f64> {
+    let (mut low, mut high) = bracket(&rising, level)?;
     loop {
         let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
+        if middle <= low || middle >= high || high - low <= width * high {
             return Some(high);
         }
         if rising(middle) < level {
@@ -85,7 +88,8 @@ pub(super) fn static_overlap(
     if load_n == 0.0 {
         return Ok(0.0);
     }
-    invert(|overlap| elastic_force(system, contact, overlap), load_n).ok_or_else(|| {
+    let force = |overlap| elastic_force(system, contact, overlap);
+    invert(force, load_n, 0.0).ok_or_else(|| {
         ChainError::Equilibrium(format!(
             "contact {contact} must carry {load_n} N, but none of its laws is elastic"
         ))
@@ -97,7 +101,9 @@ pub(super) fn static_overlap(
 pub(super) fn turning_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
     let kinetic = 0.5 * mass_kg * speed_m_s * speed_m_s;
     let energy = |overlap| system.stored_energy(contact, overlap);
-    let turning = invert(energy, kinetic).map_or(f64::INFINITY, |overlap| overlap / speed_m_s);
+    // A scale: a thousandth is near enough.
+    let turning =
+        invert(energy, kinetic, 1e-3).map_or(f64::INFINITY, |overlap| overlap / speed_m_s);
     let preloaded = system.static_contact(contact).stiffness_n_m;
     if preloaded > 0.0 {
         turning.min((mass_kg / preloaded).sqrt())

@@ -79,14 +79,30 @@ pub enum SolveError {
     },
     /// More force passes than allowed.
     #[error(
-        "gave up at t = {time_s:e} s after {force_passes} force passes; \
-         ask for a shorter duration or less accuracy"
+        "gave up at t = {time_s:e} s after {force_passes} force passes: steps have come down to \
+         {step_s:e} s because of contact {contact}; ask for a shorter duration or less accuracy, \
+         or look at that contact's laws"
     )]
     TooMuchWork {
         /// Time reached in s.
         time_s: f64,
         /// Passes done.
         force_passes: u64,
+        /// Last step in s.
+        step_s: f64,
+        /// Contact next to the body with the largest error.
+        contact: usize,
+    },
+    /// Rounding alone is larger than the error asked for.
+    #[error(
+        "a tolerance of {tolerance:e} per step cannot be reached in double precision; \
+         the least is {least:e}"
+    )]
+    TooTight {
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Least tolerance.
+        least: f64,
     },
 }
 
@@ -99,8 +115,9 @@ pub struct Limits {
     pub budget: bool,
     /// Step the whole chain, also where nothing moves.
     pub whole_chain: bool,
-    /// Most force passes.
-    pub force_passes: u64,
+    /// Most force passes; when `None`, far more than any sensible shot of this
+    /// duration needs.
+    pub force_passes: Option<u64>,
 }
 
 impl Limits {
@@ -111,7 +128,7 @@ impl Limits {
             duration_s,
             budget: false,
             whole_chain: false,
-            force_passes: 2_000_000_000,
+            force_passes: None,
         }
     }
 }

@@ -24,6 +24,7 @@ pub fn run(
     observers: &mut [&mut dyn Observer],
 ) -> Result<Outcome, SolveError> {
     let table = method.table();
+    check_tolerance(method.control())?;
     let mut wave = Wave::new(system, &table, method.control(), limits);
     wave.first_accelerations();
     let mut finished = false;
@@ -31,6 +32,30 @@ pub fn run(
         finished = wave.advance(observers)?;
     }
     Ok(wave.outcome(finished))
+}
+
+/// Below this the rounding of a step is larger than its error.
+const LEAST_TOLERANCE: f64 = 1e-14;
+
+fn check_tolerance(control: Control) -> Result<(), SolveError> {
+    match control {
+        Control::Adaptive { tolerance } if tolerance < LEAST_TOLERANCE || tolerance.is_nan() => {
+            Err(SolveError::TooTight {
+                tolerance,
+                least: LEAST_TOLERANCE,
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Ten thousand force passes a contact time, where a shot at 1e-12 needs a
+/// thousand, and ten million for the shortest shot.
+fn most_passes(system: &System, limits: &Limits) -> u64 {
+    let contact_times = limits.duration_s / system.scales().time_s;
+    limits
+        .force_passes
+        .unwrap_or(10_000_000 + (1e4 * contact_times) as u64)
 }
 
 /// A shot under way.
@@ -52,6 +77,9 @@ struct Wave<'a> {
     /// Change that the next step is shortened to end at.
     aimed: Option<Event>,
     largest_speed: f64,
+    /// Body with the largest error in the last step tried.
+    worst: usize,
+    most_passes: u64,
     work: Work,
 }
 
@@ -59,7 +87,8 @@ struct Wave<'a> {
 /// control lets it grow fivefold a step.
 const FIRST_STEP: f64 = 1e-3;
 
-/// Steps below this fraction of the contact time mean that accuracy is out of reach.
+/// Steps below this fraction of the contact time mean that accuracy is out of
+/// reach: at the first touch of a contact and the least tolerance 1e-9 is enough.
 const SMALLEST_STEP: f64 = 1e-13;
 
 /// Errors are measured against the speed at which closed contacts move now,
@@ -92,6 +121,8 @@ impl<'a> Wave<'a> {
             proposed_s: FIRST_STEP * system.scales().time_s,
             aimed: None,
             largest_speed: system.scales().speed_m_s,
+            worst: 0,
+            most_passes: most_passes(system, &limits),
             work: Work::default(),
             system,
             table,
@@ -204,6 +235,7 @@ impl<'a> Wave<'a> {
             self.check_work()?;
             self.stages(h);
             let (error, body) = self.error(h);
+            self.worst = body;
             let error = error / tolerance;
             if error > 1.0 || error.is_nan() {
                 let shrink = if error.is_finite() {
@@ -262,11 +294,13 @@ impl<'a> Wave<'a> {
     }
 
     fn check_work(&self) -> Result<(), SolveError> {
-        match self.work.force_passes < self.limits.force_passes {
+        match self.work.force_passes < self.most_passes {
             true => Ok(()),
             false => Err(SolveError::TooMuchWork {
                 time_s: self.state.time_s,
                 force_passes: self.work.force_passes,
+                step_s: self.proposed_s,
+                contact: self.worst.min(self.system.contacts() - 1),
             }),
         }
     }
