@@ -3,10 +3,139 @@
 use crate::arguments::Reproduce;
 use crate::failure::Failure;
 use crate::folder::Folder;
+use crate::print::print;
+use comfy_table::{ContentArrangement, Table, presets};
+use hertzchain_figures::paper::{self, PaperError};
+use hertzchain_study::claims::{Judged, Verdict, value_text};
+use hertzchain_study::readings::Scan;
+use hertzchain_study::reproduce::{
+    HELD, Options, Progress, ReproduceError, Reproduction, reproduce,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fmt::Write as _;
+use std::path::Path;
 
 /// Runs the verb.
 pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
-    let _ = arguments.readings;
-    let _folder = Folder::open(&arguments.out)?;
-    Err(Failure::Ours("not built in yet".into()))
+    let folder = &arguments.out;
+    // Whether it can be written to, before anything is computed for it.
+    Folder::open(folder)?;
+    let options = match arguments.readings {
+        true => Options::default().with_readings(),
+        false => Options::default(),
+    };
+    let bar = Bar::new();
+    let computed = reproduce(&options, &bar);
+    bar.0.finish_and_clear();
+    let computed = computed.map_err(|error| failure(&error))?;
+    computed.write_tables(folder).map_err(|error| failure(&error))?;
+    paper::write(&computed, folder).map_err(|error| match error {
+        PaperError::Reproduce(error) => failure(&error),
+        error => Failure::Ours(error.to_string()),
+    })?;
+    print(&summary(&computed, folder))
+}
+
+/// The paper's chains come with the program: nothing here is the user's fault.
+fn failure(error: &ReproduceError) -> Failure {
+    Failure::Ours(error.to_string())
+}
+
+/// A bar in the terminal; nothing where nobody looks.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{msg:32} {wide_bar} {pos}/{len} {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn begin(&self, stage: &str, steps: u64) {
+        self.0.reset();
+        self.0.set_length(steps);
+        self.0.set_message(stage.to_owned());
+    }
+
+    fn advance(&self) {
+        self.0.inc(1);
+    }
+}
+
+/// What was found, and where it lies.
+fn summary(computed: &Reproduction, folder: &Path) -> String {
+    let mut text = format!("{}\n\n{}\n", times(computed), verdicts(&computed.judged));
+    if let Some(scan) = &computed.scan {
+        text.push_str(&closest(scan));
+    }
+    let provenance = &computed.provenance;
+    let _ = write!(
+        text,
+        "\nReading: {}. Times of flight right to {:.0e}; computed in {:.0} s.\n\
+         Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
+         Verdicts one by one: {}\n",
+        computed.reading,
+        provenance.accuracy_reached,
+        provenance.wall_time_s,
+        folder.display(),
+        folder.join("claims.md").display(),
+    );
+    text
+}
+
+/// Speeds of the summary in m/s.
+const SHOWN_M_S: [f64; 4] = [0.075, 0.25, 0.5, 1.0];
+
+/// Incident and reflected ToF of each case at a few speeds.
+fn times(computed: &Reproduction) -> Table {
+    let mut table = plain();
+    let speeds = SHOWN_M_S.map(|speed| format!("{speed} m/s"));
+    let title = "ToF in µs, incident / reflected".to_owned();
+    table.set_header([title].into_iter().chain(speeds));
+    for curve in computed.evidence.curves.iter().filter(|curve| curve.case != HELD) {
+        let times = SHOWN_M_S.map(|speed| {
+            curve.at(speed).map_or(String::new(), |p| {
+                format!("{:.2} / {:.2}", 1e6 * p.tof_incident_s, 1e6 * p.tof_reflected_s)
+            })
+        });
+        table.add_row([curve.case.clone()].into_iter().chain(times));
+    }
+    table
+}
+
+/// Every claim with its verdict and value.
+fn verdicts(judged: &[Judged]) -> Table {
+    let mut table = plain();
+    table.set_header(["claim of the paper", "verdict", "value"]);
+    for judged in judged {
+        let value = value_text(judged.finding.value, judged.finding.accuracy);
+        let row = [judged.claim.statement.clone(), judged.verdict.to_string(), value];
+        table.add_row(row);
+    }
+    let count = |verdict| judged.iter().filter(|j| j.verdict == verdict).count();
+    let counts = Verdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
+    table.add_row([format!("{} claims: {}", judged.len(), counts.join(", "))]);
+    table
+}
+
+fn plain() -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    table
+}
+
+fn closest(scan: &Scan) -> String {
+    let (closest, claims) = (scan.closest(), scan.claims.len());
+    format!(
+        "\nOf {} readings, closest to the paper: {}.\nIt scores {} of {claims}, the default reading {}; \
+         what it loses is in readings.md, all verdicts in readings.svg.\n",
+        scan.rows().count(),
+        closest.reading,
+        closest.score(),
+        scan.default.score(),
+    )
 }
