@@ -71,10 +71,10 @@ pub struct How {
     #[arg(long, value_enum, value_name = "NAME")]
     pub solver: Option<Solver>,
     /// Step of a fixed-step solver, such as "1 us"; found by halving when absent
-    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true)]
     pub step: Option<f64>,
     /// Duration of a shot, such as "2 ms"; until the reflected pulse has passed when absent
-    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true)]
     pub duration: Option<f64>,
     /// Where a pulse is timed
     #[arg(long, value_enum, value_name = "NAME")]
@@ -127,7 +127,7 @@ pub struct Shot {
     #[command(flatten)]
     pub input: Input,
     /// Speed of the striker, such as "0.5 m/s" or 0.5
-    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_negative_numbers = true)]
+    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_hyphen_values = true)]
     pub speed: Option<f64>,
     /// How to compute.
     #[command(flatten)]
@@ -181,7 +181,7 @@ pub struct Check {
     #[command(flatten)]
     pub input: Input,
     /// Speed of the striker, such as "0.5 m/s" or 0.5
-    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_negative_numbers = true)]
+    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_hyphen_values = true)]
     pub speed: Option<f64>,
     /// Print JSON
     #[arg(long)]
