@@ -1,14 +1,14 @@
 //! Numbers and tables for people.
 
 use crate::print::heading;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle, presets};
 use hertzchain_experiment::Units;
 use hertzchain_study::{Group, Value};
 
 /// Units that take prefixes.
 const PREFIXED: [&str; 6] = ["s", "N", "m", "J", "Hz", "Pa"];
 
-const PREFIXES: [(f64, &str); 7] = [
+const PREFIXES: [(f64, &str); 8] = [
     (1e9, "G"),
     (1e6, "M"),
     (1e3, "k"),
@@ -16,6 +16,7 @@ const PREFIXES: [(f64, &str); 7] = [
     (1e-3, "m"),
     (1e-6, "µ"),
     (1e-9, "n"),
+    (1e-12, "p"),
 ];
 
 /// How numbers are written.
@@ -75,10 +76,16 @@ pub fn pairs(rows: &[(String, String)]) -> String {
     trimmed(&table)
 }
 
-/// A table with a head.
-pub fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+/// Lines above, below and under the head.
+const RULED: TableStyle = TableStyle::new()
+    .top_border(LineStyle::none().fill('─').junction('─'))
+    .header_separator(LineStyle::none().fill('─').junction('─'))
+    .bottom_border(LineStyle::none().fill('─').junction('─'));
+
+/// A table of numbers with a head.
+pub fn table(head: &[String], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.load_style(RULED);
     table.set_header(head.to_vec());
     for row in rows {
         table.add_row(row.clone());
@@ -87,6 +94,23 @@ pub fn table(head: &[&str], rows: &[Vec<String>]) -> String {
         column.set_cell_alignment(CellAlignment::Right);
     }
     trimmed(&table)
+}
+
+/// Numbers with the same decimals, so many that the largest has `digits`; a
+/// dash where there is none.
+pub fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
+    let most = values
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let whole = if most > 0.0 {
+        most.log10().floor() as i32 + 1
+    } else {
+        1
+    };
+    let decimals = usize::try_from(digits as i32 - whole).unwrap_or(0).min(15);
+    let cell = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
+    values.iter().map(cell).collect()
 }
 
 fn trimmed(table: &Table) -> String {

@@ -133,6 +133,17 @@ impl<'a> Gun<'a> {
     }
 
     fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
+        let mut shot = self.computed(checked)?;
+        let residual = shot.budget.as_ref().map_or(0.0, Budget::relative_residual);
+        if residual.abs() > self.plan.accuracy {
+            shot.notes.push(format!(
+                "the energy budget closes to {residual:.1e} of the input only: less than the accuracy asked"
+            ));
+        }
+        Ok(shot)
+    }
+
+    fn computed(&self, checked: bool) -> Result<Shot, StudyError> {
         match (self.plan.solver, accuracy::given_step(self.plan.solver)) {
             (Solver::Adaptive, _) => self.adaptive(checked),
             (solver, Some(step_s)) => self.fixed(solver, step_s, checked),

@@ -4,10 +4,11 @@ use crate::arguments::{How, Sweep as Arguments};
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::format::{self, Style, digits};
+use crate::print::heading;
 use crate::{input, json, pictures, print};
-use hertzchain_experiment::Experiment;
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_signal::{FitError, PowerLaw};
-use hertzchain_study::{Plan, Point, Settings, Sweep, parse_speeds, sweep};
+use hertzchain_study::{Plan, Point, Settings, Shot, Sweep, parse_speeds, sweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use serde_json::json;
@@ -16,7 +17,7 @@ use serde_json::json;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = parse_speeds(&arguments.speeds).map_err(|e| Failure::User(e.to_string()))?;
     let experiment = input::open(&arguments.input)?;
-    let (plan, _) = adjusted(&experiment, &arguments.how)?;
+    let plan = adjusted(&experiment, &arguments.how)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
@@ -35,16 +36,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.
-fn adjusted(experiment: &Experiment, how: &How) -> Result<(Plan, usize), Failure> {
+fn adjusted(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
     if experiment.speed_m_s().is_none() {
         return Err(Failure::User(
             "a sweep over speeds needs a chain with a striker".into(),
         ));
     }
-    let (mut plan, warnings) = Plan::from_experiment(experiment, None)?;
+    let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
     input::adjust(how, &mut plan);
     input::check_step(how, &plan)?;
-    Ok((plan, warnings.len()))
+    Ok(plan)
 }
 
 /// Drawn on a terminal only.
@@ -87,61 +88,96 @@ fn show(
             "power_law_reflected": json::fit(&swept.reflected),
         }));
     }
-    let mut warnings: Vec<&String> = swept.points.iter().flat_map(|p| &p.warnings).collect();
-    warnings.dedup();
-    warnings
-        .iter()
-        .for_each(|warning| eprintln!("warning: {warning}"));
+    print_warnings(swept);
     let style = Style::of_accuracy(plan.accuracy, experiment.units());
-    let rows: Vec<Vec<String>> = swept.points.iter().map(|point| row(style, point)).collect();
-    let head = [
-        "speed",
-        "incident ToF",
-        "reflected ToF",
-        "sensor peak",
-        "wall peak",
-        "rebound",
-    ];
-    let mut text = format!("{}\n{}", experiment.title(), format::table(&head, &rows));
-    text += &fit_line("incident", &swept.incident);
-    text += &fit_line("reflected", &swept.reflected);
+    let mut text = format!("{}\n{}", heading(experiment.title()), rows(style, swept));
+    text += &fit_line(style, "incident", &swept.incident);
+    text += &fit_line(style, "reflected", &swept.reflected);
     print::print(&text)
 }
 
-fn row(style: Style, point: &Point) -> Vec<String> {
-    let brief = Style { digits: 5, ..style };
-    let speed = brief.quantity(point.speed_m_s, "m/s");
-    let Ok(shot) = &point.shot else {
-        return vec![speed, "no shot".to_owned()];
-    };
-    let missing = || "–".to_owned();
-    let time = |time: Option<f64>| time.map_or_else(missing, |t| style.quantity(t, "s"));
-    let seen = shot.passage.as_ref().ok();
-    let force = |force: Option<f64>| force.map_or_else(missing, |f| brief.quantity(f, "N"));
-    vec![
-        speed,
-        time(shot.flight.map(|flight| flight.incident_s)),
-        time(shot.flight.and_then(|flight| flight.reflected_s)),
-        force(seen.map(|seen| seen.incident.value)),
-        force(seen.map(|seen| seen.wall.value)),
-        shot.rebound
-            .map_or_else(missing, |rebound| brief.quantity(rebound.end_m_s, "m/s")),
-    ]
+/// The first warning stands for those of its kind at other speeds.
+fn print_warnings(swept: &Sweep) {
+    let warned = swept
+        .points
+        .iter()
+        .filter(|point| !point.warnings.is_empty());
+    let (first, others) = (warned.clone().next(), warned.count().saturating_sub(1));
+    for warning in first.map_or(&[][..], |point| &point.warnings) {
+        eprintln!("warning: {warning}");
+    }
+    if others > 0 {
+        eprintln!("warning: there are warnings at {others} other speeds too; --json has them all");
+    }
 }
 
-fn fit_line(name: &str, fit: &Result<PowerLaw, FitError>) -> String {
-    match fit {
-        Err(error) => format!("{name}: no power law: {error}\n"),
-        Ok(law) => format!(
-            "{name}: ToF = ({} ± {}) µs · (v/(1 m/s))^({} ± {}), R² = {}, largest deviation {} %\n",
-            digits(1e6 * law.prefactor, 7),
-            digits(1e6 * law.prefactor_error, 2),
-            digits(law.exponent, 7),
-            digits(law.exponent_error, 2),
-            digits(law.r_squared, 8),
-            digits(100.0 * law.largest_deviation(), 2),
-        ),
-    }
+/// What a column is called, its unit, the size of the unit, and its numbers.
+type Column = (&'static str, &'static str, f64, fn(&Point) -> Option<f64>);
+
+const COLUMNS: [Column; 6] = [
+    ("speed", "m/s", 1.0, |point| Some(point.speed_m_s)),
+    ("incident ToF", "µs", 1e-6, |point| {
+        Some(ok(point)?.flight?.incident_s)
+    }),
+    ("reflected ToF", "µs", 1e-6, |point| {
+        ok(point)?.flight?.reflected_s
+    }),
+    ("sensor peak", "N", 1.0, |point| {
+        Some(ok(point)?.passage.as_ref().ok()?.incident.value)
+    }),
+    ("wall peak", "N", 1.0, |point| {
+        Some(ok(point)?.passage.as_ref().ok()?.wall.value)
+    }),
+    ("rebound", "m/s", 1.0, |point| {
+        Some(ok(point)?.rebound?.end_m_s)
+    }),
+];
+
+fn ok(point: &Point) -> Option<&Shot> {
+    point.shot.as_ref().ok()
+}
+
+fn rows(style: Style, swept: &Sweep) -> String {
+    let si = style.units == Units::Si;
+    let column = |(name, unit, size, of): &Column| {
+        let size = if si { *size } else { 1.0 };
+        let values: Vec<Option<f64>> = swept.points.iter().map(|p| Some(of(p)? / size)).collect();
+        let digits = if name.ends_with("ToF") {
+            style.digits + 1
+        } else {
+            5
+        };
+        let head = if si {
+            format!("{name} ({unit})")
+        } else {
+            (*name).to_owned()
+        };
+        (head, format::column(&values, digits))
+    };
+    let (head, columns): (Vec<String>, Vec<Vec<String>>) = COLUMNS.iter().map(column).unzip();
+    let row = |i: usize| columns.iter().map(|column| column[i].clone()).collect();
+    let rows: Vec<Vec<String>> = (0..swept.points.len()).map(row).collect();
+    format::table(&head, &rows)
+}
+
+fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> String {
+    let law = match fit {
+        Err(error) => return format!("{name}: no power law: {error}\n"),
+        Ok(law) => law,
+    };
+    let (size, unit, speed) = match style.units {
+        Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
+        Units::Dimensionless => (1.0, "", "v"),
+    };
+    format!(
+        "{name}: ToF = ({} ± {}){unit} · {speed}^({} ± {}), R² = {}, largest deviation {} %\n",
+        digits(law.prefactor / size, 7),
+        digits(law.prefactor_error / size, 2),
+        digits(law.exponent, 7),
+        digits(law.exponent_error, 2),
+        digits(law.r_squared, 8),
+        digits(100.0 * law.largest_deviation(), 2),
+    )
 }
 
 fn write(mut folder: Folder, experiment: &Experiment, swept: &Sweep) -> Result<(), Failure> {

@@ -46,7 +46,35 @@ pub(super) fn beads(chain: &Chain) -> Group {
     group.text("number of beads N", chain.beads.len().to_string());
     let mass: f64 = chain.beads.iter().map(|bead| bead.mass_kg).sum();
     group.number("mass of all beads", mass, "kg");
-    let runs: Vec<(usize, &[Bead])> = runs(&chain.beads);
+    match cell(&chain.beads) {
+        Some(length) => {
+            let cells = chain.beads.len() / length;
+            group.text(
+                "unit cell",
+                format!("{length} beads, repeated {cells} times"),
+            );
+            list(&mut group, &chain.beads[..length]);
+        }
+        None => list(&mut group, &chain.beads),
+    }
+    group
+}
+
+/// Longest unit cell that is looked for.
+const LONGEST_CELL: usize = 6;
+
+/// Length of a unit cell of unlike beads that repeats at least twice.
+fn cell(beads: &[Bead]) -> Option<usize> {
+    let repeats = |length: &usize| {
+        beads.len() >= 2 * length && beads.iter().zip(&beads[*length..]).all(|(a, b)| a == b)
+    };
+    (1..=LONGEST_CELL)
+        .find(repeats)
+        .filter(|length| *length > 1)
+}
+
+fn list(group: &mut Group, beads: &[Bead]) {
+    let runs: Vec<(usize, &[Bead])> = runs(beads);
     for (first, run) in runs.iter().take(MOST_RUNS) {
         let last = first + run.len() - 1;
         let name = match run.len() {
@@ -56,12 +84,9 @@ pub(super) fn beads(chain: &Chain) -> Group {
         group.text(name, bead(&run[0]));
     }
     if runs.len() > MOST_RUNS {
-        group.text(
-            "",
-            format!("and {} more runs of equal beads", runs.len() - MOST_RUNS),
-        );
+        let more = runs.len() - MOST_RUNS;
+        group.text("", format!("and {more} more runs of equal beads"));
     }
-    group
 }
 
 /// Runs of equal beads with the number of their first one.

@@ -2,10 +2,10 @@
 
 use crate::format::{Style, digits, pairs};
 use crate::print::heading;
-use hertzchain_chain::Start;
-use hertzchain_chain::observe::{Maximum, Passage};
+use hertzchain_chain::observe::{Maximum, Passage, PassageError};
 use hertzchain_chain::wave::Budget;
-use hertzchain_experiment::Experiment;
+use hertzchain_chain::{FarEnd, Start};
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_study::{Plan, Shot};
 
 type Rows = Vec<(String, String)>;
@@ -21,7 +21,11 @@ pub fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
     text += &format!("\n{}", pairs(&flight(style, shot)));
     text += &match &shot.passage {
         Ok(seen) => format!("\n{}\n{}", heading("Pulses"), pairs(&pulses(style, seen))),
-        Err(reason) => format!("\n{reason}\n"),
+        Err(reason) => format!(
+            "\n{}{}",
+            no_passage(plan, shot, reason),
+            last_speeds(style, shot)
+        ),
     };
     if let Some(budget) = &shot.budget {
         text += &format!(
@@ -79,6 +83,37 @@ fn flight(style: Style, shot: &Shot) -> Rows {
         rows.extend(peaks.map(|peak| ("peak of the sensor bead".into(), at(brief, peak))));
     }
     rows
+}
+
+/// Why there is no time of flight.
+fn no_passage(plan: &Plan, shot: &Shot, reason: &PassageError) -> String {
+    match (plan.chain.far, reason) {
+        (FarEnd::Free | FarEnd::Periodic { .. }, _) => {
+            "No time of flight: the chain has no wall.\n".to_owned()
+        }
+        (_, PassageError::NoWallPulse { .. }) => {
+            let duration = Style::brief(Units::Dimensionless).quantity(shot.duration_s, "");
+            format!("No time of flight: no pulse reached the wall within {duration} s.\n")
+        }
+        (_, reason) => format!("No time of flight: {reason}.\n"),
+    }
+}
+
+/// Longer chains have traces for that.
+const MOST_BODIES: usize = 12;
+
+/// What is left when pulses have passed: how fast each body flies.
+fn last_speeds(style: Style, shot: &Shot) -> String {
+    if shot.velocity_m_s.len() > MOST_BODIES {
+        return String::new();
+    }
+    let brief = Style::brief(style.units);
+    let bodies = shot.velocity_m_s.iter().enumerate();
+    let bodies = bodies.take(shot.velocity_m_s.len() - 1);
+    let rows: Rows = bodies
+        .map(|(body, v)| (format!("body {body}"), brief.quantity(*v, "m/s")))
+        .collect();
+    format!("\n{}\n{}", heading("Velocities at the end"), pairs(&rows))
 }
 
 fn at(style: Style, peak: &Maximum) -> String {
