@@ -27,7 +27,7 @@ fn distance(a: &str, b: &str) -> usize {
     strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }
 
-/// One slip in three letters.
+/// One slip in three letters, begun ones counted.
 fn allowed(text: &str) -> usize {
-    (text.chars().count() / 3).max(1)
+    text.chars().count().div_ceil(3).max(1)
 }
