@@ -1,5 +1,10 @@
 //! Verdicts follow from numbers: on numbers made to agree with the paper every
 //! claim holds, and each can be made to fail by changing them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_study::claims::{
     Curve, DigitisedPeak, Evidence, Finding, Judge, Oil, Point, Verdict, claims, judge_all_rounded,

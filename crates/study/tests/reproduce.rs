@@ -1,4 +1,9 @@
 //! The paper's chains in the default reading, and what rounding does to them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_experiment::{Reading, preset};
 use hertzchain_study::claims::{Branch, Evidence};

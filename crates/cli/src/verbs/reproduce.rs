@@ -28,7 +28,9 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
     let computed = reproduce(&options, &bar);
     bar.0.finish_and_clear();
     let computed = computed.map_err(|error| failure(&error))?;
-    computed.write_tables(folder).map_err(|error| failure(&error))?;
+    computed
+        .write_tables(folder)
+        .map_err(|error| failure(&error))?;
     paper::write(&computed, folder).map_err(|error| match error {
         PaperError::Reproduce(error) => failure(&error),
         error => Failure::Ours(error.to_string()),
@@ -95,10 +97,19 @@ fn times(computed: &Reproduction) -> Table {
     let speeds = SHOWN_M_S.map(|speed| format!("{speed} m/s"));
     let title = "ToF in µs, incident / reflected".to_owned();
     table.set_header([title].into_iter().chain(speeds));
-    for curve in computed.evidence.curves.iter().filter(|curve| curve.case != HELD) {
+    for curve in computed
+        .evidence
+        .curves
+        .iter()
+        .filter(|curve| curve.case != HELD)
+    {
         let times = SHOWN_M_S.map(|speed| {
             curve.at(speed).map_or(String::new(), |p| {
-                format!("{:.2} / {:.2}", 1e6 * p.tof_incident_s, 1e6 * p.tof_reflected_s)
+                format!(
+                    "{:.2} / {:.2}",
+                    1e6 * p.tof_incident_s,
+                    1e6 * p.tof_reflected_s
+                )
             })
         });
         table.add_row([curve.case.clone()].into_iter().chain(times));
@@ -107,24 +118,33 @@ fn times(computed: &Reproduction) -> Table {
 }
 
 /// Every claim with its verdict and value.
-fn verdicts(judged: &[Judged]) -> Table {
+fn verdicts(judged: &[Judged]) -> String {
     let mut table = plain();
     table.set_header(["claim of the paper", "verdict", "value"]);
     for judged in judged {
         let value = value_text(judged.finding.value, judged.finding.accuracy);
-        let row = [judged.claim.statement.clone(), judged.verdict.to_string(), value];
+        let row = [
+            judged.claim.statement.clone(),
+            judged.verdict.to_string(),
+            value,
+        ];
         table.add_row(row);
     }
     let count = |verdict| judged.iter().filter(|j| j.verdict == verdict).count();
     let counts = Verdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
-    table.add_row([format!("{} claims: {}", judged.len(), counts.join(", "))]);
-    table
+    format!("{table}\n{} claims: {}", judged.len(), counts.join(", "))
 }
+
+/// Width of tables where the terminal does not tell its own.
+const WIDTH: u16 = 110;
 
 fn plain() -> Table {
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.load_style(presets::NOTHING);
     table.set_content_arrangement(ContentArrangement::Dynamic);
+    if table.width().is_none() {
+        table.set_width(WIDTH);
+    }
     table
 }
 

@@ -40,9 +40,13 @@ fn with(chart: Chart, curve: Option<&Curve>, series: impl Fn(&Curve) -> Series) 
 }
 
 fn viscoelastic(curve: &Curve, branch: Branch, colour: Colour) -> Series {
-    let name = format!("{}, without cubic term", branch.name());
+    // One entry of the legend stands for both dashed curves.
+    let name = match branch {
+        Branch::Reflected => "without cubic term",
+        Branch::Incident => "",
+    };
     Series::line(
-        branch.name(),
+        name,
         &curve.speeds_m_s(),
         &scaled(&curve.tofs_s(branch), US),
     )

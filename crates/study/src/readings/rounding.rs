@@ -123,7 +123,7 @@ impl Draw {
                 oil.change(material, speed_m_s, at_1);
             }
             for term in &mut section.laws {
-                if let Some(cubic) = self.cubic(&term.info().name) {
+                if let Some(cubic) = self.cubic(term.info().name) {
                     *term = cubic;
                 }
             }

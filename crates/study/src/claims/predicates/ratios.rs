@@ -48,8 +48,11 @@ fn crossing(low: &Ratio, high: &Ratio) -> (f64, f64) {
     (speed, speed * (from_tofs + 0.5 * from_chord))
 }
 
-/// All crossings of 1, upward ones first in a pair.
-fn crossings(ratios: &[Ratio]) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+/// Speeds of crossings with their accuracy.
+type Crossings = Vec<(f64, f64)>;
+
+/// All crossings of 1, the upward ones first.
+fn crossings(ratios: &[Ratio]) -> (Crossings, Crossings) {
     let (mut up, mut down) = (Vec::new(), Vec::new());
     for pair in ratios.windows(2) {
         if let [low, high] = pair {

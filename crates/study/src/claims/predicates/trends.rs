@@ -1,29 +1,34 @@
 //! Predicates on how the ratios of different liquids go together.
 
 use super::{Worst, missing};
-use crate::claims::{Claim, Evidence, Finding, Tally};
+use crate::claims::{Claim, Evidence, Finding, Ratio, Tally};
 
-/// Pearson's correlation of two ratio curves over their common speeds.
+/// Pearson's correlation of two ratio curves over ln v: each speed weighs as
+/// much as the stretch of ln v around it, so that it does not matter where
+/// speeds lie close together.
 fn correlation(evidence: &Evidence, one: &str, other: &str) -> Option<f64> {
     let (a, b) = (evidence.ratios(one), evidence.ratios(other));
-    let pairs: Vec<(f64, f64)> = a
-        .iter()
-        .filter_map(|r| {
-            let partner = b.iter().find(|s| s.speed_m_s == r.speed_m_s)?;
-            Some((r.incident, partner.incident))
-        })
-        .collect();
-    let n = pairs.len() as f64;
-    let (mean_a, mean_b) = (
-        pairs.iter().map(|p| p.0).sum::<f64>() / n,
-        pairs.iter().map(|p| p.1).sum::<f64>() / n,
-    );
-    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-        pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum()
+    let partner = |r: &Ratio| b.iter().find(|s| s.speed_m_s == r.speed_m_s).copied();
+    let pairs: Vec<(Ratio, Ratio)> = a.iter().filter_map(|r| Some((*r, partner(r)?))).collect();
+    let speeds: Vec<f64> = pairs.iter().map(|(r, _)| r.speed_m_s.ln()).collect();
+    let weights = weights(&speeds);
+    let mean = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        let terms = pairs.iter().zip(&weights);
+        terms.map(|((a, b), w)| w * f(a.incident, b.incident)).sum()
     };
-    let product = sum(&|a, b| a * b);
-    let scale = (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
-    (pairs.len() > 2 && scale > 0.0).then_some(product / scale)
+    let (mean_a, mean_b) = (mean(&|a, _| a), mean(&|_, b| b));
+    let product = mean(&|a, b| (a - mean_a) * (b - mean_b));
+    let squares = mean(&|a, _| (a - mean_a).powi(2)) * mean(&|_, b| (b - mean_b).powi(2));
+    (pairs.len() > 2 && squares > 0.0).then(|| product / squares.sqrt())
+}
+
+/// Weights of the trapezoidal rule over ascending abscissas, adding up to 1.
+fn weights(at: &[f64]) -> Vec<f64> {
+    let last = at.len().saturating_sub(1);
+    let around = |i: usize| Some(at.get((i + 1).min(last))? - at.get(i.saturating_sub(1))?);
+    let spans: Vec<f64> = (0..at.len()).filter_map(around).collect();
+    let all: f64 = spans.iter().sum();
+    spans.iter().map(|span| span / all).collect()
 }
 
 /// The two ratio curves correlate by more than the threshold.
