@@ -60,7 +60,7 @@ fn quartic_maximum([a, b, c, d, e]: [f64; 5]) -> f64 {
     for _ in 0..8 {
         let rate = slope + at * (curvature + at * (third / 2.0 + at * fourth / 6.0));
         let bend = curvature + at * (third + at * fourth / 2.0);
-        if !(bend < 0.0) {
+        if bend >= 0.0 || bend.is_nan() {
             return 0.0;
         }
         at = (at - rate / bend).clamp(-1.0, 1.0);

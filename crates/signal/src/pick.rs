@@ -36,7 +36,7 @@ pub fn largest_peak(samples: &[f64], interval_s: f64) -> Option<Peak> {
 /// Top of the parabola through values at −1, 0 and 1.
 fn parabola_top(left: f64, middle: f64, right: f64) -> (f64, f64) {
     let curvature = left - 2.0 * middle + right;
-    if !(curvature < 0.0) || !curvature.is_finite() {
+    if curvature >= 0.0 || !curvature.is_finite() {
         return (0.0, middle);
     }
     let slope = 0.5 * (right - left);

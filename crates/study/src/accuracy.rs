@@ -13,12 +13,21 @@ const OF_TIMES: f64 = 3.0;
 /// The residual of the energy budget sums over steps and is this much worse.
 const OF_BUDGET: f64 = 200.0;
 
+/// Chains longer than this take so many more steps that the sum needs more.
+const LONG_CHAIN: f64 = 200.0;
+
 /// First step of a fixed-step method, in contact times.
 const FIRST_STEP: f64 = 1.0 / 20.0;
 
 /// Tolerance per step that gives a plan's accuracy, and whether rounding forbids it.
 pub(crate) fn tolerance(plan: &Plan) -> (f64, bool) {
-    let wanted = plan.accuracy / if plan.budget { OF_BUDGET } else { OF_TIMES };
+    let steps = (plan.chain.beads.len() as f64 / LONG_CHAIN).max(1.0);
+    let share = if plan.budget {
+        OF_BUDGET * steps
+    } else {
+        OF_TIMES
+    };
+    let wanted = plan.accuracy / share;
     (wanted.max(TIGHTEST), wanted < TIGHTEST)
 }
 

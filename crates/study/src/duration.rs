@@ -31,7 +31,7 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
     let beads = system.beads() as f64 + SHORT_CHAIN;
     let gaps: f64 = plan.chain.gaps.iter().map(|gap| gap.gap_m.abs()).sum();
     let bead_times = |count: f64| count * (beads * scales.time_s + gaps / scales.speed_m_s);
-    let wall = !matches!(plan.chain.far, FarEnd::Free | FarEnd::Periodic { .. });
+    let wall = has_wall(&plan.chain.far);
     let longest_s = match (plan.duration_s, &plan.chain.far) {
         (Some(duration_s), _) => duration_s,
         (None, FarEnd::Periodic { .. }) => bead_times(TWO_TURNS),
@@ -43,6 +43,11 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
         at_reflection: open && wall,
         when_apart: open && !wall && plan.chain.suspension_m.is_none(),
     }
+}
+
+/// Whether there is a wall for a pulse to reach.
+pub(crate) fn has_wall(far: &FarEnd) -> bool {
+    !matches!(far, FarEnd::Free | FarEnd::Periodic { .. })
 }
 
 /// A cradle is followed for one swing of its threads, in s.

@@ -271,7 +271,12 @@ impl<'a> Gun<'a> {
         separation: Separation,
         trace: Option<Trace>,
     ) -> Shot {
-        let passage = passages.passage();
+        let passage = match duration::has_wall(&self.plan.chain.far) {
+            true => passages.passage(),
+            false => Err(PassageError::NoWallPulse {
+                duration_s: outcome.time_s,
+            }),
+        };
         let seen = passage.as_ref().ok();
         let picked = seen.and_then(|passage| Flight::picked(self.plan.pick, passages, passage));
         let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;

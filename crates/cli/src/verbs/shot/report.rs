@@ -124,6 +124,9 @@ fn at(style: Style, peak: &Maximum) -> String {
     )
 }
 
+/// Most other maxima of the sensor bead that are listed.
+const MOST_OTHERS: usize = 8;
+
 fn pulses(style: Style, seen: &Passage) -> Rows {
     let brief = Style::brief(style.units);
     let mut rows = Rows::new();
@@ -145,11 +148,12 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
     let others: Vec<&Maximum> = (seen.sensor_maxima.iter())
         .filter(|peak| **peak != seen.incident && Some(**peak) != seen.reflected)
         .collect();
-    rows.extend(
-        others
-            .iter()
-            .map(|peak| ("sensor bead, also".to_owned(), at(brief, peak))),
-    );
+    let shown = others.iter().take(MOST_OTHERS);
+    rows.extend(shown.map(|peak| ("sensor bead, also".to_owned(), at(brief, peak))));
+    if others.len() > MOST_OTHERS {
+        let more = format!("and {} more, all with --json", others.len() - MOST_OTHERS);
+        rows.push((String::new(), more));
+    }
     rows
 }
 

@@ -1,0 +1,157 @@
+//! What is understood of an experiment, against numbers computed by hand.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+use hertzchain_experiment::{Experiment, examples, preset, presets};
+use hertzchain_study::{Group, Value, describe, describe_theory};
+
+fn described(experiment: &Experiment) -> Vec<Group> {
+    let (chain, _) = experiment.chain(None).unwrap();
+    describe(experiment, &chain).unwrap()
+}
+
+/// The number of the first row whose name begins so, in a group whose title does.
+fn number(groups: &[Group], title: &str, name: &str) -> f64 {
+    let group = groups
+        .iter()
+        .find(|group| group.title.starts_with(title))
+        .unwrap();
+    let row = group
+        .rows
+        .iter()
+        .find(|row| row.name.trim().starts_with(name));
+    match row.map(|row| &row.value) {
+        Some(Value::Number(number)) => *number,
+        other => panic!("{title}, {name}: {other:?}"),
+    }
+}
+
+fn assert_close(found: f64, expected: f64, allowed: f64) {
+    assert!(
+        (found / expected - 1.0).abs() < allowed,
+        "{found} for {expected}"
+    );
+}
+
+#[test]
+fn the_paper_s_balls_have_the_paper_s_constants() {
+    let groups = described(&preset("dry").unwrap());
+    // Eleven digits are published.
+    assert_close(
+        number(&groups, "Contacts 0 to 40", "stiffness"),
+        8.7926303796e9,
+        1e-10,
+    );
+    assert_close(
+        number(&groups, "Contacts 0 to 40", "relaxation_time"),
+        3.3852895149e-7,
+        1e-10,
+    );
+    assert_close(
+        number(&groups, "Contacts 0 to 40", "coefficient"),
+        77.0,
+        1e-15,
+    );
+}
+
+#[test]
+fn a_loaded_chain_has_its_overlap_sound_speed_and_cutoff() {
+    let precompressed = preset("precompressed").unwrap();
+    let groups = described(&precompressed);
+    let (chain, _) = precompressed.chain(None).unwrap();
+    let stiffness = number(&groups, "Contacts", "stiffness");
+    let force = number(&groups, "At rest", "static force of contact 1");
+    let overlap = (force / stiffness).powf(2.0 / 3.0);
+    // Rounding of a few powers.
+    assert_close(
+        number(&groups, "At rest", "static overlap of contact 1"),
+        overlap,
+        1e-13,
+    );
+    let sound = (1.5 * stiffness * overlap.sqrt() / chain.beads[0].mass_kg).sqrt();
+    // The stiffness under load is a central difference, right to 1e-10.
+    let small = "Small waves under the static load";
+    assert_close(
+        number(&groups, small, "sound speed at contact 1"),
+        sound,
+        1e-9,
+    );
+    let cutoff = sound / std::f64::consts::PI;
+    assert_close(
+        number(&groups, small, "cutoff frequency at contact 1"),
+        cutoff,
+        1e-9,
+    );
+}
+
+#[test]
+fn the_expected_time_of_flight_is_that_of_the_hertz_chain_to_two_percent() {
+    let hertz = preset("hertz").unwrap();
+    let (chain, _) = hertz.chain(Some(1.0)).unwrap();
+    let groups = describe(&hertz, &chain).unwrap();
+    // The wall's peak comes later than a passing pulse's would: half a bead's
+    // time of 33.5.
+    let found = number(&groups, "Expected", "incident time of flight");
+    assert_close(found, 630.841591e-6, 0.02);
+}
+
+#[test]
+fn a_unit_cell_is_recognised() {
+    let groups = described(&preset("dimer-steel-ptfe").unwrap());
+    let beads = groups.iter().find(|group| group.title == "Beads").unwrap();
+    let cell = beads
+        .rows
+        .iter()
+        .find(|row| row.name == "unit cell")
+        .unwrap();
+    assert_eq!(cell.value, Value::Text("2 beads, repeated 20 times".into()));
+}
+
+#[test]
+fn a_loaded_dimer_has_a_band_gap_between_its_two_masses() {
+    let text = r#"
+        title = "loaded dimer"
+        units = "dimensionless"
+        [striker]
+        speed = 0.001
+        [near_end]
+        push = "constant"
+        force = 1
+        [[beads]]
+        repeat = 10
+        cell = [{ mass = 1 }, { mass = 4 }]
+    "#;
+    let groups = described(&Experiment::from_text("dimer.toml", text).unwrap());
+    let small = "Small waves under the static load";
+    let edge = |mass: f64| {
+        // κ = 1.5 K^{2/3} F^{1/3} = 1.5 on both sides of a bead.
+        (2.0 * 1.5 / mass).sqrt() / std::f64::consts::TAU
+    };
+    // The stiffness under load is a central difference, right to 1e-10.
+    assert_close(number(&groups, small, "band gap from"), edge(4.0), 1e-9);
+    assert_close(number(&groups, small, "band gap to"), edge(1.0), 1e-9);
+}
+
+#[test]
+fn every_preset_and_example_can_be_described_without_nonsense() {
+    for file in presets().iter().chain(examples()) {
+        let experiment = preset(file.name).unwrap();
+        let (chain, _) = experiment.chain(None).unwrap();
+        let theory = describe_theory(&experiment, &chain).unwrap();
+        for row in described(&experiment)
+            .iter()
+            .chain(&theory)
+            .flat_map(|group| &group.rows)
+        {
+            let finite = match row.value {
+                Value::Number(number) => number.is_finite(),
+                Value::Range(least, most) => least.is_finite() && most > least,
+                Value::Text(_) => true,
+            };
+            assert!(finite, "{}: {row:?}", file.name);
+        }
+    }
+}
