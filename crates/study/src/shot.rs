@@ -1,15 +1,11 @@
 //! One shot from its plan to its numbers.
 
-use crate::accuracy::{self, TIGHTEST};
-use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::flight::{Flight, relative};
-use crate::plan::{Plan, Solver};
-use hertzchain_chain::observe::{
-    Apart, Maximum, Passage, PassageError, Passages, Separation, Trace, Tracer,
-};
-use hertzchain_chain::wave::{Budget, Limits, Method, Observer, Outcome, Work, run};
-use hertzchain_chain::{Start, System};
+use crate::gun::Gun;
+use crate::plan::Plan;
+use hertzchain_chain::observe::{Maximum, Passage, PassageError, Trace};
+use hertzchain_chain::wave::{Budget, Work};
 
 /// The striker's velocity after the impact, negative away from the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +61,7 @@ pub struct Shot {
 
 impl Shot {
     /// Largest relative difference of two computations of one shot.
-    fn change(&self, other: &Self) -> f64 {
+    pub(crate) fn change(&self, other: &Self) -> f64 {
         match (&self.flight, &other.flight) {
             (Some(one), Some(two)) => return one.change(two),
             (None, None) => {}
@@ -113,201 +109,8 @@ pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
     Gun::load(plan)?.shoot(true)
 }
 
-/// A plan whose chain is set up.
-struct Gun<'a> {
-    plan: &'a Plan,
-    system: System,
-    end: End,
-}
-
-/// A search for a fixed step halves it at most this often, down to some 1e-5
-/// of the contact time: beyond, adaptive steps are the only sane choice.
-const MOST_HALVINGS: i32 = 11;
-
-impl<'a> Gun<'a> {
-    fn load(plan: &'a Plan) -> Result<Self, StudyError> {
-        plan.check()?;
-        let system = System::new(&plan.chain)?;
-        let end = duration::end(plan, &system);
-        Ok(Self { plan, system, end })
-    }
-
-    fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.computed(checked)?;
-        let residual = shot.budget.as_ref().map_or(0.0, Budget::relative_residual);
-        if residual.abs() > self.plan.accuracy {
-            shot.notes.push(format!(
-                "the energy budget closes to {residual:.1e} of the input only: less than the accuracy asked"
-            ));
-        }
-        Ok(shot)
-    }
-
-    fn computed(&self, checked: bool) -> Result<Shot, StudyError> {
-        match (self.plan.solver, accuracy::given_step(self.plan.solver)) {
-            (Solver::Adaptive, _) => self.adaptive(checked),
-            (solver, Some(step_s)) => self.fixed(solver, step_s, checked),
-            (solver, None) => self.halving(solver),
-        }
-    }
-
-    fn adaptive(&self, checked: bool) -> Result<Shot, StudyError> {
-        let (tolerance, beyond) = accuracy::tolerance(self.plan);
-        let mut shot = self.once(&*accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
-        shot.tolerance = Some(tolerance);
-        if beyond {
-            shot.notes.push(format!(
-                "an accuracy of {:e} is beyond double precision: computed at the tightest tolerance, {TIGHTEST:e} a step",
-                self.plan.accuracy
-            ));
-        }
-        if checked {
-            let again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
-            self.judge(&mut shot, &again);
-        }
-        Ok(shot)
-    }
-
-    /// A fixed step as given, whatever accuracy that is.
-    fn fixed(&self, solver: Solver, step_s: f64, checked: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.at_step(solver, step_s, self.plan.watch.is_some())?;
-        if checked {
-            let again = self.at_step(solver, 0.5 * step_s, false)?;
-            self.judge(&mut shot, &again);
-        }
-        Ok(shot)
-    }
-
-    /// Halves the step until the result stands still.
-    fn halving(&self, solver: Solver) -> Result<Shot, StudyError> {
-        let first_s = accuracy::first_step_s(&self.system);
-        let mut last = self.at_step(solver, first_s, false);
-        let mut change = f64::INFINITY;
-        for halving in 1..=MOST_HALVINGS {
-            let step_s = first_s * 0.5_f64.powi(halving);
-            let next = self.at_step(solver, step_s, false);
-            if let (Ok(one), Ok(two)) = (&last, &next) {
-                change = one.change(two);
-                if change <= self.plan.accuracy {
-                    return self.settled(solver, step_s, change, next);
-                }
-            }
-            last = next;
-        }
-        last.and(Err(StudyError::NotConverged {
-            method: accuracy::fixed(solver, first_s).name(),
-            accuracy: self.plan.accuracy,
-            step_s: first_s * 0.5_f64.powi(MOST_HALVINGS),
-            change,
-        }))
-    }
-
-    /// The shot at the step that was found, sampled if asked.
-    fn settled(
-        &self,
-        solver: Solver,
-        step_s: f64,
-        change: f64,
-        found: Result<Shot, StudyError>,
-    ) -> Result<Shot, StudyError> {
-        let mut shot = match self.plan.watch {
-            Some(_) => self.at_step(solver, step_s, true)?,
-            None => found?,
-        };
-        shot.accuracy_reached = Some(change);
-        Ok(shot)
-    }
-
-    fn at_step(&self, solver: Solver, step_s: f64, sampled: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.once(&*accuracy::fixed(solver, step_s), sampled)?;
-        shot.step_s = Some(step_s);
-        Ok(shot)
-    }
-
-    fn judge(&self, shot: &mut Shot, again: &Shot) {
-        let change = shot.change(again);
-        shot.accuracy_reached = Some(change);
-        if change > self.plan.accuracy {
-            shot.notes.push(format!(
-                "the asked accuracy of {:e} was not reached: computed more tightly, the result changes by {change:.1e}",
-                self.plan.accuracy
-            ));
-        }
-    }
-
-    /// One run with one method.
-    fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
-        let wall = self.system.contacts() - 1;
-        let mut passages = Passages::new(self.plan.sensor_bead, wall, self.end.at_reflection);
-        let mut separation = Separation::default();
-        let mut apart = Apart;
-        let mut tracer = self.tracer().filter(|_| sampled);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut passages, &mut separation];
-        if self.end.when_apart {
-            observers.push(&mut apart);
-        }
-        observers.extend(tracer.as_mut().map(|tracer| tracer as &mut dyn Observer));
-        let limits = Limits {
-            budget: self.plan.budget,
-            ..Limits::until(self.end.longest_s)
-        };
-        let outcome = run(&self.system, method, limits, &mut observers)?;
-        let trace = tracer.map(Tracer::into_trace);
-        Ok(self.shot(method, outcome, &passages, separation, trace))
-    }
-
-    fn tracer(&self) -> Option<Tracer> {
-        let watch = self.plan.watch.as_ref()?;
-        let usual = 0.1 * self.system.scales().time_s;
-        let interval_s = watch.interval_s.unwrap_or(usual);
-        Some(Tracer::new(watch.sensors.clone(), interval_s, interval_s))
-    }
-
-    fn shot(
-        &self,
-        method: &dyn Method,
-        outcome: Outcome,
-        passages: &Passages,
-        separation: Separation,
-        trace: Option<Trace>,
-    ) -> Shot {
-        let passage = match duration::has_wall(&self.plan.chain.far) {
-            true => passages.passage(),
-            false => Err(PassageError::NoWallPulse {
-                duration_s: outcome.time_s,
-            }),
-        };
-        let seen = passage.as_ref().ok();
-        let picked = seen.and_then(|passage| Flight::picked(self.plan.pick, passages, passage));
-        let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
-        let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
-        Shot {
-            flight: picked,
-            sensor_maxima: reported(passages.sensor().maxima()),
-            pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
-            rebound: is_struck.then(|| Rebound {
-                first: separation.first(),
-                end_m_s: outcome.velocity_m_s.first().copied().unwrap_or(0.0),
-            }),
-            passage,
-            budget: outcome.budget,
-            trace,
-            duration_s: outcome.time_s,
-            finished: outcome.finished,
-            velocity_m_s: outcome.velocity_m_s,
-            work: outcome.work,
-            accuracy_asked: self.plan.accuracy,
-            accuracy_reached: None,
-            solver: method.name().to_owned(),
-            tolerance: None,
-            step_s: None,
-            notes: Vec::new(),
-        }
-    }
-}
-
 /// Maxima above 5 % of the largest.
-fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
+pub(crate) fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
     let most = highest(maxima).map_or(0.0, |peak| peak.value);
     let large = |peak: &&Maximum| most > 0.0 && peak.value >= 0.05 * most;
     maxima.iter().filter(large).copied().collect()
