@@ -4,6 +4,7 @@
 mod chain;
 mod contact;
 mod rest;
+mod small_waves;
 mod theory;
 
 use crate::error::StudyError;
@@ -113,9 +114,13 @@ pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, St
 pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, StudyError> {
     let system = System::new(chain)?;
     let mut groups: Vec<Group> = theory::collision(chain).into_iter().collect();
+    groups.extend(theory::restitution(chain)?);
     groups.extend(theory::solitary(chain));
+    groups.extend(theory::profile(chain));
     groups.extend(theory::long_wave(chain));
     groups.extend(rest::linear_waves(chain, &system));
+    groups.extend(small_waves::dispersion(chain, &system));
+    groups.extend(small_waves::modes(chain, &system));
     groups.extend(theory::expected(experiment, chain));
     if experiment.units() == Units::Dimensionless {
         let rows = groups.iter_mut().flat_map(|group| &mut group.rows);

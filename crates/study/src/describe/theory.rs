@@ -2,14 +2,19 @@
 
 use super::Group;
 use super::contact;
+use crate::error::StudyError;
+use crate::plan::Plan;
+use crate::shot::shoot;
 use hertzchain_chain::theory::long_wave::{LongWave, LongWaveForm};
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave};
-use hertzchain_chain::theory::two_body::ElasticCollision;
-use hertzchain_chain::{Bead, Chain, Start, System};
+use hertzchain_chain::theory::two_body::{
+    ContactEnd, ElasticCollision, ViscoelasticCollision, restitution_by_series,
+};
+use hertzchain_chain::{Bead, Chain, FarEnd, Push, Section, Start, System};
 use hertzchain_experiment::Experiment;
 
 /// Fixed steps per contact time that give classical Runge–Kutta times of
-/// flight to about 1e-4 in the paper's chain.
+/// flight to about 1e-6 in the paper's chain.
 const STEPS: f64 = 50.0;
 
 pub(super) fn scales(system: &System) -> Group {
@@ -40,20 +45,90 @@ fn striker(chain: &Chain) -> Option<(&Bead, f64)> {
     }
 }
 
-pub(super) fn collision(chain: &Chain) -> Option<Group> {
+/// The striker against bead 1 by the elastic term of contact 0.
+fn impact(chain: &Chain) -> Option<ElasticCollision> {
     let (stiffness, exponent) = contact::elastic(chain, 0)?;
     let (_, speed_m_s) = striker(chain)?;
-    let hit = ElasticCollision {
+    let reduced_mass_kg = contact::pair(chain, 0)?.mass_kg;
+    Some(ElasticCollision {
         exponent,
         stiffness,
-        reduced_mass_kg: contact::pair(chain, 0)?.mass_kg,
+        reduced_mass_kg,
         speed_m_s,
-    };
+    })
+}
+
+pub(super) fn collision(chain: &Chain) -> Option<Group> {
+    let hit = impact(chain)?;
     let mut group = Group::new("Striker against bead 1 alone, without losses");
     group.number("contact time", hit.contact_time_s(), "s");
     group.number("largest overlap", hit.largest_overlap_m(), "m");
     group.number("largest force", hit.largest_force_n(), "N");
     Some(group)
+}
+
+/// Restitution of the striker and bead 1 alone, under the laws of contact 0:
+/// integrated, and by theory where they are elastic and viscoelastic.
+pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
+    let (Some((_, speed_m_s)), Some(laws)) = (striker(chain), contact::section(chain, 0)) else {
+        return Ok(None);
+    };
+    let mut group = Group::new("Restitution of the striker and bead 1 alone");
+    let pair = Chain {
+        beads: chain.beads[..1].to_vec(),
+        initial: Vec::new(),
+        push: Push::None,
+        far: FarEnd::Free,
+        sections: vec![Section {
+            contacts: 0..=1,
+            ..laws.clone()
+        }],
+        gaps: Vec::new(),
+        incline_rad: 0.0,
+        suspension_m: None,
+        ..chain.clone()
+    };
+    let after = shoot(&Plan::new(pair, 1).with_accuracy(1e-9))?.velocity_m_s;
+    group.number(
+        "with all laws of contact 0",
+        (after[1] - after[0]) / speed_m_s,
+        "",
+    );
+    if let Some(collision) = viscoelastic(chain) {
+        let x = collision.parameter();
+        if let Ok(rebound) = collision.rebound(ContactEnd::ZeroOverlap) {
+            group.number(
+                "elastic and viscoelastic terms, exact",
+                rebound.restitution,
+                "",
+            );
+        }
+        let series = restitution_by_series(collision.elastic.exponent, x);
+        group.number("elastic and viscoelastic terms, series to x²", series, "");
+        group.number("its parameter x = (3/2) A (K/m)^{2/5} v^{1/5}", x, "");
+    }
+    Ok(Some(group))
+}
+
+/// The striker's collision by its Hertz and viscoelastic terms.
+fn viscoelastic(chain: &Chain) -> Option<ViscoelasticCollision> {
+    let elastic = impact(chain)?;
+    let damped = contact::section(chain, 0)?
+        .laws
+        .iter()
+        .find(|law| law.info().name == "damping_viscoelastic")?;
+    let &[damping] = damped
+        .coefficients(&contact::pair(chain, 0)?)
+        .ok()?
+        .as_slice()
+    else {
+        return None;
+    };
+    let damping_time_s = damping / (1.5 * elastic.stiffness);
+    Some(ViscoelasticCollision {
+        elastic,
+        damping_time_s,
+    })
 }
 
 /// Calls with the solitary wave that carries the striker's whole energy.
@@ -67,7 +142,8 @@ fn with_wave<T>(chain: &Chain, call: impl FnOnce(&SolitaryWave<'_>, &Bead) -> T)
 }
 
 pub(super) fn solitary(chain: &Chain) -> Option<Group> {
-    let title = "Exact lattice solitary wave with the striker's whole energy, without losses";
+    let title =
+        "Exact solitary wave of a uniform row like the middle, with the striker's whole energy";
     let mut group = Group::new(title);
     with_wave(chain, |wave, bead| {
         let speed = wave.speed_beads_s();
@@ -91,6 +167,25 @@ pub(super) fn solitary(chain: &Chain) -> Option<Group> {
         group.number("energy", wave.energy_j(), "J");
         group.number("momentum", wave.momentum_kg_m_s(), "kg m/s");
         group.number("shift of every bead", wave.shift_m(), "m");
+    })?;
+    Some(group)
+}
+
+/// The wave's shape: contact force and bead velocity at distances from its centre.
+pub(super) fn profile(chain: &Chain) -> Option<Group> {
+    let mut group =
+        Group::new("Its profile: contact force and bead speed at a distance from the centre");
+    with_wave(chain, |wave, _| {
+        for half_beads in 0..=6 {
+            let distance = 0.5 * f64::from(half_beads);
+            group.number(
+                format!("force at {distance} beads"),
+                wave.force_n(distance),
+                "N",
+            );
+            let speed = wave.bead_speed_m_s(distance);
+            group.number(format!("bead speed at {distance} beads"), speed, "m/s");
+        }
     })?;
     Some(group)
 }
