@@ -42,7 +42,7 @@ fn with(chart: Chart, curve: Option<&Curve>, series: impl Fn(&Curve) -> Series) 
 fn viscoelastic(curve: &Curve, branch: Branch, colour: Colour) -> Series {
     // One entry of the legend stands for both dashed curves.
     let name = match branch {
-        Branch::Reflected => "without cubic term",
+        Branch::Reflected => "Hertz + viscoelastic",
         Branch::Incident => "",
     };
     Series::line(

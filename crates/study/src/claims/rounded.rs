@@ -15,9 +15,12 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    fn of(findings: &[Finding]) -> Self {
+    /// From the draws' findings; `shift` is what finer numbers add to the
+    /// reference's value.
+    fn of(findings: &[Finding], shift: f64) -> Self {
         let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
-        let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
+        let values = findings.iter().map(|f| f.value + shift);
+        let values = values.filter(|v| v.is_finite());
         let range = values.fold(None, |range: Option<(f64, f64)>, v| {
             let (low, high) = range.unwrap_or((v, v));
             Some((low.min(v), high.max(v)))
@@ -58,7 +61,9 @@ pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
 
 /// Decides all claims on the constants as printed, and looks what draws within
 /// their rounding do. `reference` has the printed constants and is as fine as
-/// the draws are: a verdict from which a draw differs there is not decidable.
+/// the draws are: a verdict from which a draw differs there is not decidable. The
+/// range of a value is that of the draws about the reference, carried over to
+/// the printed one.
 #[must_use]
 pub fn judge_all_rounded(
     judges: &[Judge],
@@ -75,9 +80,13 @@ pub fn judge_all_rounded(
 fn decide(judge: &Judge, printed: &Evidence, reference: &Evidence, draws: &[Evidence]) -> Judged {
     let finding = judge.decide(printed);
     let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
-    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
-    let unrounded = judge.decide(reference).verdict;
-    let flips = rounded.as_ref().is_some_and(|r| r.flips(unrounded));
+    let unrounded = judge.decide(reference);
+    let shift = match finding.value - unrounded.value {
+        shift if shift.is_finite() => shift,
+        _ => 0.0,
+    };
+    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn, shift));
+    let flips = rounded.as_ref().is_some_and(|r| r.flips(unrounded.verdict));
     Judged {
         claim: judge.claim.clone(),
         verdict: if flips {

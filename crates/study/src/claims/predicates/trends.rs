@@ -63,8 +63,11 @@ pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
     };
     let value = near - far;
     let mut tally = Tally::default();
-    tally.margin(value - claim.threshold, 0.0);
-    tally.answer((a - b).abs() > (a - c).abs());
+    // What the claim says of the viscosities comes first.
+    match (a - b).abs() > (a - c).abs() {
+        true => tally.margin(value - claim.threshold, 0.0),
+        false => tally.answer(false),
+    }
     let mut worst = Worst::none();
     worst.see(0.0, value, 0.0, || {
         format!("{one} with {alike} {near:.3}, with {other} {far:.3}")
