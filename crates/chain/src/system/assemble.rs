@@ -4,37 +4,17 @@ use super::check::{check_values, contact_exists};
 use super::scales::scales;
 use super::statics::{elastic_force, static_overlap};
 use super::{Scales, SectionColumns, Spring, System, TermColumns};
-use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Section, Start};
+use crate::chain::{Chain, ChainError, FarEnd, Push, Section, Start};
 use crate::laws::{Columns, Nature};
-use crate::material::{Material, Pair};
-
-/// The shape that meets a contact from one side.
-#[derive(Clone, Copy)]
-struct Side {
-    radius_m: f64,
-    mass_kg: f64,
-    material: Material,
-}
-
-impl Side {
-    fn bead(bead: &Bead) -> Self {
-        Self {
-            radius_m: bead.radius_m,
-            mass_kg: bead.mass_kg,
-            material: bead.material,
-        }
-    }
-}
+use crate::material::Pair;
 
 pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     check_values(chain)?;
-    let near = near_side(chain);
-    let far = far_side(chain);
-    let pairs = pairs(chain, near, far);
+    let pairs: Vec<Option<Pair>> = (0..=chain.beads.len()).map(|c| chain.pair(c)).collect();
     let (sections, section_of) = sections(chain, &pairs)?;
     let driven = matches!(chain.start, Start::Driven { .. });
     let mut system = System {
-        mass_kg: masses(chain, near, far),
+        mass_kg: masses(chain),
         inverse_mass: Vec::new(),
         offset_m: vec![f64::NEG_INFINITY; chain.beads.len() + 1],
         static_force_n: vec![0.0; chain.beads.len() + 1],
@@ -77,87 +57,6 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     set_in_motion(chain, &mut system);
     system.scales = scales(&system, &pairs);
     Ok(system)
-}
-
-fn near_side(chain: &Chain) -> Option<Side> {
-    match &chain.start {
-        Start::Striker { bead, .. } => Some(Side::bead(bead)),
-        Start::Driven { bead, .. } => Some(Side {
-            mass_kg: f64::INFINITY,
-            ..Side::bead(bead)
-        }),
-        Start::Free => None,
-    }
-}
-
-fn far_side(chain: &Chain) -> Option<Side> {
-    let fixed = f64::INFINITY;
-    match chain.far {
-        FarEnd::HalfBead { radius_m, material } => Some(Side {
-            radius_m,
-            mass_kg: fixed,
-            material,
-        }),
-        FarEnd::Plane { material } => Some(Side {
-            radius_m: fixed,
-            mass_kg: fixed,
-            material,
-        }),
-        FarEnd::Stop {
-            radius_m,
-            material,
-            mass_kg,
-        } => Some(Side {
-            radius_m,
-            mass_kg,
-            material,
-        }),
-        FarEnd::PlaneStop { material, mass_kg } => Some(Side {
-            radius_m: f64::INFINITY,
-            mass_kg,
-            material,
-        }),
-        FarEnd::Periodic { .. } => chain.beads.first().map(Side::bead),
-        FarEnd::Free => None,
-    }
-}
-
-/// Product over sum, with the limit for an infinite partner.
-fn reduced(left: f64, right: f64) -> f64 {
-    match (left.is_infinite(), right.is_infinite()) {
-        (true, _) => right,
-        (_, true) => left,
-        _ => left * right / (left + right),
-    }
-}
-
-fn pair(left: Side, right: Side, material: Option<Material>) -> Pair {
-    Pair {
-        left: material.unwrap_or(left.material),
-        right: material.unwrap_or(right.material),
-        radius_m: reduced(left.radius_m, right.radius_m),
-        mass_kg: reduced(left.mass_kg, right.mass_kg),
-    }
-}
-
-/// The pair of every contact, `None` where a side is missing.
-fn pairs(chain: &Chain, near: Option<Side>, far: Option<Side>) -> Vec<Option<Pair>> {
-    let beads = chain.beads.len();
-    let side = |body: usize| match body {
-        0 => near,
-        body if body > beads => far,
-        body => chain.beads.get(body - 1).map(Side::bead),
-    };
-    let material = |contact: usize| {
-        chain
-            .sections
-            .iter()
-            .find(|s| s.contacts.contains(&contact))
-            .and_then(|s| s.material)
-    };
-    (0..=beads)
-        .map(|c| Some(pair(side(c)?, side(c + 1)?, material(c))))
-        .collect()
 }
 
 /// Sections in order with their columns, and the section of every contact.
@@ -231,16 +130,16 @@ fn section_columns(
 }
 
 /// Masses of bodies 0..=N+1; infinite where nothing moves.
-fn masses(chain: &Chain, near: Option<Side>, far: Option<Side>) -> Vec<f64> {
-    let mass = |side: Option<Side>| side.map_or(f64::INFINITY, |side| side.mass_kg);
-    let far = if matches!(chain.far, FarEnd::Periodic { .. }) {
-        f64::INFINITY
-    } else {
-        mass(far)
-    };
-    std::iter::once(mass(near))
-        .chain(chain.beads.iter().map(|bead| bead.mass_kg))
-        .chain(std::iter::once(far))
+fn masses(chain: &Chain) -> Vec<f64> {
+    let last = chain.beads.len() + 1;
+    let ring = matches!(chain.far, FarEnd::Periodic { .. });
+    (0..=last)
+        .map(|i| {
+            chain
+                .body(i)
+                .filter(|_| !(ring && i == last))
+                .map_or(f64::INFINITY, |b| b.mass_kg)
+        })
         .collect()
 }
 

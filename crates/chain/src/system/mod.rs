@@ -3,6 +3,7 @@
 mod assemble;
 mod check;
 mod contact;
+mod pairs;
 mod scales;
 mod statics;
 

@@ -3,67 +3,8 @@
 use super::Group;
 use super::chain::short;
 use hertzchain_chain::laws::{Nature, Source};
-use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
+use hertzchain_chain::{Chain, Material, Pair, Section};
 use hertzchain_experiment::{Experiment, LawSpec};
-
-/// One side of a contact: radius in m, mass in kg, material.
-type Side = (f64, f64, Material);
-
-const FIXED: f64 = f64::INFINITY;
-
-fn of(bead: &Bead) -> Side {
-    (bead.radius_m, bead.mass_kg, bead.material)
-}
-
-fn near(chain: &Chain) -> Option<Side> {
-    match &chain.start {
-        Start::Striker { bead, .. } => Some(of(bead)),
-        Start::Driven { bead, .. } => Some((bead.radius_m, FIXED, bead.material)),
-        Start::Free => None,
-    }
-}
-
-fn far(chain: &Chain) -> Option<Side> {
-    match chain.far {
-        FarEnd::HalfBead { radius_m, material } => Some((radius_m, FIXED, material)),
-        FarEnd::Plane { material } => Some((FIXED, FIXED, material)),
-        FarEnd::Stop {
-            radius_m,
-            material,
-            mass_kg,
-        } => Some((radius_m, mass_kg, material)),
-        FarEnd::PlaneStop { material, mass_kg } => Some((FIXED, mass_kg, material)),
-        FarEnd::Periodic { .. } => chain.beads.first().map(of),
-        FarEnd::Free => None,
-    }
-}
-
-/// Product over sum, with the limit for an infinite partner.
-fn reduced(one: f64, two: f64) -> f64 {
-    match (one.is_infinite(), two.is_infinite()) {
-        (true, _) => two,
-        (_, true) => one,
-        _ => one * two / (one + two),
-    }
-}
-
-/// The two bodies of a contact; `None` where one is missing.
-pub(super) fn pair(chain: &Chain, contact: usize) -> Option<Pair> {
-    let beads = chain.beads.len();
-    let side = |body: usize| match body {
-        0 => near(chain),
-        body if body > beads => far(chain),
-        body => chain.beads.get(body - 1).map(of),
-    };
-    let (left, right) = (side(contact)?, side(contact + 1)?);
-    let material = section(chain, contact).and_then(|section| section.material);
-    Some(Pair {
-        left: material.unwrap_or(left.2),
-        right: material.unwrap_or(right.2),
-        radius_m: reduced(left.0, right.0),
-        mass_kg: reduced(left.1, right.1),
-    })
-}
 
 pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
     chain
@@ -74,7 +15,7 @@ pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
 
 /// Stiffness k and exponent n of F = k δⁿ, where one elastic power law acts.
 pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
-    let pair = pair(chain, contact)?;
+    let pair = chain.pair(contact)?;
     let laws = &section(chain, contact)?.laws;
     let mut elastic = laws
         .iter()
@@ -110,10 +51,7 @@ pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
 
 /// The pairs of contacts that differ from the one before.
 fn unlike(chain: &Chain, contacts: Vec<usize>) -> Vec<Pair> {
-    let mut pairs: Vec<Pair> = contacts
-        .into_iter()
-        .filter_map(|c| pair(chain, c))
-        .collect();
+    let mut pairs: Vec<Pair> = contacts.into_iter().filter_map(|c| chain.pair(c)).collect();
     pairs.dedup();
     pairs
 }

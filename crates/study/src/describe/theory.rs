@@ -49,7 +49,7 @@ fn striker(chain: &Chain) -> Option<(&Bead, f64)> {
 fn impact(chain: &Chain) -> Option<ElasticCollision> {
     let (stiffness, exponent) = contact::elastic(chain, 0)?;
     let (_, speed_m_s) = striker(chain)?;
-    let reduced_mass_kg = contact::pair(chain, 0)?.mass_kg;
+    let reduced_mass_kg = chain.pair(0)?.mass_kg;
     Some(ElasticCollision {
         exponent,
         stiffness,
@@ -117,11 +117,7 @@ fn viscoelastic(chain: &Chain) -> Option<ViscoelasticCollision> {
         .laws
         .iter()
         .find(|law| law.info().name == "damping_viscoelastic")?;
-    let &[damping] = damped
-        .coefficients(&contact::pair(chain, 0)?)
-        .ok()?
-        .as_slice()
-    else {
+    let &[damping] = damped.coefficients(&chain.pair(0)?).ok()?.as_slice() else {
         return None;
     };
     let damping_time_s = damping / (1.5 * elastic.stiffness);
