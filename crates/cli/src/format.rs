@@ -42,17 +42,38 @@ impl Style {
 
     /// A number with its unit, with a prefix where that is usual.
     pub fn quantity(self, value: f64, unit: &str) -> String {
+        self.scaled(value, unit, digits)
+    }
+
+    /// The same with all digits, zeros at the end too: they are known.
+    pub fn exact(self, value: f64, unit: &str) -> String {
+        self.scaled(value, unit, |value, digits| {
+            format!("{value:.*}", decimals(value.abs(), digits))
+        })
+    }
+
+    fn scaled(self, value: f64, unit: &str, write: impl Fn(f64, usize) -> String) -> String {
         if self.units == Units::Dimensionless || unit.is_empty() || unit == "1" {
-            return digits(value, self.digits);
+            return write(value, self.digits);
         }
         let prefix = PREFIXES.iter().find(|(size, _)| value.abs() >= *size);
         match prefix {
             Some((size, prefix)) if PREFIXED.contains(&unit) && value.abs() < 1e12 => {
-                format!("{} {prefix}{unit}", digits(value / size, self.digits))
+                format!("{} {prefix}{unit}", write(value / size, self.digits))
             }
-            _ => format!("{} {unit}", digits(value, self.digits)),
+            _ => format!("{} {unit}", write(value, self.digits)),
         }
     }
+}
+
+/// Decimals that give a number of this size so many significant digits.
+fn decimals(size: f64, digits: usize) -> usize {
+    let whole = if size > 0.0 && size.is_finite() {
+        size.log10().floor() as i32 + 1
+    } else {
+        1
+    };
+    usize::try_from(digits as i32 - whole).unwrap_or(0).min(15)
 }
 
 /// A number with so many significant digits, trailing zeros dropped.
@@ -103,12 +124,7 @@ pub fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
         .iter()
         .flatten()
         .fold(0.0_f64, |most, value| most.max(value.abs()));
-    let whole = if most > 0.0 {
-        most.log10().floor() as i32 + 1
-    } else {
-        1
-    };
-    let decimals = usize::try_from(digits as i32 - whole).unwrap_or(0).min(15);
+    let decimals = decimals(most, digits);
     let cell = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
     values.iter().map(cell).collect()
 }

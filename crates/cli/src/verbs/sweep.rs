@@ -154,7 +154,14 @@ fn rows(style: Style, swept: &Sweep) -> String {
         };
         (head, format::column(&values, digits))
     };
-    let (head, columns): (Vec<String>, Vec<Vec<String>>) = COLUMNS.iter().map(column).unzip();
+    let (mut head, mut columns): (Vec<String>, Vec<Vec<String>>) =
+        COLUMNS.iter().map(column).unzip();
+    let reached = |point: &Point| ok(point)?.accuracy_reached;
+    if swept.points.iter().any(|point| reached(point).is_some()) {
+        let cell = |point| reached(point).map_or_else(String::new, |a| format!("{a:.0e}"));
+        head.push("accuracy reached".to_owned());
+        columns.push(swept.points.iter().map(cell).collect());
+    }
     let row = |i: usize| columns.iter().map(|column| column[i].clone()).collect();
     let rows: Vec<Vec<String>> = (0..swept.points.len()).map(row).collect();
     format::table(&head, &rows)

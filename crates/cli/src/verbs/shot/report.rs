@@ -49,10 +49,10 @@ fn flight(style: Style, shot: &Shot) -> Rows {
     let brief = Style::brief(style.units);
     let mut rows = Rows::new();
     if let Some(flight) = shot.flight {
-        let reflected = flight.reflected_s.map(|time| style.quantity(time, "s"));
+        let reflected = flight.reflected_s.map(|time| style.exact(time, "s"));
         rows.push((
             "incident time of flight".into(),
-            style.quantity(flight.incident_s, "s"),
+            style.exact(flight.incident_s, "s"),
         ));
         let reflected = reflected.unwrap_or_else(|| "no pulse came back".into());
         rows.push(("reflected time of flight".into(), reflected));
