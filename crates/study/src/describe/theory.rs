@@ -206,14 +206,16 @@ pub(super) fn long_wave(chain: &Chain) -> Option<Group> {
     Some(group)
 }
 
-/// Time of flight that theory expects of a row of equal beads.
+/// Time of flight that theory expects of a row of equal beads without load;
+/// under load pulses run at the speed of sound or faster.
 pub(super) fn expected(experiment: &Experiment, chain: &Chain) -> Option<Group> {
     let equal = chain.beads.windows(2).all(|pair| pair[0] == pair[1]);
-    if !equal || !experiment.has_wall() {
+    let loaded = chain.push.force_n() > 0.0 || chain.incline_rad > 0.0;
+    if !equal || loaded || !experiment.has_wall() {
         return None;
     }
     let beads = (chain.beads.len() - experiment.sensor_bead()) as f64 + 0.5;
-    let mut group = Group::new("Expected of theory, without losses, preload or a train of waves");
+    let mut group = Group::new("Expected of theory, without losses or a train of waves");
     with_wave(chain, |wave, _| {
         group.number(
             "incident time of flight, about",
