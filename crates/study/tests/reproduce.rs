@@ -7,7 +7,7 @@
 
 use hertzchain_experiment::{Reading, preset};
 use hertzchain_study::claims::{Branch, Evidence};
-use hertzchain_study::readings::{Draw, Prefactors, scan};
+use hertzchain_study::readings::{Draw, DryPoisson, Prefactors, scan};
 use hertzchain_study::reproduce::{Cases, SPEEDS_M_S};
 use hertzchain_study::reproduce::{Gathering, Silent, gather, oils_csv, tof_csv};
 
@@ -89,7 +89,8 @@ fn draws_stay_within_half_a_unit_of_the_last_digit() {
     let mut largest = 0.0_f64;
     for index in 0..200 {
         let mut chain = at_1.clone();
-        Draw::new(7, index).change("motor", 1.0, prefactors, &mut chain);
+        let draw = Draw::new(7, index, DryPoisson::TwoDigits);
+        draw.change("motor", 1.0, prefactors, &mut chain);
         let bead = chain.beads[0];
         assert!((bead.mass_kg - 8.54e-3).abs() <= 0.005e-3);
         assert!((bead.radius_m - 6.35e-3).abs() <= 0.005e-3);
@@ -104,9 +105,10 @@ fn draws_stay_within_half_a_unit_of_the_last_digit() {
 
 #[test]
 fn a_draw_depends_on_its_seed_and_index_alone() {
-    assert_eq!(Draw::new(1, 5), Draw::new(1, 5));
-    assert_ne!(Draw::new(1, 5), Draw::new(1, 6));
-    assert_ne!(Draw::new(1, 5), Draw::new(2, 5));
+    let draw = |seed, index| Draw::new(seed, index, DryPoisson::TwoDigits);
+    assert_eq!(draw(1, 5), draw(1, 5));
+    assert_ne!(draw(1, 5), draw(1, 6));
+    assert_ne!(draw(1, 5), draw(2, 5));
 }
 
 #[test]

@@ -60,6 +60,9 @@ fn number(value: f64) -> Value {
 pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
     let mut page = String::from("# What the paper says, and what its model shows\n\n");
     let _ = writeln!(page, "Reading: {reading}.\n");
+    if judged.iter().any(|judged| judged.rounded.is_some()) {
+        page.push_str(ROUNDING);
+    }
     let _ = writeln!(page, "{}\n", totals(judged));
     page.push_str("| claim | verdict | value | rounding allows |\n|---|---|---|---|\n");
     for judged in judged {
@@ -83,6 +86,11 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
     }
     page
 }
+
+/// What was drawn, for the page.
+const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
+    digit, steel's Poisson ratio 0.3 as the handbooks' 0.30; a claim that a draw decides otherwise \
+    is not decidable.\n\n";
 
 /// How many claims have which verdict, in a sentence.
 fn totals(judged: &[Judged]) -> String {

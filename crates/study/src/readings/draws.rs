@@ -1,6 +1,6 @@
 //! Evidence under the rounding of the printed constants.
 
-use super::rounding::{Draw, Prefactors};
+use super::rounding::{Draw, DryPoisson, Prefactors};
 use crate::claims::Evidence;
 use crate::reproduce::{Cases, Gathering, OILS, ReproduceError, gather};
 use hertzchain_chain::Chain;
@@ -13,6 +13,7 @@ pub fn rounded_evidence(
     how: &Gathering<'_>,
     seed: u64,
     draws: usize,
+    dry_poisson: DryPoisson,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Evidence>, ReproduceError> {
     let cases = Cases::new(&how.reading)?;
@@ -23,7 +24,7 @@ pub fn rounded_evidence(
         }
     }
     let one = |index: usize| {
-        let draw = Draw::new(seed, index as u64);
+        let draw = Draw::new(seed, index as u64, dry_poisson);
         let change = |case: &str, speed: f64, chain: &mut Chain| {
             let known = prefactors.iter().find(|(name, _)| *name == case);
             draw.change(case, speed, known.and_then(|(_, p)| *p), chain);

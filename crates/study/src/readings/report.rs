@@ -1,7 +1,7 @@
 //! A scan over readings as a table and a page.
 
 use super::scan::{Row, Scan};
-use crate::claims::Verdict;
+use crate::claims::{Judged, Verdict, value_text};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -44,6 +44,7 @@ pub fn scan_markdown(scan: &Scan) -> String {
     }
     product(&mut page, scan);
     closest(&mut page, scan);
+    side_by_side(&mut page, scan);
     prices(&mut page, scan);
     page
 }
@@ -131,6 +132,22 @@ fn closest(page: &mut String, scan: &Scan) {
     let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
 }
 
+/// Verdict and value of every claim in the default and the closest reading:
+/// what changes within a verdict shows too.
+fn side_by_side(page: &mut String, scan: &Scan) {
+    page.push_str("\n| claim | default | value | closest | value |\n|---|---|---|---|---|\n");
+    let closest = scan.closest();
+    let cells = |row: &Row, i: usize| {
+        let verdict = row.verdicts.get(i).map_or("", |v| v.name());
+        let value = row.values.get(i).copied().unwrap_or(f64::NAN);
+        format!("{verdict} | {}", value_text(value, 0.0))
+    };
+    for (i, claim) in scan.claims.iter().enumerate() {
+        let (one, other) = (cells(&scan.default, i), cells(closest, i));
+        let _ = writeln!(page, "| {} | {one} | {other} |", claim.id);
+    }
+}
+
 fn prices(page: &mut String, scan: &Scan) {
     page.push_str("\n## What the open claims cost\n\n");
     page.push_str(
@@ -160,4 +177,30 @@ fn prices(page: &mut String, scan: &Scan) {
             }
         }
     }
+}
+
+/// What rounding does when the dry balls' Poisson ratio is 0.3 to one digit
+/// instead of two: the claims whose verdict then differs.
+#[must_use]
+pub fn one_digit_markdown(two_digits: &[Judged], one_digit: &[Judged]) -> String {
+    let mut page = String::from(
+        "\n## If the 0.3 of the dry balls has one digit\n\nThe verdicts of claims.md take the printed \
+         Poisson ratio of steel, 0.3, for the handbooks' 0.30. To the letter it lies between 0.25 and \
+         0.35, and rounding moves more verdicts:\n\n\
+         | claim | 0.30 | 0.3 | range of the value |\n|---|---|---|---|\n",
+    );
+    let pairs = two_digits.iter().zip(one_digit);
+    for (two, one) in pairs.filter(|(two, one)| two.verdict != one.verdict) {
+        let range = one.rounded.as_ref().and_then(|rounded| rounded.range);
+        let range = range.map_or(String::new(), |(low, high)| {
+            format!("{} to {}", value_text(low, 0.0), value_text(high, 0.0))
+        });
+        let id = &one.claim.id;
+        let _ = writeln!(
+            page,
+            "| {id} | {} | {} | {range} |",
+            two.verdict, one.verdict
+        );
+    }
+    page
 }

@@ -10,8 +10,6 @@ use rand_chacha::ChaCha8Rng;
 mod half {
     /// Young moduli, printed in GPa without decimals.
     pub const YOUNG_MODULUS_PA: f64 = 0.5e9;
-    /// Poisson ratio of the dry balls, 0.3: a handbook value, taken as 0.30.
-    pub const DRY_POISSON_RATIO: f64 = 0.005;
     /// Viscosity of the dry balls, 3.2e4 Pa s.
     pub const DRY_VISCOSITY_PA_S: f64 = 0.05e4;
     /// Coefficient of the cubic term, 77 kg s/m².
@@ -26,6 +24,26 @@ mod half {
     pub const VISCOSITY_PREFACTOR_PA_S: f64 = 0.05;
     /// Exponents of both.
     pub const EXPONENT: f64 = 0.0005;
+}
+
+/// How far the Poisson ratio 0.3 of the dry balls may be off: the paper prints
+/// one digit where handbooks have two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DryPoisson {
+    /// The handbooks' 0.30, within 0.005.
+    #[default]
+    TwoDigits,
+    /// 0.3 to the letter, within 0.05.
+    OneDigit,
+}
+
+impl DryPoisson {
+    fn half_unit(self) -> f64 {
+        match self {
+            Self::TwoDigits => 0.005,
+            Self::OneDigit => 0.05,
+        }
+    }
 }
 
 /// Offsets of one oil's constants.
@@ -83,13 +101,13 @@ impl Prefactors {
 impl Draw {
     /// Draw `index` of a seed; each has a stream of its own.
     #[must_use]
-    pub fn new(seed: u64, index: u64) -> Self {
+    pub fn new(seed: u64, index: u64, dry_poisson: DryPoisson) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(index);
         let mut within = |half: f64| half * (2.0 * rng.random::<f64>() - 1.0);
         Self {
             young_modulus_pa: within(half::YOUNG_MODULUS_PA),
-            poisson_ratio: within(half::DRY_POISSON_RATIO),
+            poisson_ratio: within(dry_poisson.half_unit()),
             viscosity_pa_s: within(half::DRY_VISCOSITY_PA_S),
             cubic_kg_s_m2: within(half::CUBIC_KG_S_M2),
             mass_kg: within(half::MASS_KG),

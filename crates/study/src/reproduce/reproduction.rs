@@ -8,7 +8,9 @@ use super::{
     power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv, write_atomically,
 };
 use crate::claims::{Evidence, Judged, claims, claims_json, claims_markdown, judge_all_rounded};
-use crate::readings::{Scan, rounded_evidence, scan, scan_csv, scan_markdown};
+use crate::readings::{
+    DryPoisson, Scan, one_digit_markdown, rounded_evidence, scan, scan_csv, scan_markdown,
+};
 use crate::{Plan, shoot};
 use hertzchain_experiment::Reading;
 use std::path::{Path, PathBuf};
@@ -43,7 +45,7 @@ impl Options {
     #[must_use]
     pub fn with_readings(self) -> Self {
         Self {
-            draws: 256,
+            draws: 200,
             readings: 1200,
             ..self
         }
@@ -68,6 +70,9 @@ pub struct Reproduction {
     pub evidence: Evidence,
     /// The claims with their verdicts.
     pub judged: Vec<Judged>,
+    /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
+    /// readings were asked for.
+    pub one_digit: Option<Vec<Judged>>,
     /// The signals of Fig. 2.
     pub signals: Vec<SignalShot>,
     /// One dry and one wet shot bead by bead.
@@ -106,17 +111,21 @@ pub fn reproduce(
     progress.advance();
     let films = films(&cases)?;
     progress.advance();
-    let judged = judged(options, &evidence, progress)?;
-    let scan = match options.readings {
-        0 => None,
-        most => Some(scan(most, SCAN_ACCURACY, progress)?),
+    let verdicts = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
+    let (one_digit, scan) = match options.readings {
+        0 => (None, None),
+        most => {
+            let one_digit = judged(options, DryPoisson::OneDigit, &evidence, progress)?;
+            (Some(one_digit), Some(scan(most, SCAN_ACCURACY, progress)?))
+        }
     };
     Ok(Reproduction {
         provenance: provenance(options, &cases, &evidence, start)?,
         reading,
         cases,
         evidence,
-        judged,
+        judged: verdicts,
+        one_digit,
         signals,
         films,
         scan,
@@ -126,6 +135,7 @@ pub fn reproduce(
 /// The claims, decided on the tables and under rounding.
 fn judged(
     options: &Options,
+    dry_poisson: DryPoisson,
     evidence: &Evidence,
     progress: &dyn Progress,
 ) -> Result<Vec<Judged>, ReproduceError> {
@@ -138,7 +148,7 @@ fn judged(
     progress.begin("rounding of the printed constants", options.draws as u64);
     let printed = gather(&how, &|_, _, _| {}, &|| {})?;
     let done = || progress.advance();
-    let draws = rounded_evidence(&how, options.seed, options.draws, &done)?;
+    let draws = rounded_evidence(&how, options.seed, options.draws, dry_poisson, &done)?;
     Ok(judge_all_rounded(&claims()?, evidence, &printed, &draws))
 }
 
@@ -191,7 +201,9 @@ impl Reproduction {
         ];
         if let Some(scan) = &self.scan {
             files.push(("readings.csv", scan_csv(scan)));
-            files.push(("readings.md", scan_markdown(scan)));
+            let one_digit = self.one_digit.as_deref().unwrap_or_default();
+            let page = scan_markdown(scan) + &one_digit_markdown(&self.judged, one_digit);
+            files.push(("readings.md", page));
         }
         files.push(("provenance.json", json(self.provenance.json())));
         let mut written = Vec::new();
