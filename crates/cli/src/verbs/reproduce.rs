@@ -76,7 +76,7 @@ fn summary(computed: &Reproduction, folder: &Path) -> String {
     let provenance = &computed.provenance;
     let _ = write!(
         text,
-        "\nReading: {}. Times of flight right to {:.0e}; computed in {:.0} s.\n\
+        "\nRead as: {}. Times of flight right to {:.0e}; computed in {:.0} s.\n\
          Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
          Verdicts one by one: {}\n",
         computed.reading,

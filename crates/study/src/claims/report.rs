@@ -59,7 +59,7 @@ fn number(value: f64) -> Value {
 #[must_use]
 pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
     let mut page = String::from("# What the paper says, and what its model shows\n\n");
-    let _ = writeln!(page, "Reading: {reading}.\n");
+    let _ = writeln!(page, "Read as: {reading}.\n");
     if judged.iter().any(|judged| judged.rounded.is_some()) {
         page.push_str(ROUNDING);
     }

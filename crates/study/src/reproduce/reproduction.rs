@@ -185,7 +185,7 @@ impl Reproduction {
     /// # Errors
     /// The first file that can't be written; none is left half-written.
     pub fn write_tables(&self, folder: &Path) -> Result<Vec<PathBuf>, ReproduceError> {
-        let reading = self.reading.to_string();
+        let reading = stated(&self.reading);
         let json = |value| format!("{value:#}\n");
         let mut files = vec![
             ("tof.csv", tof_csv(&self.evidence)),
@@ -214,4 +214,12 @@ impl Reproduction {
         }
         Ok(written)
     }
+}
+
+/// A reading with every switch spelled out.
+fn stated(reading: &Reading) -> String {
+    let switches = Reading::switches().iter();
+    let options = switches.filter_map(|s| Some(format!("{} = {}", s.name, reading.get(s.name)?)));
+    let options: Vec<String> = options.collect();
+    format!("{reading} ({})", options.join(", "))
 }
