@@ -19,7 +19,7 @@ pub enum Motion {
         /// Duration T in s.
         duration_s: f64,
     },
-    /// Measured points, joined by a cubic with continuous velocity
+    /// Measured points, counted from the first position and joined by a cubic with continuous velocity
     /// (three-point slopes); at rest before the first and after the last.
     Table {
         /// Times in s, strictly increasing.
@@ -69,6 +69,48 @@ impl Motion {
         }
     }
 
+    /// What is wrong with it, if anything.
+    ///
+    /// # Errors
+    /// Numbers that are not finite, a frequency or duration that is not
+    /// positive, a table whose times do not increase or lack positions.
+    pub fn check(&self) -> Result<(), String> {
+        let positive = |what: &str, value: f64| match value > 0.0 && value.is_finite() {
+            true => Ok(()),
+            false => Err(format!("{what} = {value} must be positive and finite")),
+        };
+        match self {
+            Self::Sine {
+                amplitude_m,
+                frequency_hz,
+            } => {
+                positive("amplitude in m", amplitude_m.abs())?;
+                positive("frequency in Hz", *frequency_hz)
+            }
+            Self::Pulse {
+                amplitude_m,
+                duration_s,
+            } => {
+                positive("amplitude in m", amplitude_m.abs())?;
+                positive("duration in s", *duration_s)
+            }
+            Self::Table {
+                times_s,
+                positions_m,
+            } => check_table(times_s, positions_m),
+        }
+    }
+
+    /// The longest step in s that cannot step over a swing of the motion.
+    #[must_use]
+    pub fn longest_step_s(&self) -> f64 {
+        match self {
+            Self::Sine { frequency_hz, .. } => 0.05 / frequency_hz.abs(),
+            Self::Pulse { duration_s, .. } => 0.05 * duration_s,
+            Self::Table { .. } => f64::INFINITY,
+        }
+    }
+
     /// A speed in m/s that the motion reaches, for scales.
     #[must_use]
     pub fn largest_speed_m_s(&self) -> f64 {
@@ -93,6 +135,29 @@ impl Motion {
     }
 }
 
+fn check_table(times_s: &[f64], positions_m: &[f64]) -> Result<(), String> {
+    if times_s.len() != positions_m.len() || times_s.len() < 2 {
+        let (times, positions) = (times_s.len(), positions_m.len());
+        return Err(format!(
+            "{times} times and {positions} positions; two or more of each are needed"
+        ));
+    }
+    if times_s
+        .iter()
+        .chain(positions_m)
+        .any(|value| !value.is_finite())
+    {
+        return Err("a time or position is not finite".into());
+    }
+    match times_s.windows(2).find(|pair| pair[1] <= pair[0]) {
+        Some(pair) => Err(format!(
+            "times must increase, but {} s follows {} s",
+            pair[1], pair[0]
+        )),
+        None => Ok(()),
+    }
+}
+
 /// a sin²(πt/T) and its rate.
 fn push_and_back(amplitude_m: f64, duration_s: f64, time_s: f64) -> (f64, f64) {
     let omega = TAU / duration_s;
@@ -110,15 +175,15 @@ fn interpolate(times: &[f64], positions: &[f64], time: f64) -> (f64, f64) {
         return (0.0, 0.0);
     };
     if right == 0 {
-        return (first, 0.0);
+        return (0.0, 0.0);
     }
     if right >= times.len() {
-        return (last, 0.0);
+        return (last - first, 0.0);
     }
     let left = right - 1;
     let h = times[right] - times[left];
     let s = (time - times[left]) / h;
-    let (x0, x1) = (positions[left], positions[right]);
+    let (x0, x1) = (positions[left] - first, positions[right] - first);
     let (d0, d1) = (
         h * slope(times, positions, left),
         h * slope(times, positions, right),

@@ -77,3 +77,33 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     // The mean number of beads that a force pass touches does not grow with the chain.
     assert!(outcome.work.bodies_passed / outcome.work.force_passes < 150);
 }
+
+/// Sleep where the wave has been, reflected pulse and secondary pulses included.
+#[test]
+fn beads_asleep_where_the_wave_has_been_change_nothing_that_matters() {
+    let laws = vec![hertz(), viscoelastic(), cubic()];
+    for laws in [vec![hertz()], laws] {
+        let chain = row(700, 0.8, laws);
+        // Far enough for the pulse to come back to the middle.
+        let duration = 2.6e-2;
+        let (part, whole) = (
+            run_window(&chain, duration, false),
+            run_window(&chain, duration, true),
+        );
+        for (i, (a, b)) in part
+            .velocity_m_s
+            .iter()
+            .zip(&whole.velocity_m_s)
+            .enumerate()
+        {
+            // A thousand times the tolerance: both runs are that wrong by then.
+            assert!((a - b).abs() < 1e-4 * 0.8, "body {i}: {a} {b}");
+        }
+        println!(
+            "{:?} {:?} {}",
+            part.work,
+            whole.work,
+            part.work.bodies_passed / part.work.force_passes
+        );
+    }
+}

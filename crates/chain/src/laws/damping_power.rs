@@ -13,13 +13,18 @@ pub struct DampingPower {
     pub overlap_exponent: f64,
 }
 
-const fn exponent(name: &'static str, meaning: &'static str, source: Source) -> Parameter {
+const fn exponent(
+    name: &'static str,
+    meaning: &'static str,
+    source: Source,
+    least: f64,
+) -> Parameter {
     Parameter {
         name,
         unit: "1",
         meaning,
         source,
-        least: 0.0,
+        least,
     }
 }
 
@@ -35,11 +40,17 @@ impl Term<3> for DampingPower {
                 source: Source::Required,
                 least: 0.0,
             },
-            exponent("rate_exponent", "exponent q of the rate", Source::Required),
+            exponent(
+                "rate_exponent",
+                "exponent q of the rate; below 1/2 it would be friction that sticks",
+                Source::Required,
+                0.5,
+            ),
             exponent(
                 "overlap_exponent",
                 "exponent p of the overlap",
                 Source::Default(0.0),
+                0.0,
             ),
         ],
         validity: "phenomenological; c, p, q from measured decay",

@@ -200,11 +200,13 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
 
     fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError> {
         let k = self.0.coefficients(pair)?;
-        match k.iter().all(|value| value.is_finite()) {
+        match k.iter().all(|value| value.is_finite() && *value >= 0.0) {
             true => Ok(k.to_vec()),
             false => Err(LawError {
                 law: T::INFO.name,
-                what: format!("its coefficients {k:?} are not finite for this pair of bodies"),
+                what: format!(
+                    "its coefficients {k:?} for this pair of bodies must be finite and not negative"
+                ),
             }),
         }
     }

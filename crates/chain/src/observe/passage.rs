@@ -10,6 +10,7 @@ pub struct Passages {
     sensor: Signal,
     wall: Signal,
     ends_shot: bool,
+    until_s: f64,
     seen: (usize, usize),
     best: Option<(Maximum, Maximum)>,
 }
@@ -84,6 +85,7 @@ impl Passages {
             sensor: Signal::new(Sensor::Bead(sensor_bead)),
             wall: Signal::new(Sensor::Contact(wall_contact)),
             ends_shot,
+            until_s: 0.0,
             seen: (0, 0),
             best: None,
         }
@@ -111,11 +113,7 @@ impl Passages {
     }
 
     fn incident_and_wall(&self) -> Result<(Maximum, Maximum), PassageError> {
-        let duration_s = self
-            .sensor
-            .stretches()
-            .last()
-            .map_or(0.0, |last| last.end_s());
+        let duration_s = self.until_s;
         let wall = largest(self.wall.maxima(), |_| true)
             .ok_or(PassageError::NoWallPulse { duration_s })?;
         let incident = largest(self.sensor.maxima(), |peak| peak.time_s < wall.time_s).ok_or(
@@ -170,6 +168,7 @@ impl Passages {
 
 impl Observer for Passages {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        self.until_s = piece.time_s(1.0);
         self.sensor.step(piece);
         self.wall.step(piece);
         self.update();

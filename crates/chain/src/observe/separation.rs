@@ -30,18 +30,19 @@ impl Observer for Separation {
     }
 }
 
-/// Ends a shot when no contact is closed or closing: from then on every body
-/// flies alone.
+/// Ends a shot when no contact is closed or closing, in a chain on which
+/// nothing but contacts acts: from then on every body flies alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Apart;
 
 impl Observer for Apart {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        let system = piece.system();
         let flying = |contact: usize| {
             let (overlap, rate) = piece.overlap(contact, 1.0);
-            overlap < 0.0 && rate <= 0.0
+            !system.has_contact(contact) || (overlap < 0.0 && rate <= 0.0)
         };
-        match (0..piece.system().contacts()).all(flying) {
+        match (0..system.contacts()).all(flying) && system.flies_free() {
             true => Flow::Finished,
             false => Flow::Continue,
         }

@@ -95,7 +95,8 @@ impl Signal {
         self.sensor
     }
 
-    /// All local maxima so far, in order of time.
+    /// All local maxima so far, in order of time; of forces, those above
+    /// 1e-4 of the largest value seen until then.
     #[must_use]
     pub fn maxima(&self) -> &[Maximum] {
         &self.maxima
@@ -135,6 +136,23 @@ impl Signal {
         }
     }
 
+    /// Keeps a maximum, unless it is rounding on a signal that rests.
+    fn keep(&mut self, maximum: Maximum) {
+        let force = !matches!(self.sensor, Sensor::Position(_) | Sensor::Velocity(_));
+        if !force || maximum.value > KEPT * self.largest {
+            self.maxima.push(maximum);
+        }
+    }
+
+    /// The signal falls to 0: a rise until then ends in a maximum.
+    fn fall_silent(&mut self) {
+        if let Some((time_s, value, slope)) = self.before.take()
+            && slope > 0.0
+        {
+            self.keep(Maximum { time_s, value });
+        }
+    }
+
     /// Adds the maxima of one step, and the one between it and the last.
     fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
         let slopes = stretch.end_slopes();
@@ -142,18 +160,18 @@ impl Signal {
             .map(|(theta, (slope, change))| self.slope(piece, theta, slope, change));
         let [start, .., end] = stretch.values;
         let floor = JUMP * self.largest;
-        if let Some((time_s, value, slope)) = self.before {
-            let rises = slope > 0.0 || start > value + floor;
-            let falls = start_slope <= 0.0 || start < value - floor;
-            if rises && falls {
-                self.maxima.push(Maximum {
-                    time_s,
-                    value: value.max(start),
-                });
-            }
+        // Before a signal is first seen, and after silence, it was 0.
+        let (time_s, value, slope) = self.before.unwrap_or((stretch.start_s, 0.0, 0.0));
+        let rises = slope > 0.0 || start > value + floor;
+        let falls = start_slope <= 0.0 || start < value - floor;
+        if rises && falls {
+            self.keep(Maximum {
+                time_s,
+                value: value.max(start),
+            });
         }
         for maximum in interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch) {
-            self.maxima.push(maximum);
+            self.keep(maximum);
         }
         self.before = Some((stretch.end_s(), end, end_slope));
     }
@@ -162,7 +180,7 @@ impl Signal {
 impl Observer for Signal {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         if !piece.sees(self.sensor) {
-            self.before = None;
+            self.fall_silent();
             return Flow::Continue;
         }
         let values = std::array::from_fn(|i| piece.signal(self.sensor, 0.25 * i as f64));
@@ -175,7 +193,7 @@ impl Observer for Signal {
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
         if size <= KEPT * self.largest || size <= self.silence(piece) {
-            self.before = None;
+            self.fall_silent();
             return Flow::Continue;
         }
         self.largest = self.largest.max(size);

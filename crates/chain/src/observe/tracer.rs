@@ -64,7 +64,7 @@ impl Observer for Tracer {
         let end = piece.time_s(1.0);
         loop {
             let time = self.next as f64 * self.interval_s;
-            if time >= end {
+            if time >= end || !(self.interval_s > 0.0) {
                 break;
             }
             self.sample(piece, time);

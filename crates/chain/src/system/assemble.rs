@@ -5,8 +5,9 @@ use super::scales::scales;
 use super::statics::{elastic_force, static_overlap};
 use super::{Scales, SectionColumns, Spring, System, TermColumns};
 use crate::chain::{Chain, ChainError, FarEnd, Push, Section, Start};
-use crate::laws::{Columns, Nature};
+use crate::laws::{Columns, Law, Nature};
 use crate::material::Pair;
+use std::sync::Arc;
 
 pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     check_values(chain)?;
@@ -97,7 +98,7 @@ fn section_columns(
 ) -> Result<SectionColumns, ChainError> {
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
     let (mut gated, mut ungated) = (Vec::new(), Vec::new());
-    // A contact that does not exist never closes; any pair will do for it.
+    // A contact that does not exist has coefficients 0: nothing acts across it.
     let Some(any) = pairs.iter().flatten().next() else {
         return Ok(SectionColumns {
             contacts,
@@ -106,10 +107,10 @@ fn section_columns(
         });
     };
     for law in &section.laws {
-        let rows = contacts.clone().map(|contact| {
-            let pair = pairs[contact].as_ref().unwrap_or(any);
-            law.coefficients(pair)
-                .map_err(|error| ChainError::Law { contact, error })
+        let width = coefficients(law, any, *section.contacts.start())?.len();
+        let rows = contacts.clone().map(|contact| match &pairs[contact] {
+            Some(pair) => coefficients(law, pair, contact),
+            None => Ok(vec![0.0; width]),
         });
         let columns = Columns::from_rows(&rows.collect::<Result<Vec<_>, _>>()?);
         let term = TermColumns {
@@ -127,6 +128,11 @@ fn section_columns(
         gated,
         ungated,
     })
+}
+
+fn coefficients(law: &Arc<dyn Law>, pair: &Pair, contact: usize) -> Result<Vec<f64>, ChainError> {
+    law.coefficients(pair)
+        .map_err(|error| ChainError::Law { contact, error })
 }
 
 /// Masses of bodies 0..=N+1; infinite where nothing moves.

@@ -1,6 +1,7 @@
 //! Every value of a chain, looked at before it is used.
 
 use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Start};
+use crate::material::Material;
 
 fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
     match value.is_finite() && value > 0.0 {
@@ -37,7 +38,34 @@ fn at_least_zero(what: impl Fn() -> String, value: f64) -> Result<(), ChainError
 
 fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> {
     positive(|| format!("radius of {}", name()), bead.radius_m)?;
-    positive(|| format!("mass of {}", name()), bead.mass_kg)
+    positive(|| format!("mass of {}", name()), bead.mass_kg)?;
+    check_material(&bead.material, name)
+}
+
+/// A rigid material has an infinite Young modulus.
+fn check_material(material: &Material, name: impl Fn() -> String) -> Result<(), ChainError> {
+    let refuse = |what: &str, value: f64, expected: &'static str| {
+        Err(ChainError::Value {
+            what: format!("{what} of {}", name()),
+            value,
+            expected,
+        })
+    };
+    let (modulus, ratio) = (material.young_modulus_pa, material.poisson_ratio);
+    if modulus.is_nan() || modulus <= 0.0 {
+        return refuse("Young modulus in Pa", modulus, "positive");
+    }
+    if !(ratio > -1.0 && ratio < 1.0) {
+        return refuse("Poisson ratio", ratio, "between -1 and 1");
+    }
+    at_least_zero(
+        || format!("shear viscosity of {}", name()),
+        material.shear_viscosity_pa_s,
+    )?;
+    at_least_zero(
+        || format!("bulk viscosity of {}", name()),
+        material.bulk_viscosity_pa_s,
+    )
 }
 
 pub(super) fn check_values(chain: &Chain) -> Result<(), ChainError> {
@@ -52,6 +80,18 @@ pub(super) fn check_values(chain: &Chain) -> Result<(), ChainError> {
     at_least_zero(|| "push on bead 1 in N".into(), chain.push.force_n())?;
     if let Push::Spring { stiffness_n_m, .. } = chain.push {
         at_least_zero(|| "stiffness of the push in N/m".into(), stiffness_n_m)?;
+    }
+    for section in &chain.sections {
+        let name = || {
+            format!(
+                "contacts {} to {}",
+                section.contacts.start(),
+                section.contacts.end()
+            )
+        };
+        section
+            .material
+            .map_or(Ok(()), |material| check_material(&material, name))?;
     }
     finite(|| "incline in rad".into(), chain.incline_rad)?;
     at_least_zero(|| "gravity in m/s²".into(), chain.gravity_m_s2)?;
@@ -104,7 +144,12 @@ fn check_start(chain: &Chain) -> Result<(), ChainError> {
             check_bead(bead, || "the striker".into())?;
             positive(|| "speed of the striker in m/s".into(), *speed_m_s)
         }
-        Start::Driven { bead, .. } => positive(|| "radius of the driven end".into(), bead.radius_m),
+        Start::Driven { bead, motion } => {
+            positive(|| "radius of the driven end".into(), bead.radius_m)?;
+            motion
+                .check()
+                .map_err(|what| ChainError::Layout(format!("driven end: {what}")))
+        }
         Start::Free => Ok(()),
     }
 }

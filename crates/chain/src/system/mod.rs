@@ -115,17 +115,32 @@ impl System {
         self.offset_m.len()
     }
 
+    /// Whether a contact has a body on both sides.
+    #[must_use]
+    pub fn has_contact(&self, contact: usize) -> bool {
+        self.offset_m
+            .get(contact)
+            .is_some_and(|offset| offset.is_finite())
+    }
+
     /// Characteristic speed and time.
     #[must_use]
     pub fn scales(&self) -> Scales {
         self.scales
     }
 
+    /// Whether a body would hang on a thread: the beads and the striker.
+    pub(crate) fn hangs(&self, body: usize) -> bool {
+        body < self.bodies() - 1 && (body > 0 || self.has_striker)
+    }
+
     /// Whether bodies without contact fly on straight lines at constant speed.
-    pub(crate) fn flies_free(&self) -> bool {
+    #[must_use]
+    pub fn flies_free(&self) -> bool {
         self.slope_m_s2 == 0.0
             && self.pendulum_per_s2 == 0.0
             && self.push_n == 0.0
+            && self.spring.is_none()
             && !self.periodic
             && self.motion.is_none()
             && self.static_force_n.iter().all(|&force| force == 0.0)

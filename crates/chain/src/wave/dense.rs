@@ -58,8 +58,16 @@ impl Piece<'_> {
     /// Energy terms at the start of the step, when a budget is kept.
     #[must_use]
     pub fn budget(&self) -> Option<Budget> {
-        self.meter
-            .map(|meter| meter.budget(self.system, self.state))
+        let meter = self.meter?;
+        let asleep = |i: &usize| !self.is_awake(*i) && self.state.v[*i] != 0.0;
+        if !(0..self.state.x.len()).any(|i| asleep(&i)) {
+            return Some(meter.budget(self.system, self.state));
+        }
+        let mut state = self.state.clone();
+        for i in (0..state.x.len()).filter(asleep) {
+            state.x[i] = self.body(i, 0.0).0;
+        }
+        Some(meter.budget(self.system, &state))
     }
 
     /// Whether a body is in the part of the chain that moves.
@@ -190,7 +198,7 @@ impl Piece<'_> {
         {
             a += (-spring.stiffness_n_m * x).max(-spring.force_n) * system.inverse_mass[1];
         }
-        if body > 0 && body < last {
+        if system.hangs(body) {
             a - system.pendulum_per_s2 * x
         } else {
             a
@@ -245,20 +253,28 @@ impl Piece<'_> {
         if bead == 1 && self.system.periodic {
             self.system.contacts() - 1
         } else {
-            bead - 1
+            bead.saturating_sub(1)
         }
     }
 
-    /// Whether anything a sensor sees is in the part of the chain that moves.
+    /// Whether anything a sensor sees is in the part of the chain that moves;
+    /// no, if the chain has no such place.
     #[must_use]
     pub fn sees(&self, sensor: Sensor) -> bool {
+        let system = self.system;
+        let bead = |n: usize| {
+            (1..=system.beads()).contains(&n)
+                && [self.before(n), n, n + 1]
+                    .into_iter()
+                    .any(|i| self.is_awake(i))
+        };
         match sensor {
-            Sensor::Bead(n) => (self.before(n)..=n + 1).any(|i| self.is_awake(i)),
-            Sensor::Contact(c) => self.is_awake(c) || self.is_awake(c + 1),
-            Sensor::Position(_) | Sensor::Velocity(_) => true,
-            Sensor::BeadPlusWall(n) => {
-                self.sees(Sensor::Bead(n)) || self.is_awake(self.system.bodies() - 1)
+            Sensor::Bead(n) => bead(n),
+            Sensor::Contact(c) => {
+                system.has_contact(c) && (self.is_awake(c) || self.is_awake(c + 1))
             }
+            Sensor::Position(i) | Sensor::Velocity(i) => i < system.bodies(),
+            Sensor::BeadPlusWall(n) => bead(n) || self.is_awake(system.bodies() - 1),
         }
     }
 }

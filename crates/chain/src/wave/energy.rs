@@ -24,7 +24,8 @@ pub struct Budget {
     pub start_j: f64,
     /// Work that a driven end has done.
     pub driven_j: f64,
-    /// Largest energy that was put in so far: `start_j` plus the most that a driven end had done.
+    /// Largest energy so far that was put in or in motion: what the residual is
+    /// measured against.
     pub input_j: f64,
     /// Σ m v²/2 over the striker and the beads.
     pub kinetic_j: f64,
@@ -56,13 +57,12 @@ impl Budget {
         self.accounted_j() - self.driven_j - self.start_j
     }
 
-    /// Residual over the input energy.
+    /// Residual over the input energy; infinite if there was none.
     #[must_use]
     pub fn relative_residual(&self) -> f64 {
-        if self.input_j == 0.0 {
-            0.0
-        } else {
-            self.residual_j() / self.input_j
+        match self.residual_j() {
+            0.0 => 0.0,
+            residual => residual / self.input_j,
         }
     }
 }

@@ -209,10 +209,10 @@ impl Pass {
         for i in 0..out.len() {
             out[i] = (left[i] - right[i]) * inverse_mass[i];
         }
+        push_ends(system, bodies, x, a);
         if system.periodic {
             a[last] = a[1];
         }
-        push_ends(system, bodies, x, a);
     }
 }
 
@@ -228,8 +228,7 @@ fn push_ends(system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
         a[1] += change * system.inverse_mass[1];
     }
     if system.pendulum_per_s2 > 0.0 {
-        let last = system.bodies() - 1;
-        for i in bodies.start.max(1)..bodies.end.min(last) {
+        for i in bodies.filter(|&i| system.hangs(i)) {
             a[i] -= system.pendulum_per_s2 * x[i];
         }
     }

@@ -25,6 +25,8 @@ pub(super) struct Event {
     pub contact: usize,
     /// Where in the step, 0 to 1.
     pub theta: f64,
+    /// The step cannot be shortened to end at the change.
+    pub at_start: bool,
     change: Change,
 }
 
@@ -45,8 +47,15 @@ pub(super) struct Watch {
 }
 
 /// A located change must be this far, in steps, from the step's start to be
-/// worth a step of its own.
+/// worth a step of its own, and this far from its end to be worth another try.
 const AT_START: f64 = 1e-9;
+const AT_END: f64 = 1e-12;
+
+/// Shortest step in contact times that is made for the sake of a change.
+const LEAST_STEP: f64 = 1e-12;
+
+/// Overlaps are differences of positions that are this uncertain.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Watch {
     pub fn new(system: &System, tolerance: f64) -> Self {
@@ -107,27 +116,31 @@ impl Watch {
 
     /// The first change in a step that must end the step, if any.
     pub fn first(&self, piece: &Piece<'_>, pass: &Pass, contacts: Range<usize>) -> Option<Event> {
-        let (system, state) = (piece.system, piece.state);
         if self.overlap_alone && !pass.disagrees(contacts.clone()) {
             return None;
         }
-        contacts
-            .filter_map(|contact| {
-                let change = self.change(system, state, pass, contact)?;
-                let matters = self.matters(system, pass, contact, piece.step_s, change);
-                if !matters || self.has_landed(pass, contact, change) {
-                    return None;
-                }
-                let theta = locate(piece, contact, change);
-                let spent = change == Change::Turn || self.changed_at(contact, state.time_s) >= 2;
-                let again = theta < AT_START && spent;
-                (!again).then_some(Event {
-                    contact,
-                    theta,
-                    change,
-                })
-            })
-            .min_by(|a, b| a.theta.total_cmp(&b.theta))
+        let events = contacts.filter_map(|contact| self.event(piece, pass, contact));
+        events.min_by(|a, b| a.theta.total_cmp(&b.theta))
+    }
+
+    /// The change of one contact in a step, unless it may stay where it is.
+    fn event(&self, piece: &Piece<'_>, pass: &Pass, contact: usize) -> Option<Event> {
+        let (system, state) = (piece.system, piece.state);
+        let change = self.change(system, state, pass, contact)?;
+        let matters = self.matters(system, pass, contact, piece.step_s, change);
+        if !matters || self.has_landed(system, state, pass, contact, change) {
+            return None;
+        }
+        let theta = locate(piece, contact, change);
+        let at_start = theta < AT_START.max(LEAST_STEP * self.time_s / piece.step_s);
+        let spent = change == Change::Turn || self.changed_at(contact, state.time_s) >= 2;
+        let stays = (at_start && spent) || theta > 1.0 - AT_END;
+        (!stays).then_some(Event {
+            contact,
+            theta,
+            at_start,
+            change,
+        })
     }
 
     fn changed_at(&self, contact: usize, time_s: f64) -> u8 {
@@ -135,11 +148,21 @@ impl Watch {
         if time == time_s { count } else { 0 }
     }
 
-    /// Whether the end of the step is at the change, as near as can be asked.
-    fn has_landed(&self, pass: &Pass, contact: usize, change: Change) -> bool {
-        // How near a force or a rate can be brought to 0 is the step's error,
-        // which `matters` knows.
-        matches!(change, Change::Overlap(_)) && pass.gap[contact].abs() <= self.landing
+    /// Whether the end of the step is at the change, as near as can be asked:
+    /// to the landing distance or to the rounding of positions. How near a
+    /// force or a rate can be brought to 0 is the step's error, which
+    /// `matters` knows.
+    fn has_landed(
+        &self,
+        system: &System,
+        state: &State,
+        pass: &Pass,
+        c: usize,
+        change: Change,
+    ) -> bool {
+        let size = state.x[c].abs() + state.x[c + 1].abs() + system.offset_m[c].abs();
+        let landing = self.landing.max(ROUNDING * size);
+        matches!(change, Change::Overlap(_)) && pass.gap[c].abs() <= landing
     }
 
     /// Sets the modes at the end of an accepted step; `aimed` is the change
@@ -162,7 +185,7 @@ impl Watch {
             let landed = aimed
                 .map(|event| event.change)
                 .filter(|&change| match change {
-                    Change::Overlap(_) => pass.gap[contact].abs() <= self.landing,
+                    Change::Overlap(_) => self.has_landed(system, state, pass, contact, change),
                     Change::Force(_) => true,
                     Change::Turn => false,
                 });
@@ -185,13 +208,6 @@ impl Watch {
         let count = self.changed_at(contact, state.time_s) + 1;
         self.last[contact] = (state.time_s, count);
         state.set(contact, mode);
-    }
-}
-
-impl Event {
-    /// Whether the step cannot be shortened to end at the change.
-    pub fn is_at_start(&self) -> bool {
-        self.theta < AT_START
     }
 }
 

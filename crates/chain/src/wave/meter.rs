@@ -16,7 +16,8 @@ pub(crate) struct Meter {
     powers_w: Vec<Vec<f64>>,
     work_j: Vec<f64>,
     start_j: f64,
-    most_driven_j: f64,
+    /// Largest energy seen: put in, or in motion.
+    most_j: f64,
     rest_elastic_j: f64,
     start_plastic_j: Vec<f64>,
 }
@@ -32,7 +33,7 @@ impl Meter {
             powers_w: vec![vec![0.0; slots]; stages],
             work_j: vec![0.0; slots],
             start_j: 0.0,
-            most_driven_j: 0.0,
+            most_j: 0.0,
             rest_elastic_j: rest_energy(system),
             start_plastic_j: Vec::new(),
         };
@@ -42,6 +43,7 @@ impl Meter {
             .map(|law| stored(system, state, Some(law)))
             .collect();
         meter.start_j = meter.budget(system, state).accounted_j();
+        meter.most_j = meter.start_j.abs();
         meter
     }
 
@@ -73,20 +75,21 @@ impl Meter {
         }
     }
 
-    /// Adds the step's work: Σ h b_s P_s.
-    pub fn finish_step(&mut self, step_s: f64, weights: &[f64]) {
+    /// Adds the step's work, Σ h b_s P_s; `kinetic_j` is what moves after it.
+    pub fn finish_step(&mut self, step_s: f64, weights: &[f64], kinetic_j: f64) {
         for (weight, powers) in weights.iter().zip(&self.powers_w) {
             for (work, power) in self.work_j.iter_mut().zip(powers) {
                 *work += step_s * weight * power;
             }
         }
-        self.most_driven_j = self.most_driven_j.max(self.work_j[self.laws.len() + 1]);
+        let driven = self.work_j[self.laws.len() + 1];
+        let put_in = (self.start_j + driven).abs().max(driven.abs());
+        self.most_j = self.most_j.max(put_in).max(kinetic_j);
     }
 
     /// Error of the step's work, as a fraction of the energy put in.
     pub fn error(&self, step_s: f64, weights: &[f64]) -> f64 {
-        let input = self.start_j.abs() + self.most_driven_j;
-        if input == 0.0 {
+        if self.most_j == 0.0 {
             return 0.0;
         }
         let slots = 0..self.work_j.len();
@@ -95,7 +98,7 @@ impl Meter {
             rows.map(|(weight, powers)| weight * powers[slot]).sum()
         };
         slots
-            .map(|slot| (step_s * error(slot) / input).abs())
+            .map(|slot| (step_s * error(slot) / self.most_j).abs())
             .fold(0.0, f64::max)
     }
 
@@ -120,7 +123,7 @@ impl Meter {
             time_s: state.time_s,
             start_j: self.start_j,
             driven_j,
-            input_j: self.start_j.abs() + self.most_driven_j,
+            input_j: self.most_j,
             kinetic_j: kinetic(system, state),
             elastic_j: stored(system, state, None) - self.rest_elastic_j,
             dissipated: dissipated.collect(),

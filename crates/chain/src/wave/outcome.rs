@@ -79,8 +79,8 @@ pub enum SolveError {
     },
     /// More force passes than allowed.
     #[error(
-        "gave up at t = {time_s:e} s after {force_passes} force passes: steps have come down to \
-         {step_s:e} s because of contact {contact}; ask for a shorter duration or less accuracy, \
+        "gave up at t = {time_s:e} s after {force_passes} force passes: the last step was \
+         {step_s:e} s, set by contact {contact}; ask for a shorter duration or less accuracy, \
          or look at that contact's laws"
     )]
     TooMuchWork {
@@ -92,6 +92,14 @@ pub enum SolveError {
         step_s: f64,
         /// Contact next to the body with the largest error.
         contact: usize,
+    },
+    /// A setting with which nothing can be computed.
+    #[error("{what} = {value} must be positive and finite")]
+    Setting {
+        /// Which one.
+        what: &'static str,
+        /// What it is.
+        value: f64,
     },
     /// Rounding alone is larger than the error asked for.
     #[error(

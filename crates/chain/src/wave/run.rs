@@ -24,7 +24,7 @@ pub fn run(
     observers: &mut [&mut dyn Observer],
 ) -> Result<Outcome, SolveError> {
     let table = method.table();
-    check_tolerance(method.control())?;
+    check(method.control(), &limits)?;
     let mut wave = Wave::new(system, &table, method.control(), limits);
     wave.first_accelerations();
     let mut finished = false;
@@ -37,13 +37,24 @@ pub fn run(
 /// Below this the rounding of a step is larger than its error.
 const LEAST_TOLERANCE: f64 = 1e-14;
 
-fn check_tolerance(control: Control) -> Result<(), SolveError> {
+/// Refuses settings with which no shot can be computed.
+fn check(control: Control, limits: &Limits) -> Result<(), SolveError> {
+    let setting = |what, value| Err(SolveError::Setting { what, value });
+    if limits.duration_s.is_nan() || limits.duration_s < 0.0 {
+        return setting("duration in s", limits.duration_s);
+    }
     match control {
-        Control::Adaptive { tolerance } if tolerance < LEAST_TOLERANCE || tolerance.is_nan() => {
+        Control::Adaptive { tolerance } if tolerance < LEAST_TOLERANCE => {
             Err(SolveError::TooTight {
                 tolerance,
                 least: LEAST_TOLERANCE,
             })
+        }
+        Control::Adaptive { tolerance } if tolerance.is_nan() || tolerance >= 1.0 => {
+            setting("tolerance (below 1)", tolerance)
+        }
+        Control::Fixed { step_s } if !(step_s > 0.0 && step_s.is_finite()) => {
+            setting("step in s", step_s)
         }
         _ => Ok(()),
     }
@@ -55,7 +66,7 @@ fn most_passes(system: &System, limits: &Limits) -> u64 {
     let contact_times = limits.duration_s / system.scales().time_s;
     limits
         .force_passes
-        .unwrap_or(10_000_000 + (1e4 * contact_times) as u64)
+        .unwrap_or(10_000_000_u64.saturating_add((1e4 * contact_times) as u64))
 }
 
 /// A shot under way.
@@ -76,7 +87,6 @@ struct Wave<'a> {
     proposed_s: f64,
     /// Change that the next step is shortened to end at.
     aimed: Option<Event>,
-    largest_speed: f64,
     /// Body with the largest error in the last step tried.
     worst: usize,
     most_passes: u64,
@@ -92,7 +102,7 @@ const FIRST_STEP: f64 = 1e-3;
 const SMALLEST_STEP: f64 = 1e-13;
 
 /// Errors are measured against the speed at which closed contacts move now,
-/// but never less than this fraction of the largest speed so far.
+/// but never less than this fraction of the speed that set the chain in motion.
 const LEAST_SCALE: f64 = 1e-2;
 
 impl<'a> Wave<'a> {
@@ -120,7 +130,6 @@ impl<'a> Wave<'a> {
             v: state.v.clone(),
             proposed_s: FIRST_STEP * system.scales().time_s,
             aimed: None,
-            largest_speed: system.scales().speed_m_s,
             worst: 0,
             most_passes: most_passes(system, &limits),
             work: Work::default(),
@@ -214,7 +223,12 @@ impl<'a> Wave<'a> {
             .motion
             .as_ref()
             .map_or(f64::INFINITY, |m| m.next_break(time));
-        (self.limits.duration_s - time).min(next - time)
+        let smooth = self
+            .system
+            .motion
+            .as_ref()
+            .map_or(f64::INFINITY, |m| m.longest_step_s());
+        (self.limits.duration_s - time).min(next - time).min(smooth)
     }
 
     fn fixed_step(&mut self, step_s: f64) -> Result<f64, SolveError> {
@@ -261,7 +275,7 @@ impl<'a> Wave<'a> {
                     };
                     return Ok(h);
                 }
-                Some(event) if event.is_at_start() => {
+                Some(event) if event.at_start => {
                     self.watch.apply(&mut self.state, event);
                     self.first_accelerations();
                 }
@@ -345,7 +359,7 @@ impl<'a> Wave<'a> {
             .windows(2)
             .zip(touching)
             .map(|(v, on)| on * (v[0] - v[1]).abs());
-        rates.fold(LEAST_SCALE * self.largest_speed, f64::max)
+        rates.fold(LEAST_SCALE * self.system.scales().speed_m_s, f64::max)
     }
 
     /// Shows the step to the observers.
@@ -384,7 +398,13 @@ impl<'a> Wave<'a> {
         let bodies = self.window.bodies.clone();
         self.work.steps += 1;
         if let Some(meter) = &mut self.meter {
-            meter.finish_step(h, self.table.end().0);
+            let moving = bodies
+                .clone()
+                .filter(|&i| self.system.mass_kg[i].is_finite());
+            let kinetic = moving
+                .map(|i| 0.5 * self.system.mass_kg[i] * self.v[i] * self.v[i])
+                .sum();
+            meter.finish_step(h, self.table.end().0, kinetic);
             meter.carry_over();
         }
         self.state.time_s += h;
@@ -398,8 +418,18 @@ impl<'a> Wave<'a> {
             Control::Fixed { .. } => self.follow_gates(),
         };
         self.window.follow(self.system, &mut self.state);
-        if changed || self.window.bodies != bodies {
+        self.wake(bodies);
+        if changed {
             self.first_accelerations();
+        }
+    }
+
+    /// Bodies that have just woken rest or fly: nothing accelerates them yet.
+    fn wake(&mut self, awake_before: Range<usize>) {
+        let now = self.window.bodies.clone();
+        for i in now.filter(|i| !awake_before.contains(i)) {
+            self.a[0][i] = 0.0;
+            (self.x[i], self.v[i]) = (self.state.x[i], self.state.v[i]);
         }
     }
 

@@ -3,7 +3,8 @@
 use super::table::{Table, hermite};
 
 /// Velocity Verlet [Swope1982]; forces that depend on velocity see the
-/// half-step velocity, so that one force pass a step is enough.
+/// half-step velocity, so that one force pass a step is enough; with them it
+/// is of order 1 only.
 pub(crate) fn verlet() -> Table {
     Table {
         nodes: vec![0.0, 1.0],

@@ -1,8 +1,9 @@
 //! The part of the chain that moves.
 //!
-//! Bodies ahead of the wave have not moved at all, so leaving them out changes
-//! no bit. Behind it, in a chain without loads, bodies whose contacts are open
-//! or relaxed fly on straight lines and are left out too, in long chains only.
+//! Bodies that the wave has not reached have not moved at all, so leaving them
+//! out changes no bit. Where it has been, in a chain without loads, bodies whose
+//! contacts are open or relaxed fly on straight lines and are left out too, on
+//! both sides of what still moves; in long chains only.
 
 use super::state::State;
 use crate::system::System;
@@ -11,10 +12,10 @@ use std::ops::Range;
 /// Bodies are woken and put to sleep in groups of this size.
 const GROUP: usize = 4;
 
-/// Chains shorter than this gain nothing from sleep behind the wave.
+/// Chains shorter than this gain nothing from sleep where the wave has been.
 const LONG_CHAIN: usize = 512;
 
-/// Steps between looks behind the wave.
+/// Steps between looks for bodies that may sleep.
 const LOOK_EVERY: usize = 64;
 
 /// Relative velocities and overlaps below the tolerance of a step, or below
@@ -36,7 +37,9 @@ pub(crate) struct Window {
     length_floor: f64,
     relaxed_speed: f64,
     relaxed_length: f64,
-    sleeps_behind: bool,
+    /// Bodies from here on have never moved.
+    untouched: usize,
+    sleeps_again: bool,
     until_look: usize,
 }
 
@@ -59,7 +62,8 @@ impl Window {
             length_floor: floor * scales.speed_m_s * scales.time_s,
             relaxed_speed: relaxed * scales.speed_m_s,
             relaxed_length: relaxed * scales.speed_m_s * scales.time_s,
-            sleeps_behind: !whole_chain && system.beads() >= LONG_CHAIN && system.flies_free(),
+            untouched: system.bodies(),
+            sleeps_again: !whole_chain && system.beads() >= LONG_CHAIN && system.flies_free(),
             until_look: LOOK_EVERY,
         };
         let starts_moving = system.motion.is_some() || system.slope_m_s2 != 0.0;
@@ -67,6 +71,7 @@ impl Window {
             let last = (0..system.bodies()).rev().find(|&i| window.moves(state, i));
             let last = last.unwrap_or(0).max(usize::from(starts_moving));
             window.bodies.end = (last + window.margin + GROUP).min(system.bodies());
+            window.untouched = window.bodies.end;
         }
         window
     }
@@ -77,30 +82,38 @@ impl Window {
 
     /// Wakes what the last step may have reached, and lets sleep what relaxed.
     pub fn follow(&mut self, system: &System, state: &mut State) {
-        self.wake_ahead(system, state);
-        if self.sleeps_behind {
-            self.wake_behind(system, state);
-            self.until_look -= 1;
-            if self.until_look == 0 {
-                self.until_look = LOOK_EVERY;
-                self.sleep_behind(system, state);
-            }
+        self.wake_untouched(state);
+        if !self.sleeps_again {
+            return;
+        }
+        self.wake_before(system, state);
+        self.wake_beyond(system, state);
+        self.until_look -= 1;
+        if self.until_look == 0 {
+            self.until_look = LOOK_EVERY;
+            self.sleep_before(system, state);
+            self.sleep_beyond(system, state);
         }
     }
 
     /// A step moves at most `stages` more bodies: that many must be at rest
     /// at the window's edge.
-    fn wake_ahead(&mut self, system: &System, state: &State) {
-        let all = system.bodies();
-        while self.bodies.end < all
+    fn wake_untouched(&mut self, state: &State) {
+        let all = state.x.len();
+        while self.bodies.end == self.untouched
+            && self.bodies.end < all
             && (self.bodies.end - self.margin..self.bodies.end).any(|i| self.moves(state, i))
         {
             self.bodies.end = (self.bodies.end + GROUP).min(all);
+            self.untouched = self.bodies.end;
         }
     }
 
     /// Neither pressed nor closing, but for rounding.
     fn is_quiet(&self, system: &System, state: &State, contact: usize) -> bool {
+        if !system.has_contact(contact) {
+            return true;
+        }
         let overlap = state.overlap(system, contact);
         let rate = state.v[contact] - state.v[contact + 1];
         let open = overlap < -self.relaxed_length;
@@ -108,39 +121,69 @@ impl Window {
         (open && rate <= self.relaxed_speed) || relaxed
     }
 
-    fn wake_behind(&mut self, system: &System, state: &mut State) {
-        let first = self.bodies.start;
-        if first == 0 {
-            return;
+    /// Brings the positions of bodies up to date.
+    fn wake(&mut self, state: &mut State, bodies: Range<usize>) {
+        for i in bodies {
+            state.x[i] += state.v[i] * (state.time_s - self.asleep_since_s[i]);
+            self.asleep_since_s[i] = state.time_s;
         }
-        let disturbed = (first..first + self.margin).any(|c| !self.is_quiet(system, state, c));
-        if disturbed {
+    }
+
+    /// Wakes bodies on the striker's side that something is about to reach.
+    fn wake_before(&mut self, system: &System, state: &mut State) {
+        let first = self.bodies.start;
+        let edge = first..(first + self.margin).min(self.bodies.end - 1);
+        if first > 0 && edge.into_iter().any(|c| !self.is_quiet(system, state, c)) {
             let to = first.saturating_sub(GROUP);
-            for i in to..first {
-                state.x[i] += state.v[i] * (state.time_s - self.asleep_since_s[i]);
-            }
+            self.wake(state, to..first);
             self.bodies.start = to;
         }
     }
 
-    fn sleep_behind(&mut self, system: &System, state: &State) {
+    /// The same on the wall's side, where the wave has been.
+    fn wake_beyond(&mut self, system: &System, state: &mut State) {
+        let end = self.bodies.end;
+        let edge = (end - 1).saturating_sub(self.margin).max(self.bodies.start)..end - 1;
+        if end < self.untouched && edge.into_iter().any(|c| !self.is_quiet(system, state, c)) {
+            let to = (end + GROUP).min(self.untouched);
+            self.wake(state, end..to);
+            self.bodies.end = to;
+        }
+    }
+
+    fn sleep_before(&mut self, system: &System, state: &State) {
         let first = self.bodies.start;
         let quiet_until = (first..self.bodies.end - 1)
             .find(|&c| !self.is_quiet(system, state, c))
-            .unwrap_or(self.bodies.end - 1);
+            .unwrap_or(first);
         let to = quiet_until.saturating_sub(self.margin + GROUP);
-        if to <= first + GROUP {
-            return;
+        if to > first + GROUP {
+            self.asleep_since_s[first..to].fill(state.time_s);
+            self.bodies.start = to;
         }
-        self.asleep_since_s[first..to].fill(state.time_s);
-        self.bodies.start = to;
     }
 
-    /// Brings the positions of sleeping bodies up to date.
-    pub fn wake_all(&mut self, state: &mut State) {
-        for i in 0..self.bodies.start {
-            state.x[i] += state.v[i] * (state.time_s - self.asleep_since_s[i]);
-            self.asleep_since_s[i] = state.time_s;
+    fn sleep_beyond(&mut self, system: &System, state: &State) {
+        let end = self.bodies.end;
+        // Ahead of a wave that still runs on, everything is quiet for good.
+        if self.bodies.end == self.untouched && end < system.bodies() {
+            return;
         }
+        let quiet_from = (self.bodies.start..end - 1)
+            .rev()
+            .find(|&c| !self.is_quiet(system, state, c))
+            .map_or(end, |c| c + 2);
+        let to = quiet_from + self.margin + GROUP;
+        if to + GROUP < end {
+            self.asleep_since_s[to..end].fill(state.time_s);
+            self.bodies.end = to;
+        }
+    }
+
+    /// Wakes everything.
+    pub fn wake_all(&mut self, state: &mut State) {
+        let (first, end) = (self.bodies.start, self.bodies.end);
+        self.wake(state, 0..first);
+        self.wake(state, end..state.x.len());
     }
 }
