@@ -64,7 +64,8 @@ impl Observer for Tracer {
         let end = piece.time_s(1.0);
         loop {
             let time = self.next as f64 * self.interval_s;
-            if time >= end || !(self.interval_s > 0.0) {
+            let never = self.interval_s.is_nan() || self.interval_s <= 0.0;
+            if time >= end || never {
                 break;
             }
             self.sample(piece, time);
