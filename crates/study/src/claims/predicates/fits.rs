@@ -4,8 +4,20 @@ use super::{Worst, branches, curves, missing};
 use crate::claims::{Branch, Claim, Curve, Evidence, Finding, Tally, Verdict};
 
 /// R² of the straight line in log–log is at least the threshold, for every
-/// case and branch.
+/// case and branch; in part if it is at least the weaker one.
 pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
+    let finding = r_squared_above(claim.threshold, claim, evidence);
+    let weaker = |least| r_squared_above(least, claim, evidence).verdict == Verdict::Holds;
+    match finding.verdict {
+        Verdict::Fails if claim.partly.is_some_and(weaker) => Finding {
+            verdict: Verdict::InPart,
+            ..finding
+        },
+        _ => finding,
+    }
+}
+
+fn r_squared_above(least: f64, claim: &Claim, evidence: &Evidence) -> Finding {
     each_fit(claim, evidence, &|curve, branch| {
         let fit = curve.power_law(branch).ok()?;
         let left = 1.0 - fit.r_squared;
@@ -13,11 +25,8 @@ pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
         // 1 − R² is the residuals' sum of squares over that of ln T; to first
         // order an error of every ToF moves it by twice its share of a residual.
         let of_residual = accuracy(curve) * (fit.residuals.len() as f64 / sum).sqrt();
-        Some((
-            fit.r_squared,
-            fit.r_squared - claim.threshold,
-            2.0 * left * of_residual,
-        ))
+        let accuracy = 2.0 * left * of_residual;
+        Some((fit.r_squared, fit.r_squared - least, accuracy))
     })
 }
 
