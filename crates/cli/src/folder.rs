@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use hertzchain_figures::Figure;
+use hertzchain_study::reproduce::write_atomically;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -37,15 +38,7 @@ impl Folder {
     /// Writes a file beside its place, then renames it.
     pub fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
         let path = self.path.join(name);
-        let beside = self
-            .path
-            .join(format!(".{name}.{}.part", std::process::id()));
-        let result = fs::write(&beside, content).and_then(|()| fs::rename(&beside, &path));
-        if let Err(error) = result {
-            // The first error counts; nothing half-written stays.
-            let _ = fs::remove_file(&beside);
-            return Err(Failure::Ours(format!("{}: {error}", path.display())));
-        }
+        write_atomically(&path, content).map_err(|error| Failure::Ours(error.to_string()))?;
         self.written.push(path);
         Ok(())
     }

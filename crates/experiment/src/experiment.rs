@@ -13,6 +13,7 @@ use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -58,11 +59,16 @@ impl Experiment {
             path: path.display().to_string(),
             error,
         };
-        if std::fs::metadata(path).map_err(unreadable)?.len() > MOST_BYTES {
+        let mut text = String::new();
+        // A device or a pipe has no size to ask for beforehand.
+        let file = std::fs::File::open(path).map_err(unreadable)?;
+        file.take(MOST_BYTES + 1)
+            .read_to_string(&mut text)
+            .map_err(unreadable)?;
+        if text.len() as u64 > MOST_BYTES {
             let error = std::io::Error::other("an experiment file has at most 16 MiB");
             return Err(unreadable(error));
         }
-        let text = std::fs::read_to_string(path).map_err(unreadable)?;
         Ok(Self::from_text(&path.display().to_string(), &text)?)
     }
 
