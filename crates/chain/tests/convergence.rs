@@ -64,7 +64,7 @@ fn every_method_has_its_order_where_nothing_opens() {
     let rk4 = order(0.1, &|step_s| Box::new(Rk4 { step_s }));
     let verlet = order(0.1, &|step_s| Box::new(Verlet { step_s }));
     let pair = order(0.1, &|step| Box::new(FixedPair(step)));
-    // Steps are finite: observed orders are within 0.4 of the nominal ones.
+    // Steps are finite: observed orders are near the nominal ones.
     assert!((rk4 - 4.0).abs() < 0.2, "RK4: {rk4}");
     assert!((verlet - 2.0).abs() < 0.2, "Verlet: {verlet}");
     // The pair's error constants of order 5 are so small that those of order
@@ -88,6 +88,7 @@ fn fixed_steps_lose_order_on_impact_and_located_changes_keep_the_accuracy() {
     let exact = run_for(&chain, 1e-13, duration).velocity_m_s;
     for tolerance in [1e-5, 1e-7, 1e-9] {
         let error = error(&chain, &DormandPrince { tolerance }, duration, &exact) / 0.5;
+        // Some hundred steps, each wrong by up to the tolerance, few of them one-sided.
         assert!(error < 30.0 * tolerance, "{tolerance:e}: {error:e}");
     }
 }
@@ -136,7 +137,7 @@ fn a_tolerance_below_rounding_is_refused() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("cannot be reached") && error.contains("1e-14"),
+        error.contains("cannot be reached") && error.contains("5e-15"),
         "{error}"
     );
 }

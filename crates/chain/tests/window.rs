@@ -73,6 +73,8 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     let (first, last) = (early.maxima()[0], late.maxima()[0]);
     let distance = (beads - 120) as f64;
     close(last.value, first.value, 1e-6);
+    // An equal striker's leading pulse, as known to eight digits.
+    close(last.value, 0.681_631_55, 1e-6);
     close(distance / (last.time_s - first.time_s), 0.840_508_77, 1e-6);
     // The mean number of beads that a force pass touches does not grow with the chain.
     assert!(outcome.work.bodies_passed / outcome.work.force_passes < 150);
@@ -99,11 +101,5 @@ fn beads_asleep_where_the_wave_has_been_change_nothing_that_matters() {
             // A thousand times the tolerance: both runs are that wrong by then.
             assert!((a - b).abs() < 1e-4 * 0.8, "body {i}: {a} {b}");
         }
-        println!(
-            "{:?} {:?} {}",
-            part.work,
-            whole.work,
-            part.work.bodies_passed / part.work.force_passes
-        );
     }
 }

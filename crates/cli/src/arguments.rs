@@ -53,7 +53,7 @@ pub enum Verb {
 /// Which experiment.
 #[derive(Debug, Args)]
 pub struct Input {
-    /// Experiment file (TOML); the preset `dry` when neither is given
+    /// Experiment file (TOML)
     #[arg(value_name = "FILE", conflicts_with = "preset")]
     pub file: Option<PathBuf>,
     /// An experiment that comes with the program; `hertzchain presets` lists them

@@ -60,8 +60,8 @@ pub enum FitError {
 ///
 /// With `sigmas`, standard deviations of the values, points are weighted by
 /// (y/σ)² and errors follow from the σ alone; without, all weigh the same
-/// and errors follow from the scatter with n − 2 degrees of freedom (0 when
-/// n = 2: two points lie on a line).
+/// and errors follow from the scatter with n − 2 degrees of freedom (not a
+/// number when n = 2: two points lie on a line and tell no error).
 ///
 /// # Errors
 /// See [`FitError`].
@@ -145,7 +145,7 @@ impl Line {
         let all = weighted(&spread_y, weights);
         let variance = match (known_errors, x.len() - 2) {
             (true, _) => 1.0,
-            (false, 0) => 0.0,
+            (false, 0) => f64::NAN,
             (false, freedom) => left / freedom as f64,
         };
         let prefactor = (self.mean_y - self.slope * self.mean_x).exp();

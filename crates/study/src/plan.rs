@@ -102,7 +102,9 @@ impl Plan {
         experiment: &Experiment,
         speed_m_s: Option<f64>,
     ) -> Result<(Self, Vec<Warning>), Mistakes> {
-        let (chain, warnings) = experiment.chain(speed_m_s)?;
+        // What the physics refuses is reported at its place in the file.
+        let (_, warnings) = experiment.system(speed_m_s)?;
+        let (chain, _) = experiment.chain(speed_m_s)?;
         let asked = experiment.solver();
         let solver = match asked.method {
             experiment::Method::Adaptive => Solver::Adaptive,

@@ -56,7 +56,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
 }
 
 #[test]
-fn default_reading_gives_the_ratios_that_the_design_states() {
+fn default_reading_gives_the_ratios_known_from_an_independent_integration() {
     let evidence = gathered(&[0.075, 0.12, 0.15, 0.5, 0.56, 1.0, 1.23], 1e-6, false);
     let ratio = |case: &str, i: usize| evidence.ratios(case)[i].incident;
     // Bounds as wide as the two digits in which they are stated.

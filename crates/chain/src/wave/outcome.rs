@@ -93,6 +93,17 @@ pub enum SolveError {
         /// Contact next to the body with the largest error.
         contact: usize,
     },
+    /// A fixed step in which a whole contact could come and go.
+    #[error(
+        "a step of {step_s:e} s is longer than a contact lasts, about {contact_time_s:e} s; \
+         a fiftieth of that is a sensible step"
+    )]
+    StepTooLong {
+        /// Step in s.
+        step_s: f64,
+        /// Contact time in s.
+        contact_time_s: f64,
+    },
     /// A setting with which nothing can be computed.
     #[error("{what} = {value} must be positive and finite")]
     Setting {

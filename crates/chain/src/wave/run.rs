@@ -24,7 +24,7 @@ pub fn run(
     observers: &mut [&mut dyn Observer],
 ) -> Result<Outcome, SolveError> {
     let table = method.table();
-    check(method.control(), &limits)?;
+    check(method.control(), &limits, system)?;
     let mut wave = Wave::new(system, &table, method.control(), limits);
     wave.first_accelerations();
     let mut finished = false;
@@ -35,10 +35,10 @@ pub fn run(
 }
 
 /// Below this the rounding of a step is larger than its error.
-const LEAST_TOLERANCE: f64 = 1e-14;
+const LEAST_TOLERANCE: f64 = 5e-15;
 
 /// Refuses settings with which no shot can be computed.
-fn check(control: Control, limits: &Limits) -> Result<(), SolveError> {
+fn check(control: Control, limits: &Limits, system: &System) -> Result<(), SolveError> {
     let setting = |what, value| Err(SolveError::Setting { what, value });
     if limits.duration_s.is_nan() || limits.duration_s < 0.0 {
         return setting("duration in s", limits.duration_s);
@@ -55,6 +55,12 @@ fn check(control: Control, limits: &Limits) -> Result<(), SolveError> {
         }
         Control::Fixed { step_s } if !(step_s > 0.0 && step_s.is_finite()) => {
             setting("step in s", step_s)
+        }
+        Control::Fixed { step_s } if step_s > system.scales().time_s => {
+            Err(SolveError::StepTooLong {
+                step_s,
+                contact_time_s: system.scales().time_s,
+            })
         }
         _ => Ok(()),
     }
@@ -313,7 +319,10 @@ impl<'a> Wave<'a> {
             false => Err(SolveError::TooMuchWork {
                 time_s: self.state.time_s,
                 force_passes: self.work.force_passes,
-                step_s: self.proposed_s,
+                step_s: match self.control {
+                    Control::Fixed { step_s } => step_s,
+                    Control::Adaptive { .. } => self.proposed_s,
+                },
                 contact: self.worst.min(self.system.contacts() - 1),
             }),
         }

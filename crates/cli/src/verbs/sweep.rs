@@ -176,12 +176,20 @@ fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> Strin
         Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
         Units::Dimensionless => (1.0, "", "v"),
     };
+    // Two points lie on a line and tell no error.
+    let error = |value: f64| {
+        if value.is_nan() {
+            "?".into()
+        } else {
+            digits(value, 2)
+        }
+    };
     format!(
         "{name}: ToF = ({} ± {}){unit} · {speed}^({} ± {}), R² = {}, largest deviation {} %\n",
         digits(law.prefactor / size, 7),
-        digits(law.prefactor_error / size, 2),
+        error(law.prefactor_error / size),
         digits(law.exponent, 7),
-        digits(law.exponent_error, 2),
+        error(law.exponent_error),
         digits(law.r_squared, 8),
         digits(100.0 * law.largest_deviation(), 2),
     )

@@ -89,7 +89,7 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
 
 /// What was drawn, for the page.
 const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
-    digit, steel's Poisson ratio 0.3 as the handbooks' 0.30; a claim that a draw decides otherwise \
+    digit, steel's Poisson ratio 0.3 from 0.25 to 0.35; a claim that a draw decides otherwise \
     is not decidable.\n\n";
 
 /// How many claims have which verdict, in a sentence.
@@ -105,6 +105,10 @@ fn section(page: &mut String, judged: &Judged) {
     let _ = writeln!(page, "{} ({})\n", claim.statement, claim.paper);
     let value = value_text(finding.value, finding.accuracy);
     let _ = writeln!(page, "- Value: {value} ({}).", claim.value);
+    if !claim.expected.is_empty() {
+        let printed: Vec<String> = claim.expected.iter().map(|value| digits(*value)).collect();
+        let _ = writeln!(page, "- The paper has: {}.", printed.join(", "));
+    }
     let threshold = digits(claim.threshold);
     let _ = writeln!(page, "- Threshold: {threshold}. {}", claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);

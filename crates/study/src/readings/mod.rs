@@ -7,6 +7,6 @@ mod rounding;
 mod scan;
 
 pub use draws::rounded_evidence;
-pub use report::{one_digit_markdown, scan_csv, scan_markdown};
+pub use report::{scan_csv, scan_markdown, two_digits_markdown};
 pub use rounding::{Draw, DryPoisson, Prefactors};
 pub use scan::{Price, Row, Scan, scan};

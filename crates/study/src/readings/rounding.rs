@@ -31,9 +31,9 @@ mod half {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DryPoisson {
     /// The handbooks' 0.30, within 0.005.
-    #[default]
     TwoDigits,
     /// 0.3 to the letter, within 0.05.
+    #[default]
     OneDigit,
 }
 

@@ -18,6 +18,7 @@ pub use gather::{CASES, Cases, Change, Gathering, HELD, OILS, gather, gather_rem
 pub use memory::Memory;
 pub use progress::{Progress, Silent};
 pub use provenance::Provenance;
+pub(crate) use reproduction::SCAN_ACCURACY;
 pub use reproduction::{Options, Reproduction, reproduce};
 pub use speeds::{SCAN_SPEEDS_M_S, SPEEDS_M_S};
 pub use tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};

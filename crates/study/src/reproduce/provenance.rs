@@ -2,7 +2,6 @@
 
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Where the numbers of a reproduction come from.
@@ -10,7 +9,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 pub struct Provenance {
     /// Version of this program.
     pub version: &'static str,
-    /// Commit of its source, when that still lies where it was built.
+    /// Commit that was built, when known.
     pub commit: Option<String>,
     /// Name of the solver.
     pub solver: String,
@@ -52,25 +51,11 @@ impl Provenance {
     }
 }
 
-/// The commit of the source that this was built from, if it still is there.
+/// The commit that was built and whether its files had been changed; `None`
+/// when built outside a checkout.
 #[must_use]
 pub fn commit() -> Option<String> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let git = source
-        .ancestors()
-        .map(|folder| folder.join(".git"))
-        .find(|git| git.is_dir())?;
-    let head = fs::read_to_string(git.join("HEAD")).ok()?;
-    let head = head.trim();
-    let Some(branch) = head.strip_prefix("ref: ") else {
-        return Some(head.to_owned());
-    };
-    if let Ok(commit) = fs::read_to_string(git.join(branch)) {
-        return Some(commit.trim().to_owned());
-    }
-    let packed = fs::read_to_string(git.join("packed-refs")).ok()?;
-    let line = packed.lines().find(|line| line.ends_with(branch))?;
-    line.split(' ').next().map(str::to_owned)
+    option_env!("HERTZCHAIN_COMMIT").map(str::to_owned)
 }
 
 /// Instruction set, operating system, processor, number of threads.

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::claims::{Evidence, Judged, claims, claims_json, claims_markdown, judge_all_rounded};
 use crate::readings::{
-    DryPoisson, Scan, one_digit_markdown, rounded_evidence, scan, scan_csv, scan_markdown,
+    DryPoisson, Scan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
 };
 use crate::{Plan, shoot};
 use hertzchain_experiment::Reading;
@@ -57,7 +57,7 @@ const DRAW_ACCURACY: f64 = 1e-5;
 
 /// Accuracy of shots that decide claims in other readings: dips of a ratio and
 /// residuals in standard errors need more than the crossing of 1 does.
-const SCAN_ACCURACY: f64 = 1e-6;
+pub(crate) const SCAN_ACCURACY: f64 = 1e-6;
 
 /// Everything that was computed.
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ pub struct Reproduction {
     pub judged: Vec<Judged>,
     /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
     /// readings were asked for.
-    pub one_digit: Option<Vec<Judged>>,
+    pub two_digits: Option<Vec<Judged>>,
     /// The signals of Fig. 2.
     pub signals: Vec<SignalShot>,
     /// One dry and one wet shot bead by bead.
@@ -111,12 +111,12 @@ pub fn reproduce(
     progress.advance();
     let films = films(&cases)?;
     progress.advance();
-    let verdicts = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
-    let (one_digit, scan) = match options.readings {
+    let verdicts = judged(options, DryPoisson::OneDigit, &evidence, progress)?;
+    let (two_digits, scan) = match options.readings {
         0 => (None, None),
         most => {
-            let one_digit = judged(options, DryPoisson::OneDigit, &evidence, progress)?;
-            (Some(one_digit), Some(scan(most, SCAN_ACCURACY, progress)?))
+            let two_digits = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
+            (Some(two_digits), Some(scan(most, SCAN_ACCURACY, progress)?))
         }
     };
     Ok(Reproduction {
@@ -125,7 +125,7 @@ pub fn reproduce(
         cases,
         evidence,
         judged: verdicts,
-        one_digit,
+        two_digits,
         signals,
         films,
         scan,
@@ -201,8 +201,8 @@ impl Reproduction {
         ];
         if let Some(scan) = &self.scan {
             files.push(("readings.csv", scan_csv(scan)));
-            let one_digit = self.one_digit.as_deref().unwrap_or_default();
-            let page = scan_markdown(scan) + &one_digit_markdown(&self.judged, one_digit);
+            let two_digits = self.two_digits.as_deref().unwrap_or_default();
+            let page = scan_markdown(scan) + &two_digits_markdown(&self.judged, two_digits);
             files.push(("readings.md", page));
         }
         files.push(("provenance.json", json(self.provenance.json())));

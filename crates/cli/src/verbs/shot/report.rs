@@ -74,8 +74,12 @@ fn flight(style: Style, shot: &Shot) -> Rows {
         };
         rows.push(("striker when it first separates".into(), first));
         rows.push((
-            "striker at the end".into(),
-            brief.quantity(rebound.end_m_s, "m/s"),
+            "striker at the end of the shot".into(),
+            format!(
+                "{} at {}",
+                brief.quantity(rebound.end_m_s, "m/s"),
+                brief.quantity(shot.duration_s, "s")
+            ),
         ));
     }
     if shot.flight.is_none() {
