@@ -3,14 +3,16 @@
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::wave::Budget;
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_signal::{FitError, PowerLaw};
 use hertzchain_study::Sweep;
 
-/// What a sensor is called in figures and its unit.
-pub fn name(sensor: Sensor) -> (String, &'static str) {
+/// What a sensor is called in figures and its unit; the last contact is the wall's.
+pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
     match sensor {
         Sensor::Bead(bead) => (format!("sensor bead {bead}"), "N"),
+        Sensor::Contact(contact) if Some(contact) == wall => ("wall".into(), "N"),
         Sensor::Contact(contact) => (format!("contact {contact}"), "N"),
         Sensor::Position(body) => (format!("position {body}"), "m"),
         Sensor::Velocity(body) => (format!("velocity {body}"), "m/s"),
@@ -25,7 +27,13 @@ struct Clock {
 }
 
 impl Clock {
-    fn of(times_s: &[f64]) -> Self {
+    fn of(times_s: &[f64], units: Units) -> Self {
+        if units == Units::Dimensionless {
+            return Self {
+                scale: 1.0,
+                unit: "",
+            };
+        }
         let last = times_s.last().copied().unwrap_or(0.0);
         let (scale, unit) = match last {
             t if t < 2e-2 => (1e6, "µs"),
@@ -40,44 +48,58 @@ impl Clock {
     }
 
     fn label(&self) -> String {
-        format!("Time ({})", self.unit)
+        match self.unit {
+            "" => "Time".into(),
+            unit => format!("Time ({unit})"),
+        }
+    }
+}
+
+/// An axis label with its SI unit, or without one in a dimensionless chain.
+fn axis(quantity: &str, unit: &str, units: Units) -> String {
+    match units {
+        Units::Si => format!("{quantity} ({unit})"),
+        Units::Dimensionless => quantity.to_owned(),
     }
 }
 
 /// Signals of sensors against time, one panel a quantity.
-pub fn signals(title: &str, trace: &Trace, sensors: &[Sensor]) -> Figure {
-    let clock = Clock::of(&trace.time_s);
+pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
+    let units = experiment.units();
+    let clock = Clock::of(&trace.time_s, units);
+    let wall = wall(experiment);
     let times = clock.times(&trace.time_s);
-    let panels = [
-        ("N", "Force (N)"),
-        ("m/s", "Velocity (m/s)"),
-        ("m", "Displacement (m)"),
-    ];
+    let panels = [("N", "Force"), ("m/s", "Velocity"), ("m", "Displacement")];
     let mut charts = Vec::new();
-    for (unit, label) in panels {
+    for (unit, quantity) in panels {
         let shown = sensors.iter().zip(&trace.columns);
         let mut shown = shown
-            .filter(|(sensor, _)| name(**sensor).1 == unit)
+            .filter(|(sensor, _)| name(**sensor, wall).1 == unit)
             .peekable();
         if shown.peek().is_some() {
-            let chart = Chart::new(&clock.label(), label);
+            let chart = Chart::new(&clock.label(), &axis(quantity, unit, units));
             charts.push(shown.fold(chart, |chart, (sensor, column)| {
-                chart.with(Series::line(&name(*sensor).0, &times, column))
+                chart.with(Series::line(&name(*sensor, wall).0, &times, column))
             }));
         }
     }
     if let Some(first) = charts.first_mut() {
-        *first = first.clone().title(title);
+        *first = first.clone().title(experiment.title());
     }
     let height_mm = 55.0 * charts.len().max(1) as f64 + 10.0;
     let empty = Figure::double_column(height_mm).share_x();
     charts.into_iter().fold(empty, Figure::panel)
 }
 
+/// The contact with the wall, if there is one.
+pub fn wall(experiment: &Experiment) -> Option<usize> {
+    experiment.has_wall().then(|| experiment.beads())
+}
+
 /// Where the energy is, against time, and what is missing.
-pub fn energy(budgets: &[Budget]) -> Figure {
+pub fn energy(budgets: &[Budget], units: Units) -> Figure {
     let times_s: Vec<f64> = budgets.iter().map(|budget| budget.time_s).collect();
-    let clock = Clock::of(&times_s);
+    let clock = Clock::of(&times_s, units);
     let times = clock.times(&times_s);
     let line = |name: &str, of: &dyn Fn(&Budget) -> f64| {
         let values: Vec<f64> = budgets.iter().map(of).collect();
@@ -90,18 +112,20 @@ pub fn energy(budgets: &[Budget]) -> Figure {
             .map(|line| line.energy_j)
             .sum::<f64>()
     };
-    let chart = Chart::new(&clock.label(), "Energy (J)")
+    let outside = |b: &Budget| b.gravity_j + b.preload_j + b.stop_j;
+    let chart = Chart::new(&clock.label(), &axis("Energy", "J", units))
         .with(line("kinetic", &|b| b.kinetic_j))
         .with(line("elastic", &|b| b.elastic_j))
         .with(line("dissipated", &lost))
-        .with(line("gravity, preload, stop", &|b| {
-            b.gravity_j + b.preload_j + b.stop_j
-        }))
         .with(
             line("all", &|b| b.start_j + b.driven_j)
                 .colour(Colour::BLACK)
                 .dash(Dash::Dashed),
         );
+    let chart = match budgets.iter().any(|budget| outside(budget) != 0.0) {
+        true => chart.with(line("gravity, preload, stop", &outside)),
+        false => chart,
+    };
     let residual =
         Chart::new(&clock.label(), "Residual, relative").with(line("", &Budget::relative_residual));
     Figure::single_column(100.0)
@@ -112,20 +136,25 @@ pub fn energy(budgets: &[Budget]) -> Figure {
 }
 
 /// Times of flight against speed with their power laws.
-pub fn sweep(title: &str, sweep: &Sweep) -> Figure {
+pub fn sweep(experiment: &Experiment, sweep: &Sweep) -> Figure {
     let flights = sweep.flights();
     let speeds: Vec<f64> = flights.iter().map(|flight| flight.0).collect();
     let incident: Vec<f64> = flights.iter().map(|flight| flight.1).collect();
     let reflected: Vec<f64> = flights.iter().map(|f| f.2.unwrap_or(f64::NAN)).collect();
-    let chart = Chart::new("Impact speed $v_0$ (m/s)", "Time of flight (µs)");
-    let chart = chart.title(title).x_log().y_log();
+    let units = experiment.units();
+    let chart = Chart::new(
+        &axis("Impact speed $v_0$", "m/s", units),
+        &axis("Time of flight", "µs", units),
+    );
+    let chart = chart.title(experiment.title()).x_log().y_log();
+    let scale = if units == Units::Si { 1e6 } else { 1.0 };
     let chart = with(
         chart,
         "incident",
         &speeds,
         &incident,
         &sweep.incident,
-        Colour::BLUE,
+        (Colour::BLUE, scale),
     );
     let chart = with(
         chart,
@@ -133,7 +162,7 @@ pub fn sweep(title: &str, sweep: &Sweep) -> Figure {
         &speeds,
         &reflected,
         &sweep.reflected,
-        Colour::VERMILION,
+        (Colour::VERMILION, scale),
     );
     Figure::single_column(70.0).panel(chart)
 }
@@ -144,9 +173,9 @@ fn with(
     speeds: &[f64],
     times_s: &[f64],
     fit: &Result<PowerLaw, FitError>,
-    colour: Colour,
+    (colour, scale): (Colour, f64),
 ) -> Chart {
-    let micro = |values: Vec<f64>| -> Vec<f64> { values.iter().map(|t| 1e6 * t).collect() };
+    let micro = |values: Vec<f64>| -> Vec<f64> { values.iter().map(|t| scale * t).collect() };
     let points = Series::points(name, speeds, &micro(times_s.to_vec()))
         .marker(Marker::Circle)
         .colour(colour);

@@ -169,6 +169,9 @@ fn rows(style: Style, swept: &Sweep) -> String {
 
 fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> String {
     let law = match fit {
+        Err(FitError::TooFew) => {
+            return format!("{name}: no power law: fewer than two speeds have a time of flight\n");
+        }
         Err(error) => return format!("{name}: no power law: {error}\n"),
         Ok(law) => law,
     };
@@ -197,7 +200,7 @@ fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> Strin
 
 fn write(mut folder: Folder, experiment: &Experiment, swept: &Sweep) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(swept).as_bytes())?;
-    folder.figure("sweep", &pictures::sweep(experiment.title(), swept))?;
+    folder.figure("sweep", &pictures::sweep(experiment, swept))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }

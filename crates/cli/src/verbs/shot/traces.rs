@@ -70,13 +70,16 @@ pub fn write(
     }
     let trace = sampled(plan, shot, sensors)?;
     if arguments.out.is_some() {
-        folder.write("traces.csv", csv(&trace, &shown).as_bytes())?;
-        folder.write("energy.csv", energy_csv(&trace).as_bytes())?;
-        folder.figure(
-            "signals",
-            &pictures::signals(experiment.title(), &trace, &shown),
+        folder.write(
+            "traces.csv",
+            csv(&trace, &shown, pictures::wall(experiment)).as_bytes(),
         )?;
-        folder.figure("energy", &pictures::energy(&trace.budgets))?;
+        folder.write("energy.csv", energy_csv(&trace).as_bytes())?;
+        folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
+        folder.figure(
+            "energy",
+            &pictures::energy(&trace.budgets, experiment.units()),
+        )?;
     }
     let columns = &trace.columns[shown.len()..];
     if arguments.npy {
@@ -102,9 +105,9 @@ fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Fail
     trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
 }
 
-fn csv(trace: &Trace, sensors: &[Sensor]) -> String {
+fn csv(trace: &Trace, sensors: &[Sensor], wall: Option<usize>) -> String {
     let column = |sensor: &Sensor| {
-        let (name, unit) = pictures::name(*sensor);
+        let (name, unit) = pictures::name(*sensor, wall);
         format!(
             ",{}_{}",
             name.replace(' ', "_"),
