@@ -154,7 +154,7 @@ pub fn sweep(experiment: &Experiment, sweep: &Sweep) -> Figure {
         &speeds,
         &incident,
         &sweep.incident,
-        (Colour::BLUE, scale),
+        (Colour::BLUE, Marker::Circle, scale),
     );
     let chart = with(
         chart,
@@ -162,7 +162,7 @@ pub fn sweep(experiment: &Experiment, sweep: &Sweep) -> Figure {
         &speeds,
         &reflected,
         &sweep.reflected,
-        (Colour::VERMILION, scale),
+        (Colour::VERMILION, Marker::OpenSquare, scale),
     );
     Figure::single_column(70.0).panel(chart)
 }
@@ -173,11 +173,11 @@ fn with(
     speeds: &[f64],
     times_s: &[f64],
     fit: &Result<PowerLaw, FitError>,
-    (colour, scale): (Colour, f64),
+    (colour, marker, scale): (Colour, Marker, f64),
 ) -> Chart {
     let micro = |values: Vec<f64>| -> Vec<f64> { values.iter().map(|t| scale * t).collect() };
     let points = Series::points(name, speeds, &micro(times_s.to_vec()))
-        .marker(Marker::Circle)
+        .marker(marker)
         .colour(colour);
     let chart = chart.with(points);
     match fit {

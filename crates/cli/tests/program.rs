@@ -152,7 +152,7 @@ fn a_shot_writes_traces_figures_arrays_and_a_moving_picture() {
     assert_eq!(names(&out), expected);
     let traces = fs::read_to_string(out.join("traces.csv")).unwrap();
     assert!(
-        traces.starts_with("time_s,sensor_bead_7_n,contact_40_n"),
+        traces.starts_with("time_s,sensor_bead_7_n,wall_n"),
         "{}",
         &traces[..80]
     );
