@@ -78,6 +78,11 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     close(distance / (last.time_s - first.time_s), 0.840_508_77, 1e-6);
     // The mean number of beads that a force pass touches does not grow with the chain.
     assert!(outcome.work.bodies_passed / outcome.work.force_passes < 150);
+    // Columns of numbers a bead and nothing a step: 30 MB, where the system tells.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let peak_kb = peak.and_then(|peak| peak.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+    assert!(peak_kb.is_none_or(|kb| kb < 120_000), "{peak_kb:?} kB");
 }
 
 /// Sleep where the wave has been, reflected pulse and secondary pulses included.

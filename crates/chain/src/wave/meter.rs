@@ -184,7 +184,9 @@ fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
     if system.tension == crate::chain::Tension::Allowed {
         return 0.0;
     }
+    // A ring's seam lends its force to the place of contact 0.
     contacts
+        .filter(|&c| system.has_contact(c))
         .map(|c| {
             let acting = pass.dynamic[c + 1] + system.static_force_n[c];
             let gated = if pass.touching[c] > 0.0 {

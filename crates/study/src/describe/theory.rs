@@ -138,8 +138,7 @@ fn with_wave<T>(chain: &Chain, call: impl FnOnce(&SolitaryWave<'_>, &Bead) -> T)
 }
 
 pub(super) fn solitary(chain: &Chain) -> Option<Group> {
-    let title =
-        "Exact solitary wave of a uniform row like the middle, with the striker's whole energy";
+    let title = "Exact solitary wave of a long, unloaded row of beads like the middle one, with the striker's energy";
     let mut group = Group::new(title);
     with_wave(chain, |wave, bead| {
         let speed = wave.speed_beads_s();
