@@ -49,6 +49,8 @@ pub(crate) fn check(node: &Node, units: Units) -> Vec<Problem> {
                 let read = expected(parameter, row, node, units, |e| e.read(value));
                 problems.extend(read.err());
             }
+            // A misspelt key is one mistake, and has been reported.
+            (None, Source::Required) if is_misspelt(parameter.name, node, row) => {}
             (None, Source::Required) => problems.push(missing(parameter, row, node, units)),
             (None, _) => {}
         }
@@ -97,6 +99,13 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
         let label = format!("expected one of: {}", names.join(", "));
         Problem::new(&name.span, format!("there is no law `{text}`"), label).nearest(near)
     })
+}
+
+/// Whether a key that the law does not know is a slip of this one.
+fn is_misspelt(name: &str, node: &Node, row: &Row) -> bool {
+    let known = |key: &str| key == "law" || row.info.parameters.iter().any(|p| p.name == key);
+    let mut strange = node.entries().iter().filter(|entry| !known(&entry.key));
+    strange.any(|entry| nearest::of(&entry.key, [name]).is_some())
 }
 
 fn unknown_parameters(node: &Node, row: &Row) -> Vec<Problem> {
