@@ -100,8 +100,7 @@ pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, St
     groups.extend(theory::expected(experiment, chain));
     groups.retain(|group| !group.rows.is_empty());
     if experiment.units() == Units::Dimensionless {
-        let rows = groups.iter_mut().flat_map(|group| &mut group.rows);
-        rows.for_each(|row| row.unit.clear());
+        groups.iter_mut().for_each(drop_units);
     }
     Ok(groups)
 }
@@ -123,8 +122,21 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
     groups.extend(small_waves::modes(chain, &system));
     groups.extend(theory::expected(experiment, chain));
     if experiment.units() == Units::Dimensionless {
-        let rows = groups.iter_mut().flat_map(|group| &mut group.rows);
-        rows.for_each(|row| row.unit.clear());
+        groups.iter_mut().for_each(drop_units);
     }
     Ok(groups)
+}
+
+/// A dimensionless chain has numbers without units, in its descriptions of
+/// beads and ends too.
+fn drop_units(group: &mut Group) {
+    let describes = matches!(group.title.as_str(), "Beads" | "Ends");
+    for row in &mut group.rows {
+        row.unit.clear();
+        if let (true, Value::Text(text)) = (describes, &mut row.value) {
+            for unit in [" kg,", " m,", " Pa s", " Pa,"] {
+                *text = text.replace(unit, if unit.ends_with(',') { "," } else { "" });
+            }
+        }
+    }
 }
