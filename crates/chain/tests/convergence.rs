@@ -57,6 +57,23 @@ fn order(chain: &Chain, duration: f64, step: f64, method: impl Fn(f64) -> Box<dy
     (coarse / fine).log2() / 2.0
 }
 
+/// Least-squares slope over eight halvings: where contacts open and close
+/// inside steps, two steps alone may be lucky or not.
+fn mean_order(chain: &Chain, duration: f64, method: &dyn Fn(f64) -> Box<dyn Method>) -> f64 {
+    let exact = run_for(chain, 1e-13, duration).velocity_m_s;
+    let at = |halving: i32| {
+        let step = 1e-6 * 0.5_f64.powi(halving);
+        (
+            f64::from(-halving),
+            error(chain, &*method(step), duration, &exact).log2(),
+        )
+    };
+    let points: Vec<(f64, f64)> = (0..=8).map(at).collect();
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / 9.0;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2))
+}
+
 #[test]
 fn every_method_has_its_order_where_nothing_opens() {
     let chain = smooth();
@@ -79,12 +96,16 @@ fn fixed_steps_lose_order_on_impact_and_located_changes_keep_the_accuracy() {
         far: FarEnd::Free,
         ..row(8, 0.5, laws())
     };
-    let (duration, step) = (2e-4, 4e-7);
-    let rk4 = order(&chain, duration, step, |step_s| Box::new(Rk4 { step_s }));
-    let verlet = order(&chain, duration, step, |step_s| Box::new(Verlet { step_s }));
-    // √δ at the first touch: about 1.5, whatever the nominal order.
-    assert!((0.8..2.6).contains(&rk4), "RK4: {rk4}");
-    assert!((0.8..2.3).contains(&verlet), "Verlet: {verlet}");
+    let duration = 2e-4;
+    let order = |method: &dyn Fn(f64) -> Box<dyn Method>| mean_order(&chain, duration, method);
+    let rk4 = order(&|step_s| Box::new(Rk4 { step_s }));
+    let verlet = order(&|step_s| Box::new(Verlet { step_s }));
+    let pair = order(&|step| Box::new(FixedPair(step)));
+    // A force that jumps inside a step leaves order 1, whatever the nominal
+    // one; half an order is how much slopes scatter.
+    for (name, order) in [("RK4", rk4), ("Verlet", verlet), ("Dormand–Prince", pair)] {
+        assert!((order - 1.0).abs() < 0.5, "{name}: {order}");
+    }
     let exact = run_for(&chain, 1e-13, duration).velocity_m_s;
     for tolerance in [1e-5, 1e-7, 1e-9] {
         let error = error(&chain, &DormandPrince { tolerance }, duration, &exact) / 0.5;

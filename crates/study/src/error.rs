@@ -33,8 +33,9 @@ pub enum StudyError {
     },
     /// Halving a fixed step does not get there.
     #[error(
-        "{method} does not reach an accuracy of {accuracy:e}: halving its step down to {step_s:e} s \
-         still changes the result by {change:e}; ask for less accuracy or use the adaptive solver"
+        "{method} does not reach an accuracy of {accuracy:e}: halving its step down to {step_s:.3e} s \
+         still changes the result by {change:.1e}, last seen at t = {time_s:.4e} s in contact {contact}; \
+         ask for less accuracy or use the adaptive solver"
     )]
     NotConverged {
         /// The method.
@@ -45,5 +46,9 @@ pub enum StudyError {
         step_s: f64,
         /// Last relative change.
         change: f64,
+        /// Time of the last pulse that was picked in s, or the end of the shot.
+        time_s: f64,
+        /// Contact in which it was picked.
+        contact: usize,
     },
 }

@@ -110,12 +110,27 @@ impl<'a> Gun<'a> {
             }
             last = next;
         }
-        last.and(Err(StudyError::NotConverged {
+        let last = last?;
+        let (time_s, contact) = self.last_pulse(&last);
+        Err(StudyError::NotConverged {
             method: accuracy::fixed(solver, first_s).name(),
             accuracy: self.plan.accuracy,
             step_s: first_s * 0.5_f64.powi(MOST_HALVINGS),
             change: changes[1],
-        }))
+            time_s,
+            contact,
+        })
+    }
+
+    /// When and in which contact a shot's last pulse was picked.
+    fn last_pulse(&self, shot: &Shot) -> (f64, usize) {
+        match &shot.passage {
+            Ok(passage) => match passage.reflected {
+                Some(peak) => (peak.time_s, self.plan.sensor_bead),
+                None => (passage.wall.time_s, self.system.contacts() - 1),
+            },
+            Err(_) => (shot.duration_s, 0),
+        }
     }
 
     /// The shot at the step that was found, sampled if asked.
