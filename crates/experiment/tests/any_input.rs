@@ -1,5 +1,9 @@
 //! No input makes the reader panic.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_experiment::{Experiment, Reading, examples, presets};
 use proptest::prelude::*;

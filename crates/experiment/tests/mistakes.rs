@@ -1,5 +1,9 @@
 //! Every mistake is one report with line, text, expectation and advice.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_experiment::{Experiment, Finding, preset};
 use miette::Diagnostic;

@@ -1,5 +1,9 @@
 //! Named numbers: found, read, set.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_chain::{Pair, Start};
 use hertzchain_experiment::{Experiment, PathError, examples, preset, presets};

@@ -1,5 +1,9 @@
 //! The files that come with the program, against the numbers they stand for.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Start};
 use hertzchain_experiment::{examples, preset, presets};

@@ -1,5 +1,9 @@
 //! A switch changes what it says and nothing else.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_chain::{Chain, FarEnd, Push, Sensor, Tension};
 use hertzchain_experiment::{Experiment, Pick, Reading, preset, presets};

@@ -1,5 +1,9 @@
 //! The JSON Schema describes the files that the program reads.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_chain::laws::LAWS;
 use hertzchain_experiment::{examples, presets, schema};

@@ -1,6 +1,10 @@
 //! Quantities in text against exact decimals and against an independent
 //! calculator.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 use hertzchain_experiment::units::{parse_quantity, parse_unit};
 use proptest::prelude::*;
