@@ -8,6 +8,8 @@
 //! end; positions and velocities point from the striker to the wall.
 
 pub mod chain;
+pub mod ensemble;
+pub mod instruction_set;
 pub mod laws;
 pub mod material;
 pub mod motion;
@@ -18,6 +20,7 @@ pub mod theory;
 pub mod wave;
 
 pub use chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension};
+pub use instruction_set::InstructionSet;
 pub use material::{Material, Pair};
 pub use motion::Motion;
 pub use sensor::Sensor;

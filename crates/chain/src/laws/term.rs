@@ -2,6 +2,8 @@
 //! [`Law`], which the wave loop calls.
 
 use crate::material::Pair;
+use crate::instruction_set::InstructionSet;
+use fearless_simd::{dispatch, prelude::*};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -145,6 +147,31 @@ impl Columns {
         }
     }
 
+    /// Coefficients a row.
+    pub(crate) fn width(&self) -> usize {
+        self.values.len() / self.contacts.max(1)
+    }
+
+    /// One coefficient of all rows.
+    pub(crate) fn column(&self, j: usize) -> &[f64] {
+        &self.values[j * self.contacts..][..self.contacts]
+    }
+
+    /// The rows of equally many contacts of several chains, side by side.
+    pub(crate) fn interleaved<'a>(lanes: impl Iterator<Item = &'a Self>) -> Self {
+        let lanes: Vec<&Self> = lanes.collect();
+        let contacts = lanes.first().map_or(0, |columns| columns.contacts);
+        let width = lanes.first().map_or(0, |columns| columns.width());
+        let rows = (0..width).flat_map(|j| (0..contacts).map(move |c| (j, c)));
+        let values = rows
+            .flat_map(|(j, c)| lanes.iter().map(move |columns| columns.column(j)[c]))
+            .collect();
+        Self {
+            values,
+            contacts: contacts * lanes.len(),
+        }
+    }
+
     fn slices<const C: usize>(&self, first: usize, count: usize) -> [&[f64]; C] {
         std::array::from_fn(|j| &self.values[j * self.contacts + first..][..count])
     }
@@ -180,13 +207,42 @@ pub trait Law: Debug + Send + Sync {
 
     /// Adds the forces of consecutive contacts, the first being row `first`
     /// of the columns, to `force_n`.
-    fn add_forces(&self, k: &Columns, first: usize, contacts: Contacts<'_>, force_n: &mut [f64]);
+    fn add_forces(
+        &self,
+        set: InstructionSet,
+        k: &Columns,
+        first: usize,
+        contacts: Contacts<'_>,
+        force_n: &mut [f64],
+    );
 
     /// Force in N of one contact.
     fn force(&self, k: &Columns, at: usize, contact: Closed) -> f64;
 
     /// Energy in J that one contact would give back.
     fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64;
+}
+
+/// The loop over contacts, compiled anew for every instruction set.
+#[inline(always)]
+fn add_forces<T: Term<C>, const C: usize>(
+    k: [&[f64]; C],
+    contacts: Contacts<'_>,
+    force_n: &mut [f64],
+) {
+    let n = force_n.len();
+    let (overlap, root) = (&contacts.overlap[..n], &contacts.root[..n]);
+    let (rate, largest) = (&contacts.rate[..n], &contacts.largest[..n]);
+    for i in 0..n {
+        let row = std::array::from_fn(|j| k[j][i]);
+        let contact = Closed {
+            overlap: overlap[i],
+            root: root[i],
+            rate: rate[i],
+            largest: largest[i],
+        };
+        force_n[i] += T::force(&row, contact);
+    }
 }
 
 /// Makes a [`Term`] callable by the loop.
@@ -211,21 +267,19 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
         }
     }
 
-    fn add_forces(&self, k: &Columns, first: usize, contacts: Contacts<'_>, force_n: &mut [f64]) {
-        let n = force_n.len();
-        let k = k.slices::<C>(first, n);
-        let (overlap, root) = (&contacts.overlap[..n], &contacts.root[..n]);
-        let (rate, largest) = (&contacts.rate[..n], &contacts.largest[..n]);
-        for i in 0..n {
-            let row = std::array::from_fn(|j| k[j][i]);
-            let contact = Closed {
-                overlap: overlap[i],
-                root: root[i],
-                rate: rate[i],
-                largest: largest[i],
-            };
-            force_n[i] += T::force(&row, contact);
-        }
+    fn add_forces(
+        &self,
+        set: InstructionSet,
+        k: &Columns,
+        first: usize,
+        contacts: Contacts<'_>,
+        force_n: &mut [f64],
+    ) {
+        let k = k.slices::<C>(first, force_n.len());
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || add_forces::<T, C>(k, contacts, force_n)
+        ));
     }
 
     fn force(&self, k: &Columns, at: usize, contact: Closed) -> f64 {

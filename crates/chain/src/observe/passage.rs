@@ -91,6 +91,21 @@ impl Passages {
         }
     }
 
+    /// From the signals of a sensor bead and of the wall, followed until a time in s.
+    #[must_use]
+    pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64) -> Self {
+        let mut passages = Self {
+            sensor,
+            wall,
+            ends_shot: false,
+            until_s,
+            seen: (0, 0),
+            best: None,
+        };
+        passages.update();
+        passages
+    }
+
     /// The sensor bead's signal.
     #[must_use]
     pub fn sensor(&self) -> &Signal {

@@ -89,6 +89,15 @@ impl Signal {
         }
     }
 
+    /// From parts that were found otherwise.
+    pub(crate) fn assembled(sensor: Sensor, stretches: Vec<Stretch>, maxima: Vec<Maximum>) -> Self {
+        Self {
+            stretches,
+            maxima,
+            ..Self::new(sensor)
+        }
+    }
+
     /// The sensor.
     #[must_use]
     pub fn sensor(&self) -> Sensor {

@@ -12,6 +12,7 @@ pub use statics::StaticContact;
 use crate::chain::{Chain, ChainError, Tension};
 use crate::laws::{Columns, Law};
 use crate::motion::Motion;
+use crate::sensor::Sensor;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -121,6 +122,40 @@ impl System {
         self.offset_m
             .get(contact)
             .is_some_and(|offset| offset.is_finite())
+    }
+
+    /// Whether the chain has a place for a sensor.
+    #[must_use]
+    pub fn has(&self, sensor: Sensor) -> bool {
+        let bead = |n: usize| (1..=self.beads()).contains(&n);
+        match sensor {
+            Sensor::Bead(n) | Sensor::BeadPlusWall(n) => bead(n),
+            Sensor::Contact(c) => self.has_contact(c),
+            Sensor::Position(i) | Sensor::Velocity(i) => i < self.bodies(),
+        }
+    }
+
+    /// Whether two chains differ in numbers alone, so that they can run side
+    /// by side.
+    #[must_use]
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let names = |terms: &[TermColumns]| -> Vec<&str> {
+            terms.iter().map(|term| term.law.info().name).collect()
+        };
+        let alike = |(one, two): (&SectionColumns, &SectionColumns)| {
+            one.contacts == two.contacts
+                && names(&one.gated) == names(&two.gated)
+                && names(&one.ungated) == names(&two.ungated)
+        };
+        self.bodies() == other.bodies()
+            && self.sections.len() == other.sections.len()
+            && self.sections.iter().zip(&other.sections).all(alike)
+            && self.tension == other.tension
+            && self.periodic == other.periodic
+            && self.has_striker == other.has_striker
+            && self.spring.is_some() == other.spring.is_some()
+            && (self.slope_m_s2 != 0.0) == (other.slope_m_s2 != 0.0)
+            && (self.pendulum_per_s2 > 0.0) == (other.pendulum_per_s2 > 0.0)
     }
 
     /// Characteristic speed and time.

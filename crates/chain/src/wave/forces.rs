@@ -2,8 +2,10 @@
 
 use super::state::State;
 use crate::chain::Tension;
+use crate::instruction_set::InstructionSet;
 use crate::laws::Contacts;
 use crate::system::{FLUSH, System};
+
 use std::ops::Range;
 
 /// Whether gates keep the mode they had when the step began.
@@ -34,6 +36,7 @@ pub(crate) struct Pass {
     pub passing: Vec<f64>,
     pub touching: Vec<f64>,
     pub scratch: Vec<f64>,
+    pub set: InstructionSet,
 }
 
 impl Pass {
@@ -51,6 +54,7 @@ impl Pass {
             passing: contacts(),
             touching: contacts(),
             scratch: contacts(),
+            set: InstructionSet::default(),
         }
     }
 
@@ -153,11 +157,11 @@ impl Pass {
             };
             for term in &section.gated {
                 let force = &mut self.closed_force[part.clone()];
-                term.law.add_forces(&term.columns, first, seen, force);
+                term.law.add_forces(self.set, &term.columns, first, seen, force);
             }
             for term in &section.ungated {
                 let force = &mut self.across[part.clone()];
-                term.law.add_forces(&term.columns, first, seen, force);
+                term.law.add_forces(self.set, &term.columns, first, seen, force);
             }
         }
     }

@@ -166,6 +166,7 @@ fn term_power(
         largest: &pass.largest[contacts.clone()],
     };
     term.law.add_forces(
+        pass.set,
         &term.columns,
         contacts.start - section.contacts.start,
         seen,

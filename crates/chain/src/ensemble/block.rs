@@ -1,0 +1,275 @@
+//! Eight shots side by side, or one alone: all that changes from step to step.
+
+use super::bodies::{Motion, Scaled};
+use super::changes::{Changes, excess};
+use super::column::{Column, WIDTH, chunks};
+use super::section::{Place, Sweep, section};
+use super::weights::Schedule;
+use super::window::Window;
+use crate::instruction_set::InstructionSet;
+use crate::sensor::Sensor;
+use crate::system::System;
+
+/// State of a block of shots.
+pub(super) struct Block<'a> {
+    systems: &'a [&'a System],
+    lanes: usize,
+    set: InstructionSet,
+    schedule: &'a Schedule,
+    /// Full step of each lane in s.
+    step_s: [f64; WIDTH],
+    weights: Scaled,
+    motion: Motion,
+    offset_m: Column,
+    /// Minus the static forces; `None` where there are none.
+    at_rest: Option<Vec<f64>>,
+    sections: Vec<Box<dyn Sweep>>,
+    /// Dynamic force of contact c at (c + 1) · lanes; 0 before the first.
+    force_n: Vec<f64>,
+    window: Window,
+    changes: Option<Changes>,
+    /// Steps made.
+    pub steps: usize,
+    /// Bodies summed over steps, of all lanes.
+    pub bodies_passed: u64,
+}
+
+impl<'a> Block<'a> {
+    /// Shots of systems that share their shape; one or [`WIDTH`] of them.
+    pub fn new(
+        systems: &'a [&'a System],
+        step_s: &[f64],
+        schedule: &'a Schedule,
+        set: InstructionSet,
+        (whole_chain, follow_changes): (bool, bool),
+    ) -> Self {
+        let (lanes, first) = (systems.len(), systems[0]);
+        let (bodies, contacts) = (first.bodies(), first.contacts());
+        let flat = (chunks(bodies, lanes) + 1) * WIDTH;
+        let scatter = |of: &dyn Fn(usize, usize) -> f64, count: usize| {
+            let mut values = vec![0.0; flat];
+            for j in 0..count {
+                for lane in 0..lanes {
+                    values[j * lanes + lane] = of(j, lane);
+                }
+            }
+            values
+        };
+        let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
+        let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
+        let at_rest = scatter(&|c, lane| -systems[lane].static_force_n[c], contacts);
+        let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
+        let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {
+            let offset = systems[lane].offset_m.get(c).copied();
+            offset.unwrap_or(f64::NEG_INFINITY)
+        });
+        let step_s = std::array::from_fn(|lane| step_s[lane % lanes]);
+        let inverse = |j: usize, lane: usize| systems[lane].inverse_mass[j];
+        let mut block = Self {
+            changes: follow_changes.then(|| Changes::new(chunks(bodies, lanes))),
+            window: Window::new(systems, (&x, &v), whole_chain),
+            motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
+            weights: Scaled::new(schedule.row(0), &step_s),
+            at_rest: at_rest.iter().any(|&force| force != 0.0).then_some(at_rest),
+            sections: (0..first.sections.len()).map(|i| section(systems, i)).collect(),
+            force_n: vec![0.0; flat + WIDTH],
+            step_s,
+            offset_m,
+            systems,
+            lanes,
+            set,
+            schedule,
+            steps: 0,
+            bodies_passed: 0,
+        };
+        block.forces();
+        block.look_at_changes(false);
+        block
+    }
+
+    /// Time of a lane at a step, in s.
+    pub fn time_s(&self, lane: usize, step: usize) -> f64 {
+        self.step_s[lane] * self.schedule.time(step)
+    }
+
+    /// One step of all lanes; the forces are then those of the new positions.
+    pub fn step(&mut self) {
+        self.push();
+        if self.steps <= self.schedule.last_row() {
+            self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
+        }
+        let moving = (self.window.chunks, self.lanes);
+        self.motion.step(self.set, moving, &self.force_n, &self.weights);
+        self.close_ring();
+        self.window.follow(&self.motion.v);
+        self.forces();
+        self.look_at_changes(true);
+        self.steps += 1;
+        self.bodies_passed += (self.window.chunks * WIDTH) as u64;
+    }
+
+    /// Forces of all contacts that move.
+    fn forces(&mut self) {
+        let lanes = self.lanes;
+        let moving = self.window.chunks;
+        let force = &mut self.force_n[lanes..][..moving * WIDTH];
+        // With eight lanes and no load each chunk belongs to one section.
+        let fresh = lanes == WIDTH && self.at_rest.is_none();
+        match &self.at_rest {
+            Some(at_rest) => force.copy_from_slice(&at_rest[..moving * WIDTH]),
+            None if !fresh => force.fill(0.0),
+            None => {}
+        }
+        let place = Place {
+            offset_m: &self.offset_m,
+            lanes,
+            moving,
+            fresh,
+            x: &self.motion.x,
+            v: &self.motion.v,
+        };
+        for section in &mut self.sections {
+            section.add(self.set, &place, force);
+        }
+        if self.systems[0].periodic {
+            let last = self.systems[0].contacts() * lanes;
+            self.force_n.copy_within(last..last + lanes, lanes);
+        }
+    }
+
+    /// Takes back what openings and closings within the last step gave too much.
+    fn look_at_changes(&mut self, correct: bool) {
+        let Some(changes) = &mut self.changes else {
+            return;
+        };
+        let moving = (self.window.chunks, self.lanes);
+        let changed = changes.look(self.set, moving, &self.offset_m, &self.motion.x);
+        let lanes = self.lanes;
+        for &at in changed.iter().filter(|_| correct) {
+            let (contact, lane) = (at / lanes, at % lanes);
+            let system = self.systems[lane];
+            if contact >= system.contacts() {
+                continue;
+            }
+            let (x, v, f) = (&self.motion.x, &self.motion.v, &self.force_n);
+            let depth = system.offset_m[contact] - (x[at + lanes] - x[at]);
+            let masses = [contact, contact + 1].map(|body| system.inverse_mass[body]);
+            let [before, own, after] = [at, at + lanes, at + 2 * lanes].map(|i| f[i]);
+            let change = (before - own) * masses[0] - (own - after) * masses[1];
+            let motion = (depth, v[at] - v[at + lanes], change);
+            let length = self.step_s[lane] * self.schedule.row(self.steps).drift;
+            let excess = excess(system, contact, motion, length);
+            self.motion.v[at] += excess * masses[0];
+            self.motion.v[at + lanes] -= excess * masses[1];
+        }
+    }
+
+    /// In a ring the last body is bead 1 again.
+    fn close_ring(&mut self) {
+        if self.systems[0].periodic {
+            let (lanes, last) = (self.lanes, self.systems[0].bodies() - 1);
+            for values in [&mut self.motion.x, &mut self.motion.v] {
+                values.copy_within(lanes..2 * lanes, last * lanes);
+            }
+            self.motion.newest_mut().copy_within(lanes..2 * lanes, last * lanes);
+        }
+    }
+
+    /// What acts on single bodies beside contacts: the striker's weight, the
+    /// spring on bead 1, threads.
+    fn push(&mut self) {
+        let Some(external) = &mut self.motion.external else {
+            return;
+        };
+        for (lane, system) in self.systems.iter().enumerate() {
+            let bodies = if system.pendulum_per_s2 > 0.0 { system.bodies() } else { 2 };
+            for body in 0..bodies {
+                let at = body * self.lanes + lane;
+                external[at] = pushed(system, body, self.motion.x[at]);
+            }
+        }
+    }
+
+    /// What a sensor shows now in every lane.
+    #[inline]
+    pub fn signals(&self, sensor: Sensor, row: &mut [f64]) {
+        let lanes = row.len();
+        let of = |values: &'_ [f64], at: usize, row: &mut [f64]| {
+            row.copy_from_slice(&values[at * lanes..][..lanes]);
+        };
+        let wall = self.systems[0].contacts();
+        match sensor {
+            Sensor::Bead(n) => self.bead(n, row),
+            Sensor::Contact(c) => of(&self.force_n, c + 1, row),
+            Sensor::Position(i) => of(&self.motion.x, i, row),
+            Sensor::Velocity(i) => of(&self.motion.v, i, row),
+            Sensor::BeadPlusWall(n) => {
+                self.bead(n, row);
+                for (value, wall) in row.iter_mut().zip(&self.force_n[wall * lanes..]) {
+                    *value += wall;
+                }
+            }
+        }
+    }
+
+    /// Mean force of a bead's two contacts.
+    fn bead(&self, n: usize, row: &mut [f64]) {
+        let lanes = row.len();
+        // In a ring the contact before bead 1 is the last, whose force is also
+        // kept in the place of contact 0.
+        let (left, right) = (&self.force_n[n * lanes..], &self.force_n[(n + 1) * lanes..]);
+        for (value, (left, right)) in row.iter_mut().zip(left.iter().zip(right)) {
+            *value = 0.5 * (left + right);
+        }
+    }
+
+    /// Velocities of all bodies of a lane in m/s.
+    pub fn velocities(&self, lane: usize) -> impl Iterator<Item = f64> + '_ {
+        (0..self.systems[0].bodies()).map(move |body| self.motion.v[body * self.lanes + lane])
+    }
+
+    /// How much correcting the last step changed any velocity of each lane, in
+    /// m/s; NaN where anything is.
+    pub fn corrections(&self) -> [f64; WIDTH] {
+        let weights = &self.schedule.row(self.steps.saturating_sub(1)).residual;
+        let mut worst = [0.0_f64; WIDTH];
+        for at in (0..self.window.chunks * WIDTH).step_by(WIDTH) {
+            let mut change = [0.0; WIDTH];
+            for (age, weight) in weights.iter().enumerate() {
+                let a = &self.motion.accelerations(age)[at..at + WIDTH];
+                for (change, a) in change.iter_mut().zip(a) {
+                    *change += weight * a;
+                }
+            }
+            for (worst, change) in worst.iter_mut().zip(change) {
+                // Also keeps a NaN, which `max` would not.
+                *worst = if change.abs() <= *worst { *worst } else { change.abs() };
+            }
+        }
+        self.per_lane(worst)
+    }
+
+    /// The largest of what belongs to a lane, in units of its step.
+    fn per_lane(&self, worst: [f64; WIDTH]) -> [f64; WIDTH] {
+        std::array::from_fn(|lane| {
+            let own = (lane..WIDTH).step_by(self.lanes).map(|at| worst[at]);
+            self.step_s[lane] * own.fold(0.0, |a, b| if b <= a { a } else { b })
+        })
+    }
+}
+
+/// Acceleration in m/s² of a body by what is not a contact.
+fn pushed(system: &System, body: usize, x_m: f64) -> f64 {
+    let mut a = 0.0;
+    if body == 0 && system.has_striker {
+        a += system.slope_m_s2;
+    }
+    if let Some(spring) = system.spring.filter(|_| body == 1) {
+        // Against the force at rest; a spring never pulls.
+        a += (-spring.stiffness_n_m * x_m).max(-spring.force_n) * system.inverse_mass[1];
+    }
+    if system.hangs(body) {
+        a -= system.pendulum_per_s2 * x_m;
+    }
+    a
+}

@@ -1,0 +1,310 @@
+//! Firing shots: blocks of lanes, each lane to its own end.
+
+use super::LANES;
+use super::block::Block;
+use super::passing::{End, Passing};
+use super::peaks::{Clock, signal};
+use super::record::Recorder;
+use super::weights::Schedule;
+use crate::instruction_set::InstructionSet;
+use crate::observe::Signal;
+use crate::sensor::Sensor;
+use crate::system::System;
+use crate::wave::Work;
+
+/// How shots are fired.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Step in contact times of each shot ([`crate::system::Scales::time_s`]).
+    pub step: f64,
+    /// What to watch; for an end other than [`End::Duration`] the sensor that
+    /// times the pulse comes first and the wall second.
+    pub sensors: Vec<Sensor>,
+    /// Longest duration of each shot in s, in the order of the shots.
+    pub durations_s: Vec<f64>,
+    /// When a shot is over before that.
+    pub end: End,
+    /// Vector instructions.
+    pub set: InstructionSet,
+    /// Step also what nothing has reached.
+    pub whole_chain: bool,
+    /// Take openings and closings between steps into account.
+    pub changes: bool,
+}
+
+/// Why a shot could not be fired.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EnsembleError {
+    /// The loop has no driven ends.
+    #[error("a driven end cannot be followed with equal steps")]
+    Driven,
+    /// A sensor that the chain does not have.
+    #[error("the chain has no {sensor:?}")]
+    Sensor {
+        /// The sensor.
+        sensor: Sensor,
+    },
+    /// A step or duration with which nothing can be computed.
+    #[error("{what} = {value} must be positive and finite")]
+    Setting {
+        /// Which one.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A number stopped being finite.
+    #[error("the motion is not finite after t = {time_s:e} s: the step of {step_s:e} s is too long for this chain")]
+    NotFinite {
+        /// Time of the look that found it, in s.
+        time_s: f64,
+        /// Step in s.
+        step_s: f64,
+    },
+}
+
+/// One shot to its end.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// What each sensor showed.
+    pub signals: Vec<Signal>,
+    /// Duration in s.
+    pub time_s: f64,
+    /// Whether the shot came to its own end before its longest duration.
+    pub finished: bool,
+    /// Velocities of all bodies at the end in m/s.
+    pub velocity_m_s: Vec<f64>,
+    /// Step in s.
+    pub step_s: f64,
+    /// Largest correction of a velocity by a single step, as a fraction of
+    /// the speed that set the chain in motion, at the steps looked at.
+    pub correction: f64,
+    /// What it cost.
+    pub work: Work,
+}
+
+/// Steps between looks at whether a shot is over.
+const LOOK_EVERY: usize = 16;
+
+/// Steps between looks at how good the steps are.
+const CORRECTION_EVERY: usize = 64;
+
+/// Most rows that are reserved before a shot; longer shots allocate as they go.
+const RESERVED: usize = 1 << 16;
+
+/// Fires shots: eight side by side where the chains have the same shape, one
+/// alone otherwise. Results are in order; a shot that fails stops no other.
+#[must_use]
+pub fn fire(systems: &[&System], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
+    let schedule = Schedule::new();
+    let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; systems.len()];
+    let mut ready = Vec::new();
+    for (shot, system) in systems.iter().enumerate() {
+        match check(system, settings, shot) {
+            Ok(()) => ready.push(shot),
+            Err(error) => flown[shot] = Some(Err(error)),
+        }
+    }
+    while let Some(&first) = ready.first() {
+        let alike = |shot: &&usize| systems[first].has_shape_of(systems[**shot]);
+        let block: Vec<usize> = ready.iter().filter(alike).take(LANES).copied().collect();
+        ready.retain(|shot| !block.contains(shot));
+        let results = fire_block(systems, &block, settings, &schedule);
+        for (shot, result) in block.into_iter().zip(results) {
+            flown[shot] = Some(result);
+        }
+    }
+    flown.into_iter().flatten().collect()
+}
+
+fn check(system: &System, settings: &Settings, shot: usize) -> Result<(), EnsembleError> {
+    let setting = |what, value: f64| match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(EnsembleError::Setting { what, value }),
+    };
+    setting("step in contact times", settings.step)?;
+    setting("duration in s", settings.durations_s.get(shot).copied().unwrap_or(f64::NAN))?;
+    if system.motion.is_some() {
+        return Err(EnsembleError::Driven);
+    }
+    let missing = settings.sensors.iter().find(|sensor| !system.has(**sensor));
+    missing.map_or(Ok(()), |&sensor| Err(EnsembleError::Sensor { sensor }))
+}
+
+/// One lane until its end.
+#[derive(Clone, Debug)]
+struct Lane {
+    passing: Passing,
+    last_step: usize,
+    correction: f64,
+    velocity_m_s: Vec<f64>,
+    state: State,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    Flying,
+    Finished { step: usize, early: bool },
+    Failed { step: usize },
+}
+
+/// Fires up to eight alike shots.
+fn fire_block(
+    systems: &[&System],
+    shots: &[usize],
+    settings: &Settings,
+    schedule: &Schedule,
+) -> Vec<Result<Flown, EnsembleError>> {
+    // One shot runs alone; several fill the lanes, the last ones idly.
+    let lanes = if shots.len() == 1 { 1 } else { LANES };
+    let of = |lane: usize| shots[lane.min(shots.len() - 1)];
+    let fired: Vec<&System> = (0..lanes).map(|lane| systems[of(lane)]).collect();
+    let steps_s: Vec<f64> = fired.iter().map(|s| settings.step * s.scales().time_s).collect();
+    let last = |lane: usize| last_step(settings.durations_s[of(lane)], steps_s[lane]);
+    let mut flying: Vec<Lane> = (0..shots.len()).map(|lane| Lane::new(last(lane), fired[0].bodies())).collect();
+    let most = flying.iter().map(|lane| lane.last_step).max().unwrap_or(0);
+    let mut recorder = Recorder::new(&settings.sensors, lanes, most.min(RESERVED));
+    let mut block = Block::new(&fired, &steps_s, schedule, settings.set, (settings.whole_chain, settings.changes));
+    fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
+    let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
+    let result = |(at, lane): (usize, Lane)| {
+        let clock = Clock { schedule, step_s: steps_s[at] };
+        lane.flown(std::mem::take(&mut signals[at]), clock)
+    };
+    let mut results: Vec<_> = flying.into_iter().enumerate().map(result).collect();
+    for flown in results.iter_mut().flatten() {
+        flown.work.bodies_passed = block.bodies_passed / lanes as u64;
+    }
+    results
+}
+
+/// What the sensors showed, lane by lane.
+fn signals(
+    recorder: &Recorder,
+    lanes: &[Lane],
+    (systems, steps_s): (&[&System], &[f64]),
+    settings: &Settings,
+    schedule: &Schedule,
+) -> Vec<Vec<Signal>> {
+    let mut signals = vec![Vec::with_capacity(settings.sensors.len()); lanes.len()];
+    for (index, &sensor) in settings.sensors.iter().enumerate() {
+        let (first, samples) = recorder.by_lane(index);
+        for (at, (signals, samples)) in signals.iter_mut().zip(samples).enumerate() {
+            let silent = match sensor {
+                Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
+                _ => systems[at].scales().silent_force_n,
+            };
+            let step_s = steps_s[at];
+            let seen = (lanes[at].ended() + 1).saturating_sub(first).min(samples.len());
+            let clock = Clock { schedule, step_s };
+            signals.push(signal(sensor, &samples[..seen], first, clock, silent));
+        }
+    }
+    signals
+}
+
+/// Steps until a duration is over, at the next look.
+fn last_step(duration_s: f64, step_s: f64) -> usize {
+    let steps = (duration_s / step_s).min(1e15).ceil() as usize + LOOK_EVERY;
+    steps.next_multiple_of(LOOK_EVERY)
+}
+
+/// Steps until every lane has come to its end. Nothing is allocated here.
+fn fly(
+    block: &mut Block<'_>,
+    recorder: &mut Recorder,
+    lanes: &mut [Lane],
+    end: End,
+    systems: &[&System],
+) {
+    while lanes.iter().any(|lane| lane.state == State::Flying) {
+        for _ in 0..LOOK_EVERY {
+            block.step();
+            recorder.add(block);
+        }
+        if block.steps.is_multiple_of(CORRECTION_EVERY) {
+            let corrections = block.corrections();
+            let flying = lanes.iter_mut().zip(corrections).zip(systems);
+            for ((lane, correction), system) in flying {
+                lane.correct(block.steps, correction / system.scales().speed_m_s);
+            }
+        }
+        for (at, lane) in lanes.iter_mut().enumerate() {
+            if lane.state == State::Flying {
+                lane.look(block, recorder, at, end, systems[at]);
+            }
+        }
+        recorder.looked();
+    }
+}
+
+impl Lane {
+    fn new(last_step: usize, bodies: usize) -> Self {
+        Self {
+            passing: Passing::default(),
+            last_step,
+            correction: 0.0,
+            velocity_m_s: Vec::with_capacity(bodies),
+            state: State::Flying,
+        }
+    }
+
+    /// Notes how good the last step was.
+    fn correct(&mut self, step: usize, correction: f64) {
+        if self.state == State::Flying {
+            self.correction = self.correction.max(correction);
+            if !correction.is_finite() {
+                self.state = State::Failed { step };
+            }
+        }
+    }
+
+    fn look(&mut self, block: &Block<'_>, recorder: &Recorder, at: usize, end: End, system: &System) {
+        let step = block.steps;
+        let early = end != End::Duration && {
+            let (sensor, wall) = (recorder.samples(0, at), recorder.samples(1, at));
+            self.passing.look(sensor, wall, step);
+            self.passing.is_over(end, system.scales().silent_force_n)
+        };
+        if early || step >= self.last_step {
+            self.velocity_m_s.extend(block.velocities(at));
+            self.state = State::Finished { step, early };
+        }
+    }
+
+    /// Step at which the lane came to its end.
+    fn ended(&self) -> usize {
+        match self.state {
+            State::Finished { step, .. } | State::Failed { step } => step,
+            State::Flying => self.last_step,
+        }
+    }
+
+    fn flown(self, signals: Vec<Signal>, clock: Clock<'_>) -> Result<Flown, EnsembleError> {
+        let (step, finished) = match self.state {
+            State::Finished { step, early } => (step, early),
+            State::Flying => (self.last_step, false),
+            State::Failed { step } => {
+                let (time_s, step_s) = (clock.time_s(step), clock.step_s);
+                return Err(EnsembleError::NotFinite { time_s, step_s });
+            }
+        };
+        let finite = self.velocity_m_s.iter().all(|v| v.is_finite());
+        if !finite {
+            let (time_s, step_s) = (clock.time_s(step), clock.step_s);
+            return Err(EnsembleError::NotFinite { time_s, step_s });
+        }
+        Ok(Flown {
+            signals,
+            time_s: clock.time_s(step),
+            finished,
+            velocity_m_s: self.velocity_m_s,
+            step_s: clock.step_s,
+            correction: self.correction,
+            work: Work {
+                force_passes: step as u64 + 1,
+                steps: step as u64,
+                ..Work::default()
+            },
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! Whether the reflected pulse has passed, from samples alone.
+
+use super::record::Samples;
+use std::ops::Range;
+
+/// When a shot is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// After its duration.
+    Duration,
+    /// When no later maximum of the first sensor can be the reflected pulse:
+    /// later than tw + 3 (tw − t7). The second sensor is the wall.
+    Reflected,
+    /// When the first sensor has fallen below 5 % of its maximum since the
+    /// wall's peak, once the pulse has had the time to return. A later and
+    /// larger maximum, which is then not seen, would be none of the first
+    /// pulse to return.
+    Passed,
+}
+
+/// The sensor signal has passed below this fraction of its maximum.
+const FALLEN: f64 = 0.05;
+
+/// A pulse takes at least this share of its way to the wall to come back.
+const SOONEST: f64 = 0.8;
+
+/// The reflected pulse comes within this many times the way to the wall.
+const LATEST: f64 = 3.0;
+
+/// Samples after a maximum that its interpolation may use.
+const MARGIN: usize = 8;
+
+/// The largest sample so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Peak {
+    value: f64,
+    step: usize,
+}
+
+impl Peak {
+    fn look(&mut self, value: f64, step: usize) -> bool {
+        let larger = value > self.value;
+        if larger {
+            *self = Self { value, step };
+        }
+        larger
+    }
+}
+
+/// Follows the pulse of one lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Passing {
+    incident: Peak,
+    wall: Peak,
+    returned: Peak,
+    /// The sensor's latest sample.
+    now: f64,
+    seen: usize,
+}
+
+impl Passing {
+    /// Looks at the samples up to a step, closely where any is the largest yet.
+    pub fn look(&mut self, sensor: Samples<'_>, wall: Samples<'_>, step: usize) {
+        let unseen = self.seen + 1..step + 1;
+        if wall.crest() > self.wall.value {
+            for (at, value) in wall.of(unseen.clone()) {
+                self.wall.look(value, at);
+            }
+            self.returned = Peak::default();
+        }
+        if sensor.crest() > self.incident.value.min(self.returned.value) {
+            self.look_at_sensor(sensor, unseen);
+        }
+        self.now = sensor.latest();
+        self.seen = step;
+    }
+
+    /// Before the wall's peak the largest sample is that of the pulse going
+    /// in, long after it that of the pulse coming back.
+    fn look_at_sensor(&mut self, sensor: Samples<'_>, unseen: Range<usize>) {
+        let back = self.wall.step as f64 + SOONEST * self.way();
+        for (at, value) in sensor.of(unseen) {
+            if at < self.wall.step || self.wall.value == 0.0 {
+                self.incident.look(value, at);
+            }
+            if self.wall.value > 0.0 && at as f64 > back {
+                self.returned.look(value, at);
+            }
+        }
+    }
+
+    /// Steps from the incident peak to the wall's.
+    fn way(&self) -> f64 {
+        (self.wall.step - self.incident.step) as f64
+    }
+
+    /// Whether the shot is over.
+    pub fn is_over(&self, end: End, silent_n: f64) -> bool {
+        if end == End::Duration || self.wall.value <= silent_n || self.incident.value <= silent_n {
+            return false;
+        }
+        let too_late = self.wall.step as f64 + LATEST * self.way();
+        let back = self.returned;
+        let passed = back.value > silent_n
+            && self.now < FALLEN * back.value
+            && self.seen > back.step + MARGIN;
+        self.seen as f64 > too_late + MARGIN as f64 || (end == End::Passed && passed)
+    }
+}

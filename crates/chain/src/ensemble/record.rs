@@ -1,0 +1,120 @@
+//! What sensors showed, one row of lanes a step.
+
+use super::block::Block;
+use super::column::WIDTH;
+use crate::sensor::Sensor;
+use std::ops::Range;
+
+/// Rows of one sensor, from the first that is not 0 in every lane.
+#[derive(Clone, Debug)]
+struct Rows {
+    first: usize,
+    values: Vec<f64>,
+    /// Largest of each lane since the last look.
+    crest: [f64; WIDTH],
+}
+
+/// Records sensors of all lanes.
+#[derive(Clone, Debug)]
+pub(super) struct Recorder {
+    lanes: usize,
+    sensors: Vec<Sensor>,
+    rows: Vec<Rows>,
+}
+
+impl Recorder {
+    /// With room for `steps` samples, so that the loop allocates nothing.
+    pub fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
+        let rows = |_: &Sensor| Rows {
+            first: 0,
+            values: Vec::with_capacity((steps + 1) * lanes),
+            crest: [0.0; WIDTH],
+        };
+        Self {
+            lanes,
+            rows: sensors.iter().map(rows).collect(),
+            sensors: sensors.to_vec(),
+        }
+    }
+
+    /// Adds what all sensors show now.
+    #[inline]
+    pub fn add(&mut self, block: &Block<'_>) {
+        for (sensor, rows) in self.sensors.iter().zip(&mut self.rows) {
+            let mut row = [0.0; WIDTH];
+            block.signals(*sensor, &mut row[..self.lanes]);
+            if rows.values.is_empty() {
+                if row == [0.0; WIDTH] {
+                    continue;
+                }
+                rows.first = block.steps;
+            }
+            for (crest, value) in rows.crest.iter_mut().zip(row) {
+                *crest = crest.max(value);
+            }
+            rows.values.extend_from_slice(&row[..self.lanes]);
+        }
+    }
+
+    /// Samples of a sensor, by its place in the list, in a lane.
+    pub fn samples(&self, sensor: usize, lane: usize) -> Samples<'_> {
+        Samples {
+            rows: &self.rows[sensor],
+            lanes: self.lanes,
+            lane,
+        }
+    }
+
+    /// Begins a new stretch between looks.
+    pub fn looked(&mut self) {
+        for rows in &mut self.rows {
+            rows.crest = [0.0; WIDTH];
+        }
+    }
+
+    /// Step of a sensor's first sample and its samples, lane by lane.
+    pub fn by_lane(&self, sensor: usize) -> (usize, Vec<Vec<f64>>) {
+        let rows = &self.rows[sensor];
+        let count = rows.values.len() / self.lanes;
+        let mut lanes = vec![Vec::with_capacity(count); self.lanes];
+        for row in rows.values.chunks_exact(self.lanes) {
+            for (lane, value) in lanes.iter_mut().zip(row) {
+                lane.push(*value);
+            }
+        }
+        (rows.first, lanes)
+    }
+}
+
+/// Samples of one sensor in one lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Samples<'a> {
+    rows: &'a Rows,
+    lanes: usize,
+    lane: usize,
+}
+
+impl<'a> Samples<'a> {
+    /// The largest since the last look.
+    pub fn crest(self) -> f64 {
+        self.rows.crest[self.lane]
+    }
+
+    /// The latest, 0 before the first.
+    pub fn latest(self) -> f64 {
+        let before_end = self.lanes - self.lane;
+        let at = self.rows.values.len().checked_sub(before_end);
+        at.map_or(0.0, |at| self.rows.values[at])
+    }
+
+    /// The samples of some steps, as far as there are any.
+    pub fn of(self, steps: Range<usize>) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let first = self.rows.first;
+        let from = steps.start.max(first);
+        let row = (from - first) * self.lanes + self.lane;
+        let values = self.rows.values.get(row..).unwrap_or_default();
+        let count = steps.end.saturating_sub(from);
+        let values = values.iter().step_by(self.lanes).take(count);
+        values.enumerate().map(move |(i, &value)| (from + i, value))
+    }
+}
