@@ -1,14 +1,22 @@
 //! Eight shots side by side, or one alone: all that changes from step to step.
 
 use super::bodies::{Motion, Scaled};
-use super::changes::{Changes, excess};
+use super::changes::{Changes, Opening};
 use super::column::{Column, WIDTH, chunks};
+use super::edge::{Edge, Leading};
 use super::section::{Place, Sweep, section};
-use super::weights::Schedule;
+use super::weights::{Schedule, USED};
 use super::window::Window;
 use crate::instruction_set::InstructionSet;
+use crate::laws::Closed;
 use crate::sensor::Sensor;
 use crate::system::System;
+
+/// Edges below this fraction of the shot's speed are left as they are.
+const SLIGHT: f64 = 1e-10;
+
+/// Most edges that disturb steps at a time without memory being asked for.
+const RESERVED: usize = 1024;
 
 /// State of a block of shots.
 pub(super) struct Block<'a> {
@@ -28,6 +36,8 @@ pub(super) struct Block<'a> {
     force_n: Vec<f64>,
     window: Window,
     changes: Option<Changes>,
+    /// Edges that still disturb steps: where, the edge, steps since.
+    edges: Vec<(usize, Edge, usize)>,
     /// Steps made.
     pub steps: usize,
     /// Bodies summed over steps, of all lanes.
@@ -66,12 +76,15 @@ impl<'a> Block<'a> {
         let step_s = std::array::from_fn(|lane| step_s[lane % lanes]);
         let inverse = |j: usize, lane: usize| systems[lane].inverse_mass[j];
         let mut block = Self {
+            edges: Vec::with_capacity(RESERVED),
             changes: follow_changes.then(|| Changes::new(chunks(bodies, lanes))),
             window: Window::new(systems, (&x, &v), whole_chain),
             motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
             weights: Scaled::new(schedule.row(0), &step_s),
             at_rest: at_rest.iter().any(|&force| force != 0.0).then_some(at_rest),
-            sections: (0..first.sections.len()).map(|i| section(systems, i)).collect(),
+            sections: (0..first.sections.len())
+                .map(|i| section(systems, i))
+                .collect(),
             force_n: vec![0.0; flat + WIDTH],
             step_s,
             offset_m,
@@ -87,11 +100,6 @@ impl<'a> Block<'a> {
         block
     }
 
-    /// Time of a lane at a step, in s.
-    pub fn time_s(&self, lane: usize, step: usize) -> f64 {
-        self.step_s[lane] * self.schedule.time(step)
-    }
-
     /// One step of all lanes; the forces are then those of the new positions.
     pub fn step(&mut self) {
         self.push();
@@ -99,7 +107,8 @@ impl<'a> Block<'a> {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
         }
         let moving = (self.window.chunks, self.lanes);
-        self.motion.step(self.set, moving, &self.force_n, &self.weights);
+        self.motion
+            .step(self.set, moving, &self.force_n, &self.weights);
         self.close_ring();
         self.window.follow(&self.motion.v);
         self.forces();
@@ -137,31 +146,73 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Takes back what openings and closings within the last step gave too much.
-    fn look_at_changes(&mut self, correct: bool) {
-        let Some(changes) = &mut self.changes else {
+    /// Finds openings and closings within the last step.
+    fn look_at_changes(&mut self, follow: bool) {
+        let Some(mut changes) = self.changes.take() else {
             return;
         };
         let moving = (self.window.chunks, self.lanes);
         let changed = changes.look(self.set, moving, &self.offset_m, &self.motion.x);
-        let lanes = self.lanes;
-        for &at in changed.iter().filter(|_| correct) {
-            let (contact, lane) = (at / lanes, at % lanes);
-            let system = self.systems[lane];
-            if contact >= system.contacts() {
-                continue;
-            }
-            let (x, v, f) = (&self.motion.x, &self.motion.v, &self.force_n);
-            let depth = system.offset_m[contact] - (x[at + lanes] - x[at]);
-            let masses = [contact, contact + 1].map(|body| system.inverse_mass[body]);
-            let [before, own, after] = [at, at + lanes, at + 2 * lanes].map(|i| f[i]);
-            let change = (before - own) * masses[0] - (own - after) * masses[1];
-            let motion = (depth, v[at] - v[at + lanes], change);
-            let length = self.step_s[lane] * self.schedule.row(self.steps).drift;
-            let excess = excess(system, contact, motion, length);
-            self.motion.v[at] += excess * masses[0];
-            self.motion.v[at + lanes] -= excess * masses[1];
+        if follow && self.steps > self.schedule.last_row() {
+            let mut edges = std::mem::take(&mut self.edges);
+            edges.extend(
+                changed
+                    .iter()
+                    .filter_map(|&at| Some((at, self.edge(at)?, 0))),
+            );
+            self.edges = edges;
+            self.mend_edges();
         }
+        self.changes = Some(changes);
+    }
+
+    /// The edge of the force of a contact that has opened within the last
+    /// step, if it is worth mending.
+    fn edge(&self, at: usize) -> Option<Edge> {
+        let lanes = self.lanes;
+        let (contact, lane) = (at / lanes, at % lanes);
+        let system = self.systems[lane];
+        if !system.has_contact(contact) {
+            return None;
+        }
+        let (x, v, f, h) = (
+            &self.motion.x,
+            &self.motion.v,
+            &self.force_n,
+            self.step_s[lane],
+        );
+        let masses = [contact, contact + 1].map(|body| system.inverse_mass[body]);
+        let [before, own, after] = [at, at + lanes, at + 2 * lanes].map(|i| f[i]);
+        let opening = Opening {
+            depth_m: system.offset_m[contact] - (x[at + lanes] - x[at]),
+            rate_m_s: v[at] - v[at + lanes],
+            change_m_s2: (before - own) * masses[0] - (own - after) * masses[1],
+        };
+        let since = opening.since_s(h)?;
+        let before = |steps: f64| {
+            let (depth, rate) = opening.at(since + steps * h);
+            system.unclipped_force(contact, Closed::new(depth, rate))
+        };
+        let leading = Leading::new(before);
+        let kick = leading.size() * h * masses[0].max(masses[1]);
+        let matters = kick > SLIGHT * system.scales().speed_m_s;
+        matters.then(|| Edge::ending(&leading, 1.0 - since / h, self.schedule.steady()))
+    }
+
+    /// Gives the last step what edges made it lack.
+    fn mend_edges(&mut self) {
+        for (at, edge, age) in &mut self.edges {
+            let (contact, lane) = (*at / self.lanes, *at % self.lanes);
+            let h = self.step_s[lane];
+            let [sped, moved] = [edge.lacking[*age][0] * h, edge.lacking[*age][1] * h * h];
+            let masses = &self.systems[lane].inverse_mass[contact..];
+            for (at, push) in [(*at, -masses[0]), (*at + self.lanes, masses[1])] {
+                self.motion.v[at] += push * sped;
+                self.motion.x[at] += push * moved;
+            }
+            *age += 1;
+        }
+        self.edges.retain(|(_, _, age)| *age < USED);
     }
 
     /// In a ring the last body is bead 1 again.
@@ -171,7 +222,9 @@ impl<'a> Block<'a> {
             for values in [&mut self.motion.x, &mut self.motion.v] {
                 values.copy_within(lanes..2 * lanes, last * lanes);
             }
-            self.motion.newest_mut().copy_within(lanes..2 * lanes, last * lanes);
+            self.motion
+                .newest_mut()
+                .copy_within(lanes..2 * lanes, last * lanes);
         }
     }
 
@@ -182,7 +235,11 @@ impl<'a> Block<'a> {
             return;
         };
         for (lane, system) in self.systems.iter().enumerate() {
-            let bodies = if system.pendulum_per_s2 > 0.0 { system.bodies() } else { 2 };
+            let bodies = if system.pendulum_per_s2 > 0.0 {
+                system.bodies()
+            } else {
+                2
+            };
             for body in 0..bodies {
                 let at = body * self.lanes + lane;
                 external[at] = pushed(system, body, self.motion.x[at]);
@@ -243,7 +300,11 @@ impl<'a> Block<'a> {
             }
             for (worst, change) in worst.iter_mut().zip(change) {
                 // Also keeps a NaN, which `max` would not.
-                *worst = if change.abs() <= *worst { *worst } else { change.abs() };
+                *worst = if change.abs() <= *worst {
+                    *worst
+                } else {
+                    change.abs()
+                };
             }
         }
         self.per_lane(worst)

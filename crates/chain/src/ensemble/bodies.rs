@@ -34,7 +34,9 @@ impl Scaled {
         Self {
             drift: step_s.map(|h| h * weights.drift),
             velocity: weights.velocity.map(|weight| step_s.map(|h| h * weight)),
-            position: weights.position.map(|weight| step_s.map(|h| h * h * weight)),
+            position: weights
+                .position
+                .map(|weight| step_s.map(|h| h * h * weight)),
         }
     }
 }
@@ -101,8 +103,9 @@ fn sweep<S: Simd>(
     let velocity: [f64x8<S>; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
     let position: [f64x8<S>; USED] = std::array::from_fn(|k| load(&scaled.position[k]));
     let (left, right) = (chunks_of(force, count), chunks_of(&force[lanes..], count));
-    let earlier: [&[[f64; WIDTH]]; EARLIER] =
-        std::array::from_fn(|k| chunks_of(&motion.accelerations[(motion.newest + 1 + k) % USED], count));
+    let earlier: [&[[f64; WIDTH]]; EARLIER] = std::array::from_fn(|k| {
+        chunks_of(&motion.accelerations[(motion.newest + 1 + k) % USED], count)
+    });
     let x = motion.x[..count * WIDTH].as_chunks_mut().0;
     let v = motion.v[..count * WIDTH].as_chunks_mut().0;
     let now = now[..count * WIDTH].as_chunks_mut().0;
@@ -117,7 +120,10 @@ fn sweep<S: Simd>(
         // Two chains of sums each, so that one need not wait for the other.
         let a1 = load(&earlier[0][i]);
         let mut sped = [velocity[0].mul_add(a, v0), velocity[1] * a1];
-        let mut moved = [position[0] * a, position[1].mul_add(a1, drift.mul_add(v0, x0))];
+        let mut moved = [
+            position[0] * a,
+            position[1].mul_add(a1, drift.mul_add(v0, x0)),
+        ];
         for k in 2..USED {
             let a = load(&earlier[k - 1][i]);
             sped[k % 2] = velocity[k].mul_add(a, sped[k % 2]);

@@ -1,16 +1,7 @@
 //! Openings and closings between two steps.
-//!
-//! Sums over samples integrate a smooth force to the order of the method, but
-//! not one that begins or ends in between: a contact opens at w (t* − t) → 0
-//! with F = F₀ + c₁ δ^{1/2} + c₃ δ^{3/2} + …, and what the sum of samples
-//! taken at distances θh, (1+θ)h, … from such an end has too much is, by the
-//! Euler–Maclaurin formula for end points with powers [Navot1961],
-//! h Σ_p c_p (w h)^p ζ(−p, θ). That impulse is taken back.
 
 use super::column::{Column, WIDTH};
 use crate::instruction_set::InstructionSet;
-use crate::laws::Closed;
-use crate::system::System;
 use fearless_simd::{dispatch, f64x8, prelude::*};
 
 /// Which contacts are open, and those that have changed.
@@ -45,7 +36,13 @@ impl Changes {
     }
 
     #[inline(always)]
-    fn compare<S: Simd>(&mut self, simd: S, (moving, lanes): (usize, usize), offset_m: &Column, x: &[f64]) {
+    fn compare<S: Simd>(
+        &mut self,
+        simd: S,
+        (moving, lanes): (usize, usize),
+        offset_m: &Column,
+        x: &[f64],
+    ) {
         let left = x[..moving * WIDTH].as_chunks::<WIDTH>().0;
         let right = x[lanes..][..moving * WIDTH].as_chunks::<WIDTH>().0;
         for i in 0..moving {
@@ -62,60 +59,32 @@ impl Changes {
     }
 }
 
-/// What the sum of samples of a contact's force has too much, as an impulse in
-/// N s, when the contact has changed within the last step of `step_s`: it is
-/// at a depth now, changing at a rate which itself changes.
-pub(super) fn excess(
-    system: &System,
-    contact: usize,
-    (depth_m, rate_m_s, change_m_s2): (f64, f64, f64),
-    step_s: f64,
-) -> f64 {
-    // Time since the change, from the motion now.
-    let first = depth_m / rate_m_s;
-    let since = first + 0.5 * change_m_s2 * first * first / rate_m_s;
-    let since = (since / step_s).clamp(0.0, 1.0);
-    if since.is_nan() {
-        return 0.0;
+/// A contact's motion just after it has opened.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Opening {
+    /// Overlap now, negative.
+    pub depth_m: f64,
+    pub rate_m_s: f64,
+    /// Rate of change of the rate.
+    pub change_m_s2: f64,
+}
+
+impl Opening {
+    /// Time since the overlap was 0, in s, at most a step; `None` if it has
+    /// not just become negative.
+    pub fn since_s(&self, step_s: f64) -> Option<f64> {
+        if self.depth_m >= 0.0 || self.rate_m_s >= 0.0 {
+            return None;
+        }
+        // δ = w t + r t²/2, looked back upon: t from δ and w now.
+        let first = self.depth_m / self.rate_m_s;
+        let second = first + 0.5 * self.change_m_s2 * first * first / self.rate_m_s;
+        Some(second.clamp(0.0, step_s))
     }
-    let opens = depth_m < 0.0;
-    let distance = if opens { 1.0 - since } else { since };
-    let rate = rate_m_s - change_m_s2 * since * step_s;
-    let reach = rate.abs() * step_s;
-    let force = |depth: f64| system.unclipped_force(contact, Closed::new(depth, rate));
-    let [at_once, root, high] = expansion(force, reach);
-    step_s * (at_once * (0.5 - distance) + root * zeta(0.5, distance) + high * zeta(1.5, distance))
-}
 
-/// F₀, c₁ reach^{1/2} and c₃ reach^{3/2} of a force near no overlap.
-fn expansion(force: impl Fn(f64) -> f64, reach: f64) -> [f64; 3] {
-    let at_once = force(0.0);
-    let (near, far) = (force(0.25 * reach) - at_once, force(reach) - at_once);
-    // near = c₁/2 + c₃/8, far = c₁ + c₃.
-    let root = (8.0 * near - far) / 3.0;
-    [at_once, root, far - root]
-}
-
-/// ζ(−p, a), by Euler and Maclaurin after four terms.
-fn zeta(p: f64, a: f64) -> f64 {
-    const TERMS: i32 = 4;
-    let head: f64 = (0..TERMS).map(|k| (f64::from(k) + a).powf(p)).sum();
-    let end = f64::from(TERMS) + a;
-    let power = end.powf(p);
-    let tail = -power * end / (p + 1.0) + 0.5 * power - p * power / (12.0 * end)
-        + p * (p - 1.0) * (p - 2.0) * power / (720.0 * end * end * end);
-    head + tail
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn zeta_has_its_known_values() {
-        // ζ(−1/2) and ζ(−3/2); ζ(s, 0) of a positive power is ζ(s, 1).
-        assert!((zeta(0.5, 1.0) + 0.207_886_224_977_354_57).abs() < 1e-7);
-        assert!((zeta(1.5, 1.0) + 0.025_485_201_889_833_035).abs() < 1e-7);
-        assert!((zeta(0.5, 0.0) - zeta(0.5, 1.0)).abs() < 1e-7);
+    /// Overlap and its rate a time before now, taken as not below 0.
+    pub fn at(&self, before_s: f64) -> (f64, f64) {
+        let depth = self.depth_m - before_s * (self.rate_m_s - 0.5 * self.change_m_s2 * before_s);
+        (depth.max(0.0), self.rate_m_s - self.change_m_s2 * before_s)
     }
 }

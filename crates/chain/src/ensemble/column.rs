@@ -48,9 +48,4 @@ impl Column {
     pub fn at(&self, i: usize) -> &[f64; WIDTH] {
         &self.chunks[i * self.stride]
     }
-
-    /// Whether all are 0.
-    pub fn is_zero(&self) -> bool {
-        self.chunks.iter().flatten().all(|&value| value == 0.0)
-    }
 }

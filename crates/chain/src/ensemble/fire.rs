@@ -53,7 +53,9 @@ pub enum EnsembleError {
         value: f64,
     },
     /// A number stopped being finite.
-    #[error("the motion is not finite after t = {time_s:e} s: the step of {step_s:e} s is too long for this chain")]
+    #[error(
+        "the motion is not finite after t = {time_s:e} s: the step of {step_s:e} s is too long for this chain"
+    )]
     NotFinite {
         /// Time of the look that found it, in s.
         time_s: f64,
@@ -122,7 +124,10 @@ fn check(system: &System, settings: &Settings, shot: usize) -> Result<(), Ensemb
         false => Err(EnsembleError::Setting { what, value }),
     };
     setting("step in contact times", settings.step)?;
-    setting("duration in s", settings.durations_s.get(shot).copied().unwrap_or(f64::NAN))?;
+    setting(
+        "duration in s",
+        settings.durations_s.get(shot).copied().unwrap_or(f64::NAN),
+    )?;
     if system.motion.is_some() {
         return Err(EnsembleError::Driven);
     }
@@ -158,16 +163,30 @@ fn fire_block(
     let lanes = if shots.len() == 1 { 1 } else { LANES };
     let of = |lane: usize| shots[lane.min(shots.len() - 1)];
     let fired: Vec<&System> = (0..lanes).map(|lane| systems[of(lane)]).collect();
-    let steps_s: Vec<f64> = fired.iter().map(|s| settings.step * s.scales().time_s).collect();
+    let steps_s: Vec<f64> = fired
+        .iter()
+        .map(|s| settings.step * s.scales().time_s)
+        .collect();
     let last = |lane: usize| last_step(settings.durations_s[of(lane)], steps_s[lane]);
-    let mut flying: Vec<Lane> = (0..shots.len()).map(|lane| Lane::new(last(lane), fired[0].bodies())).collect();
+    let mut flying: Vec<Lane> = (0..shots.len())
+        .map(|lane| Lane::new(last(lane), fired[0].bodies()))
+        .collect();
     let most = flying.iter().map(|lane| lane.last_step).max().unwrap_or(0);
     let mut recorder = Recorder::new(&settings.sensors, lanes, most.min(RESERVED));
-    let mut block = Block::new(&fired, &steps_s, schedule, settings.set, (settings.whole_chain, settings.changes));
+    let mut block = Block::new(
+        &fired,
+        &steps_s,
+        schedule,
+        settings.set,
+        (settings.whole_chain, settings.changes),
+    );
     fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
     let result = |(at, lane): (usize, Lane)| {
-        let clock = Clock { schedule, step_s: steps_s[at] };
+        let clock = Clock {
+            schedule,
+            step_s: steps_s[at],
+        };
         lane.flown(std::mem::take(&mut signals[at]), clock)
     };
     let mut results: Vec<_> = flying.into_iter().enumerate().map(result).collect();
@@ -194,7 +213,9 @@ fn signals(
                 _ => systems[at].scales().silent_force_n,
             };
             let step_s = steps_s[at];
-            let seen = (lanes[at].ended() + 1).saturating_sub(first).min(samples.len());
+            let seen = (lanes[at].ended() + 1)
+                .saturating_sub(first)
+                .min(samples.len());
             let clock = Clock { schedule, step_s };
             signals.push(signal(sensor, &samples[..seen], first, clock, silent));
         }
@@ -258,7 +279,14 @@ impl Lane {
         }
     }
 
-    fn look(&mut self, block: &Block<'_>, recorder: &Recorder, at: usize, end: End, system: &System) {
+    fn look(
+        &mut self,
+        block: &Block<'_>,
+        recorder: &Recorder,
+        at: usize,
+        end: End,
+        system: &System,
+    ) {
         let step = block.steps;
         let early = end != End::Duration && {
             let (sensor, wall) = (recorder.samples(0, at), recorder.samples(1, at));

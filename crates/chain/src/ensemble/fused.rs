@@ -7,8 +7,8 @@
 use super::column::{Column, WIDTH};
 use super::section::{Place, Sweep};
 use super::touch::{Sides, Touch};
-use crate::laws::{Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Term};
 use crate::instruction_set::InstructionSet;
+use crate::laws::{Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Term};
 use fearless_simd::{dispatch, f64x8, prelude::*};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -63,9 +63,7 @@ pub(super) fn fuse(
     let section = (contacts, first, coefficients);
     Some(match laws {
         ["elastic_hertz"] => Box::new(Fused::<Hertz>::new(section)),
-        ["elastic_hertz", "damping_viscoelastic"] => {
-            Box::new(Fused::<Viscoelastic>::new(section))
-        }
+        ["elastic_hertz", "damping_viscoelastic"] => Box::new(Fused::<Viscoelastic>::new(section)),
         ["elastic_hertz", "damping_viscoelastic", "damping_cubic"] => {
             Box::new(Fused::<Dry>::new(section))
         }
@@ -94,11 +92,18 @@ impl<T: Sum> Fused<T> {
 
     #[inline(always)]
     fn sweep<S: Simd>(&self, simd: S, place: &Place<'_>, chunks: Range<usize>, force: &mut [f64]) {
-        let sides = Sides::new(place.offset_m, (chunks.end, place.lanes), (place.x, place.v));
+        let sides = Sides::new(
+            place.offset_m,
+            (chunks.end, place.lanes),
+            (place.x, place.v),
+        );
         let force = force[..chunks.end * WIDTH].as_chunks_mut::<WIDTH>().0;
         for i in chunks {
             let Touch {
-                overlap, root, rate, ..
+                overlap,
+                root,
+                rate,
+                ..
             } = sides.touch(simd, i);
             // Copies, so that the compiler sees that nothing overlaps.
             let k: [[f64; WIDTH]; MOST] = std::array::from_fn(|j| match j < T::COEFFICIENTS {

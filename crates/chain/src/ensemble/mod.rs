@@ -13,6 +13,7 @@ mod block;
 mod bodies;
 mod changes;
 mod column;
+mod edge;
 mod fire;
 mod fused;
 mod passing;

@@ -102,7 +102,9 @@ fn through(nodes: [f64; POINTS], mut differences: [f64; POINTS]) -> [f64; POINTS
 /// Value, slope and curvature.
 fn derivatives(polynomial: &[f64; POINTS], at: f64) -> (f64, f64, f64) {
     let sums = polynomial.iter().rev();
-    sums.fold((0.0, 0.0, 0.0), |(p, d, c), k| (p * at + k, d * at + p, c * at + 2.0 * d))
+    sums.fold((0.0, 0.0, 0.0), |(p, d, c), k| {
+        (p * at + k, d * at + p, c * at + 2.0 * d)
+    })
 }
 
 /// Where the slope passes 0 from above, by Newton's method in a bracket.
@@ -110,9 +112,17 @@ fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
     let mut at = 0.0_f64.clamp(low, high);
     for _ in 0..50 {
         let (_, slope, curvature) = derivatives(polynomial, at);
-        if slope > 0.0 { low = at } else { high = at }
+        if slope > 0.0 {
+            low = at
+        } else {
+            high = at
+        }
         let next = at - slope / curvature;
-        let next = if curvature < 0.0 && next > low && next < high { next } else { 0.5 * (low + high) };
+        let next = if curvature < 0.0 && next > low && next < high {
+            next
+        } else {
+            0.5 * (low + high)
+        };
         if (next - at).abs() <= 1e-12 {
             return next;
         }

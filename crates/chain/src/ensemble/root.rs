@@ -23,7 +23,9 @@ pub(super) fn roots<S: Simd>(simd: S, d: f64x8<S>) -> f64x8<S> {
 fearless_simd::kernel!(
     #[inline(always)]
     fn refined(avx512: Avx512, d: [f64; 8]) -> [f64; 8] {
-        use std::arch::x86_64::{_mm512_maskz_rsqrt14_pd, _mm512_test_epi64_mask, _mm512_castpd_si512};
+        use std::arch::x86_64::{
+            _mm512_castpd_si512, _mm512_maskz_rsqrt14_pd, _mm512_test_epi64_mask,
+        };
         let d: f64x8<Avx512> = d.simd_into(avx512);
         let bits = _mm512_castpd_si512(d.into());
         // Where d is 0 the seed is 0, and so is the root.
@@ -32,7 +34,10 @@ fearless_simd::kernel!(
         let half = f64x8::splat(avx512, 0.5);
         let (root, reciprocal) = (d * seed, half * seed);
         let error = (-root).mul_add(reciprocal, half);
-        let (root, reciprocal) = (root.mul_add(error, root), reciprocal.mul_add(error, reciprocal));
+        let (root, reciprocal) = (
+            root.mul_add(error, root),
+            reciprocal.mul_add(error, reciprocal),
+        );
         let residual = (-root).mul_add(root, d);
         residual.mul_add(reciprocal, root).into()
     }

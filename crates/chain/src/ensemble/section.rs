@@ -4,9 +4,9 @@ use super::column::{Column, WIDTH, chunks};
 use super::fused::fuse;
 use super::touch::Sides;
 use crate::chain::Tension;
+use crate::instruction_set::InstructionSet;
 use crate::laws::{Columns, Contacts};
 use crate::system::{SectionColumns, System, TermColumns};
-use crate::instruction_set::InstructionSet;
 use fearless_simd::{Simd, dispatch};
 use std::ops::Range;
 use std::sync::Arc;
@@ -41,7 +41,11 @@ pub(super) trait Sweep: Send {
 pub(super) fn section(systems: &[&System], index: usize) -> Box<dyn Sweep> {
     let sections: Vec<&SectionColumns> = systems.iter().map(|s| &s.sections[index]).collect();
     let plain = systems[0].tension == Tension::Allowed && sections[0].ungated.is_empty();
-    let names: Vec<&str> = sections[0].gated.iter().map(|term| term.law.info().name).collect();
+    let names: Vec<&str> = sections[0]
+        .gated
+        .iter()
+        .map(|term| term.law.info().name)
+        .collect();
     let contacts = sections[0].contacts.clone();
     plain
         .then(|| fuse(&names, contacts, systems.len(), coefficients(&sections)))

@@ -46,7 +46,11 @@ impl Window {
             return;
         }
         let edge = &v[(self.chunks - 1) * WIDTH..self.chunks * WIDTH];
-        if edge.iter().zip(self.floor).any(|(v, floor)| v.abs() > floor) {
+        if edge
+            .iter()
+            .zip(self.floor)
+            .any(|(v, floor)| v.abs() > floor)
+        {
             self.chunks += 1;
         }
     }

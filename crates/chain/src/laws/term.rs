@@ -1,8 +1,8 @@
 //! The two faces of a contact law: [`Term`], which an author writes, and
 //! [`Law`], which the wave loop calls.
 
-use crate::material::Pair;
 use crate::instruction_set::InstructionSet;
+use crate::material::Pair;
 use fearless_simd::{dispatch, prelude::*};
 use std::fmt::Debug;
 use std::sync::Arc;

@@ -157,11 +157,13 @@ impl Pass {
             };
             for term in &section.gated {
                 let force = &mut self.closed_force[part.clone()];
-                term.law.add_forces(self.set, &term.columns, first, seen, force);
+                term.law
+                    .add_forces(self.set, &term.columns, first, seen, force);
             }
             for term in &section.ungated {
                 let force = &mut self.across[part.clone()];
-                term.law.add_forces(self.set, &term.columns, first, seen, force);
+                term.law
+                    .add_forces(self.set, &term.columns, first, seen, force);
             }
         }
     }
