@@ -4,9 +4,10 @@ use crate::accuracy::{self, TIGHTEST};
 use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::flight::Flight;
+use crate::following::Following;
 use crate::plan::{Plan, Solver};
 use crate::shot::{Rebound, Shot, reported};
-use hertzchain_chain::observe::{Apart, PassageError, Passages, Separation, Trace, Tracer};
+use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Budget, Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
 
@@ -168,12 +169,11 @@ impl<'a> Gun<'a> {
 
     /// One run with one method.
     fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
-        let wall = self.system.contacts() - 1;
-        let mut passages = Passages::new(self.plan.sensor_bead, wall, self.end.at_reflection);
+        let mut following = Following::new(self.plan, &self.end);
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut passages, &mut separation];
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut following, &mut separation];
         if self.end.when_apart {
             observers.push(&mut apart);
         }
@@ -184,7 +184,7 @@ impl<'a> Gun<'a> {
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;
         let trace = tracer.map(Tracer::into_trace);
-        Ok(self.shot(method, outcome, &passages, separation, trace))
+        Ok(self.shot(method, outcome, &following, separation, trace))
     }
 
     fn tracer(&self) -> Option<Tracer> {
@@ -198,10 +198,11 @@ impl<'a> Gun<'a> {
         &self,
         method: &dyn Method,
         outcome: Outcome,
-        passages: &Passages,
+        following: &Following,
         separation: Separation,
         trace: Option<Trace>,
     ) -> Shot {
+        let passages = following.passages();
         let passage = match duration::has_wall(&self.plan.chain.far) {
             true => passages.passage(),
             false => Err(PassageError::NoWallPulse {
@@ -212,13 +213,16 @@ impl<'a> Gun<'a> {
         let picked = seen.and_then(|passage| Flight::picked(self.plan.pick, passages, passage));
         let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
+        // A shot that came to the end of the rule by another way than the striker's.
+        let own_end = self.plan.rebound && self.plan.duration_s.is_none();
+        let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         Shot {
             flight: picked,
             sensor_maxima: reported(passages.sensor().maxima()),
             pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),
-                end_m_s: outcome.velocity_m_s.first().copied().unwrap_or(0.0),
+                end_m_s: following.last_word_m_s().or(at_end_m_s),
             }),
             passage,
             budget: outcome.budget,

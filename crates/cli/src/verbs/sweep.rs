@@ -129,7 +129,7 @@ const COLUMNS: [Column; 6] = [
         Some(ok(point)?.passage.as_ref().ok()?.wall.value)
     }),
     ("rebound", "m/s", 1.0, |point| {
-        Some(ok(point)?.rebound?.end_m_s)
+        ok(point)?.rebound?.end_m_s
     }),
 ];
 
@@ -220,7 +220,7 @@ fn csv(swept: &Sweep) -> String {
             seen.map(|seen| seen.incident.value),
             seen.map(|seen| seen.wall.value),
             seen.and_then(|seen| Some(seen.reflected?.value)),
-            shot.rebound.map(|rebound| rebound.end_m_s),
+            shot.rebound.and_then(|rebound| rebound.end_m_s),
             shot.accuracy_reached,
         ];
         let cells = cells.map(|cell| cell.map_or(String::new(), |value| value.to_string()));
