@@ -68,7 +68,9 @@ pub fn write(
         sensors.extend(bodies.velocities());
         sensors.extend(bodies.forces());
     }
-    let trace = sampled(plan, shot, sensors)?;
+    let mut trace = sampled(plan, shot, sensors)?;
+    // Budgets stand at the ends of steps; the last step may reach beyond the shot.
+    trace.budgets.extend(shot.budget.clone());
     if arguments.out.is_some() {
         folder.write(
             "traces.csv",
