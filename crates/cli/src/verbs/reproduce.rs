@@ -76,10 +76,11 @@ fn summary(computed: &Reproduction, folder: &Path) -> String {
     let provenance = &computed.provenance;
     let _ = write!(
         text,
-        "\nRead as: {}. Times of flight right to {:.0e}; computed in {:.0} s.\n\
+        "\nRead as: {}. Times of flight asked to {:.0e}, reached {:.1e} at worst; computed in {:.0} s.\n\
          Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
          Verdicts one by one: {}\n",
         computed.reading,
+        provenance.accuracy_asked,
         provenance.accuracy_reached,
         provenance.wall_time_s,
         folder.display(),
