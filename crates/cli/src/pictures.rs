@@ -24,14 +24,16 @@ pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
 }
 
 /// Times in a unit that suits them.
-struct Clock {
-    scale: f64,
-    unit: &'static str,
+pub struct Clock {
+    /// Units in a second.
+    pub scale: f64,
+    /// Empty in a dimensionless chain.
+    pub unit: &'static str,
 }
 
 impl Clock {
     /// Clear for the latest of the times.
-    fn of(times_s: &[f64], units: Units) -> Self {
+    pub fn of(times_s: &[f64], units: Units) -> Self {
         if units == Units::Dimensionless {
             return Self {
                 scale: 1.0,

@@ -96,8 +96,8 @@ fn legends_of_crowded_and_filled_charts_cover_nothing() {
     let map = Chart::new("Time (µs)", "Bead").heat(heat);
     let map = map.with(Series::line("front", &[0.0, 1.0], &[0.0, 1.0]));
     let mut charts = vec![filled, map, wave().inset(wave())];
-    charts.extend((1..10).map(crowded));
-    charts.extend((1..10).map(|names| crowded(names).y_range(-0.9, 0.9)));
+    charts.extend([1, 4, 9].map(crowded));
+    charts.extend([1, 4, 9].map(|names| crowded(names).y_range(-0.9, 0.9)));
     for chart in charts {
         let figure = Figure::single_column(70.0).letters().panel(chart.clone());
         assert_eq!(covered(&figure.svg()), (1, 0), "{chart:?}");

@@ -14,7 +14,7 @@ pub(super) fn figure(evidence: &Evidence) -> Figure {
     let chart = curves(evidence, Chart::new(speed, "Time of flight (µs)"));
     let chart = chart
         .with(line(DASHED, &[], &[], Colour::BLACK))
-        .note(&format!("bars: $v_0$ ± {SPEED_SCATTER_M_S} m/s"))
+        .note(&format!("error bars: $v_0$ ± {SPEED_SCATTER_M_S} m/s"))
         .inset(inset);
     Figure::single_column(78.0)
         .panel(chart)

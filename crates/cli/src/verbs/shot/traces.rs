@@ -213,12 +213,20 @@ fn animation(
     let forces = columns.get(2 * count..).unwrap_or_default();
     let page = Animation::new(&trace.time_s, &positions, forces, &radii)
         .title(experiment.title())
+        .first_contact(bodies.first)
         .mark(plan.sensor_bead - bodies.first, "sensor bead");
     let page = match plan.chain.start {
         Start::Striker { .. } => page.mark(0, "striker"),
         Start::Driven { .. } => page.mark(0, "driven end"),
         Start::Free => page,
     };
+    let page = match pictures::wall(experiment) {
+        Some(_) => page.mark(count - 1, "wall"),
+        None => page,
+    };
+    let clock = pictures::Clock::of(&trace.time_s, experiment.units());
+    let force = if clock.unit.is_empty() { "" } else { "N" };
+    let page = page.units((clock.scale, clock.unit), force);
     let wet = experiment.sections().iter().find(|section| section.wet);
     match wet {
         Some(section) => page.wet(
