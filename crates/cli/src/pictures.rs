@@ -7,7 +7,7 @@ pub use energy::energy;
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::Trace;
 use hertzchain_experiment::{Experiment, Units};
-use hertzchain_figures::{Chart, Colour, Figure, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_signal::{FitError, PowerLaw};
 use hertzchain_study::Sweep;
 
@@ -69,6 +69,12 @@ fn axis(quantity: &str, unit: &str, units: Units) -> String {
     }
 }
 
+/// Steep pulses are clearer unbroken: the first three colours differ enough in
+/// hue and lightness, dashes help after them.
+fn dash(line: usize) -> Dash {
+    if line < 3 { Dash::Solid } else { Dash::Dashed }
+}
+
 /// Signals of sensors against time, one panel a quantity.
 pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
     let units = experiment.units();
@@ -84,10 +90,11 @@ pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Fi
             .peekable();
         if shown.peek().is_some() {
             let chart = Chart::new(&clock.label("Time"), &axis(quantity, unit, units));
-            charts.push(shown.fold(chart, |chart, (sensor, column)| {
-                let line = Series::line(&legend(experiment, *sensor, wall), &times, column);
-                chart.with(line)
-            }));
+            let lines = shown.enumerate().map(|(i, (sensor, column))| {
+                let name = legend(experiment, *sensor, wall);
+                Series::line(&name, &times, column).dash(dash(i))
+            });
+            charts.push(lines.fold(chart, Chart::with));
         }
     }
     if let Some(first) = charts.first_mut() {
@@ -154,14 +161,18 @@ fn branch(
         _ => (Colour::VERMILION, Marker::OpenSquare),
     };
     let (mut speeds, times_s): (Vec<f64>, Vec<f64>) = flights.iter().copied().unzip();
-    let points = Series::points(name, &speeds, &clock.scaled(&times_s));
-    let points = points.marker(marker).colour(colour);
-    let Ok(law) = fit else {
-        return chart.with(points);
+    let points = |name: &str| {
+        Series::points(name, &speeds, &clock.scaled(&times_s))
+            .marker(marker)
+            .colour(colour)
     };
+    let Ok(law) = fit else {
+        return chart.with(points(name));
+    };
+    let named = format!("{name}, exponent {:.4}", law.exponent).replace('-', "\u{2212}");
+    let points = points(&named);
     speeds.sort_by(f64::total_cmp);
     let fitted: Vec<f64> = speeds.iter().map(|speed| law.at(*speed)).collect();
-    let exponent = format!("fit, exponent {:.4}", law.exponent).replace('-', "\u{2212}");
-    let line = Series::line(&exponent, &speeds, &clock.scaled(&fitted));
+    let line = Series::line("", &speeds, &clock.scaled(&fitted));
     chart.with(line.colour(colour).width(0.7)).with(points)
 }

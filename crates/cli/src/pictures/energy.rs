@@ -55,13 +55,13 @@ const PARTS: [Part; 8] = [
     part(
         "gravity",
         |b| b.gravity_j,
-        (Colour::PURPLE, Dash::Solid),
+        (Colour::OCHRE, Dash::Solid),
         false,
     ),
     part(
         "preload",
         |b| b.preload_j,
-        (Colour::OCHRE, Dash::Dashed),
+        (Colour::PURPLE, Dash::Solid),
         false,
     ),
     part("stop", |b| b.stop_j, (Colour::SKY, Dash::Solid), false),
