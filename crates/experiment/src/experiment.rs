@@ -4,6 +4,7 @@ use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
 use crate::document::{self, Node, Value};
+use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
@@ -13,7 +14,6 @@ use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,9 +45,6 @@ pub enum OpenError {
     Mistakes(#[from] Mistakes),
 }
 
-/// Larger files are a mistake.
-const MOST_BYTES: u64 = 16 << 20;
-
 impl Experiment {
     /// Reads an experiment file.
     ///
@@ -55,20 +52,10 @@ impl Experiment {
     /// An unreadable file, or every mistake found in it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let unreadable = |error| OpenError::Unreadable {
+        let text = file::read(path).map_err(|error| OpenError::Unreadable {
             path: path.display().to_string(),
             error,
-        };
-        let mut text = String::new();
-        // A device or a pipe has no size to ask for beforehand.
-        let file = std::fs::File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES + 1)
-            .read_to_string(&mut text)
-            .map_err(unreadable)?;
-        if text.len() as u64 > MOST_BYTES {
-            let error = std::io::Error::other("an experiment file has at most 16 MiB");
-            return Err(unreadable(error));
-        }
+        })?;
         Ok(Self::from_text(&path.display().to_string(), &text)?)
     }
 
@@ -91,6 +78,11 @@ impl Experiment {
         tree: Node,
         reading: Option<&Reading>,
     ) -> Result<Self, Mistakes> {
+        if tree.entries().is_empty() {
+            let problem = Problem::new(&(0..0), "this experiment is empty", "expected keys here");
+            let help = "`hertzchain presets dry` prints an experiment to start from";
+            return Err(Mistakes::one(problem.help(help), &source));
+        }
         let units = units(&tree);
         let mut check = Check {
             units,
@@ -157,6 +149,18 @@ impl Experiment {
         Ok((System::new(&chain).map_err(refused)?, warnings))
     }
 
+    /// Refuses an experiment without a striker where a speed is asked for,
+    /// with what sets its chain in motion instead.
+    ///
+    /// # Errors
+    /// An experiment that is driven or starts by itself.
+    pub fn needs_striker(&self, why: &str) -> Result<(), Mistakes> {
+        match self.speed_m_s() {
+            Some(_) => Ok(()),
+            None => Err(self.mistake(assemble::no_striker(&self.spec, why))),
+        }
+    }
+
     fn mistake(&self, problem: Problem) -> Mistakes {
         Mistakes::one(problem, &self.source)
     }
@@ -205,7 +209,7 @@ impl Experiment {
     pub fn speed_m_s(&self) -> Option<f64> {
         match self.spec.near {
             Near::Striker { speed_m_s, .. } => Some(speed_m_s),
-            Near::Driven { .. } | Near::Free => None,
+            Near::Driven { .. } | Near::Free { .. } => None,
         }
     }
 
@@ -257,12 +261,6 @@ impl Experiment {
     #[must_use]
     pub fn solver(&self) -> Solver {
         self.spec.solver
-    }
-
-    /// Seed of all randomness.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.spec.seed
     }
 
     /// The choices that the paper leaves open.

@@ -45,7 +45,9 @@ mod apply;
 mod assemble;
 mod check;
 mod document;
+mod duplicate;
 mod experiment;
+mod file;
 mod finding;
 mod keys;
 mod laws;
@@ -56,6 +58,7 @@ mod paths;
 mod presets;
 mod schema;
 mod spec;
+mod syntax;
 mod value;
 mod view;
 

@@ -96,6 +96,9 @@ fn quantity(unit: &str, limits: &Limits) -> Value {
         return schema;
     };
     // Limits of quantities with a dimension are those of their SI values.
+    if unit != "1" && limits.least > 0.0 {
+        object.insert("exclusiveMinimum".to_owned(), json!(0.0));
+    }
     if limits.least == 0.0 || unit == "1" && limits.least > f64::MIN {
         object.insert(least.to_owned(), json!(limits.least));
     }

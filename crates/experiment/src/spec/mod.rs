@@ -43,11 +43,11 @@ pub(crate) struct Spec {
     pub(crate) incline_rad: f64,
     pub(crate) gravity_m_s2: f64,
     pub(crate) suspension_m: Option<f64>,
+    pub(crate) suspension_span: Option<Range<usize>>,
     pub(crate) tension: Tension,
     pub(crate) sensors: Sensors,
     pub(crate) solver: Solver,
     pub(crate) liquid: Option<Liquid>,
-    pub(crate) seed: u64,
     pub(crate) reading: Reading,
 }
 
@@ -80,11 +80,11 @@ impl Spec {
                 .table("suspension")
                 .map(|t| t.needed("length"))
                 .transpose()?,
+            suspension_span: root.table("suspension").map(|t| t.span()),
             tension: setting::tension(root),
             sensors: Sensors::read(root, count)?,
             solver: Solver::read(root)?,
             liquid: Liquid::read(root)?,
-            seed: root.count("seed")?.unwrap_or(1) as u64,
             reading: reading(root),
             materials,
             groups,
