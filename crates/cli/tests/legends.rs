@@ -130,6 +130,20 @@ fn legends_of_a_ring_and_of_a_sweep_hide_nothing() {
 }
 
 #[test]
+fn tables_of_a_dimensionless_chain_name_no_units() {
+    let (file, out) = (scratch("table").with_extension("toml"), scratch("tables"));
+    fs::write(&file, format!("{PLAIN}{BODY}")).unwrap();
+    hertzchain(&["shot", file.to_str().unwrap()], &out);
+    let read = |name: &str| fs::read_to_string(out.join(name)).unwrap();
+    let (traces, energy) = (read("traces.csv"), read("energy.csv"));
+    fs::remove_file(&file).unwrap();
+    fs::remove_dir_all(&out).unwrap();
+    let names = "time,sensor_bead_1,wall,position_1,velocity_0,velocity_1\n";
+    assert!(traces.starts_with(names), "{}", &traces[..90]);
+    assert!(energy.starts_with("time,start,driven,kinetic,elastic,"));
+}
+
+#[test]
 fn figures_of_a_dimensionless_chain_show_no_units() {
     for (picture, svg) in check_text("plain", PLAIN) {
         let labels = svg.split("aria-label=\"").skip(1);

@@ -6,7 +6,7 @@ use crate::folder::Folder;
 use crate::pictures;
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
-use hertzchain_experiment::Experiment;
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_study::{Plan, Shot, shoot};
 use npyz::WriterBuilder;
@@ -72,11 +72,9 @@ pub fn write(
     // Budgets stand at the ends of steps; the last step may reach beyond the shot.
     trace.budgets.extend(shot.budget.clone());
     if arguments.out.is_some() {
-        folder.write(
-            "traces.csv",
-            csv(&trace, &shown, pictures::wall(experiment)).as_bytes(),
-        )?;
-        folder.write("energy.csv", energy_csv(&trace).as_bytes())?;
+        folder.write("traces.csv", csv(&trace, &shown, experiment).as_bytes())?;
+        let energy = energy_csv(&trace, experiment.units());
+        folder.write("energy.csv", energy.as_bytes())?;
         folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
         folder.figure(
             "energy",
@@ -107,17 +105,22 @@ fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Fail
     trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
 }
 
-fn csv(trace: &Trace, sensors: &[Sensor], wall: Option<usize>) -> String {
+/// The end of a column's name: its unit, none in a dimensionless chain.
+fn suffix(unit: &str, units: Units) -> String {
+    match units {
+        Units::Si => format!("_{}", unit.replace('/', "_").to_lowercase()),
+        Units::Dimensionless => String::new(),
+    }
+}
+
+fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment) -> String {
+    let (units, wall) = (experiment.units(), pictures::wall(experiment));
     let column = |sensor: &Sensor| {
         let (name, unit) = pictures::name(*sensor, wall);
-        format!(
-            ",{}_{}",
-            name.replace(' ', "_"),
-            unit.replace('/', "_").to_lowercase()
-        )
+        format!(",{}{}", name.replace(' ', "_"), suffix(unit, units))
     };
     let names: String = sensors.iter().map(column).collect();
-    let mut text = format!("time_s{names}\n");
+    let mut text = format!("time{}{names}\n", suffix("s", units));
     for (row, time) in trace.time_s.iter().enumerate() {
         text += &time.to_string();
         for column in trace.columns.iter().take(sensors.len()) {
@@ -128,15 +131,15 @@ fn csv(trace: &Trace, sensors: &[Sensor], wall: Option<usize>) -> String {
     text
 }
 
-fn energy_csv(trace: &Trace) -> String {
-    let laws = trace
-        .budgets
-        .first()
-        .map_or(&[][..], |budget| &budget.dissipated);
-    let laws: String = laws.iter().map(|line| format!(",{}_j", line.law)).collect();
-    let mut text = format!(
-        "time_s,start_j,driven_j,kinetic_j,elastic_j{laws},clipped_j,gravity_j,preload_j,stop_j,residual_j\n"
-    );
+fn energy_csv(trace: &Trace, units: Units) -> String {
+    let first = trace.budgets.first();
+    let laws = first.map_or(&[][..], |budget| &budget.dissipated);
+    let parts = ["start", "driven", "kinetic", "elastic"].into_iter();
+    let parts = parts.chain(laws.iter().map(|line| line.law));
+    let parts = parts.chain(["clipped", "gravity", "preload", "stop", "residual"]);
+    let unit = suffix("J", units);
+    let names: String = parts.map(|part| format!(",{part}{unit}")).collect();
+    let mut text = format!("time{}{names}\n", suffix("s", units));
     for b in &trace.budgets {
         let lost = b.dissipated.iter().map(|line| line.energy_j);
         let first = [b.time_s, b.start_j, b.driven_j, b.kinetic_j, b.elastic_j];
