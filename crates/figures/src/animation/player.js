@@ -167,7 +167,7 @@ function drawMap() {
 }
 
 let mapPen, mapWidth, mapHeight;
-const gutter = { left: 56, right: 12, top: 4, bottom: 38 };
+const gutter = { left: 56, right: 12, top: 10, bottom: 38 };
 const mapSize = () => [mapWidth - gutter.left - gutter.right, mapHeight - gutter.top - gutter.bottom];
 function drawCursor(frame) {
   const [across, down] = mapSize();
@@ -243,7 +243,7 @@ function seek(to) {
 }
 function layout() {
   [pen, width, height] = fit(row, 266);
-  [mapPen, mapWidth, mapHeight] = fit(map, 200);
+  [mapPen, mapWidth, mapHeight] = fit(map, 206);
   rescale();
   draw();
 }
