@@ -4,6 +4,7 @@ mod arguments;
 mod failure;
 mod folder;
 mod format;
+mod given;
 mod input;
 mod json;
 mod pictures;

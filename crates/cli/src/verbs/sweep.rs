@@ -1,9 +1,10 @@
 //! `hertzchain sweep`: times of flight against speed.
 
 use crate::arguments::{How, Sweep as Arguments};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::{self, Style, digits};
+use crate::given::check_speeds;
 use crate::print::heading;
 use crate::{input, json, pictures, print};
 use hertzchain_experiment::{Experiment, Units};
@@ -17,6 +18,7 @@ use serde_json::json;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = parse_speeds(&arguments.speeds).map_err(|e| Failure::User(e.to_string()))?;
     let experiment = input::open(&arguments.input)?;
+    check_speeds("--speeds", &arguments.speeds, experiment.units())?;
     let plan = adjusted(&experiment, &arguments.how)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
@@ -37,11 +39,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A plan at the experiment's own speed, to refuse options before any work.
 fn adjusted(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
-    if experiment.speed_m_s().is_none() {
-        return Err(Failure::User(
-            "a sweep over speeds needs a chain with a striker".into(),
-        ));
-    }
+    experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
+    input::check_times(how, experiment)?;
     let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
     input::adjust(how, &mut plan);
     input::check_step(how, &plan)?;
@@ -88,7 +87,7 @@ fn show(
             "power_law_reflected": json::fit(&swept.reflected),
         }));
     }
-    print_warnings(swept);
+    print_warnings(experiment, swept);
     let style = Style::of_accuracy(plan.accuracy, experiment.units());
     let mut text = format!("{}\n{}", heading(experiment.title()), rows(style, swept));
     text += &fit_line(style, "incident", &swept.incident);
@@ -96,18 +95,19 @@ fn show(
     print::print(&text)
 }
 
-/// The first warning stands for those of its kind at other speeds.
-fn print_warnings(swept: &Sweep) {
-    let warned = swept
-        .points
-        .iter()
-        .filter(|point| !point.warnings.is_empty());
-    let (first, others) = (warned.clone().next(), warned.count().saturating_sub(1));
-    for warning in first.map_or(&[][..], |point| &point.warnings) {
-        eprintln!("warning: {warning}");
+/// The first warnings stand for those of their kind at other speeds.
+fn print_warnings(experiment: &Experiment, swept: &Sweep) {
+    let mut warned = (swept.points.iter()).filter(|point| !point.warnings.is_empty());
+    let Some(first) = warned.next() else {
+        return;
+    };
+    if let Ok((_, warnings)) = experiment.chain(Some(first.speed_m_s)) {
+        failure::print_warnings(&warnings);
     }
-    if others > 0 {
-        eprintln!("warning: there are warnings at {others} other speeds too; --json has them all");
+    match warned.count() {
+        0 => {}
+        1 => eprintln!("warning: the same goes for another speed; --json has all warnings"),
+        n => eprintln!("warning: the same goes for {n} other speeds; --json has all warnings"),
     }
 }
 
@@ -128,9 +128,7 @@ const COLUMNS: [Column; 6] = [
     ("wall peak", "N", 1.0, |point| {
         Some(ok(point)?.passage.as_ref().ok()?.wall.value)
     }),
-    ("rebound", "m/s", 1.0, |point| {
-        ok(point)?.rebound?.end_m_s
-    }),
+    ("rebound", "m/s", 1.0, |point| ok(point)?.rebound?.end_m_s),
 ];
 
 fn ok(point: &Point) -> Option<&Shot> {

@@ -104,7 +104,9 @@ pub(crate) fn with_decimal_point(text: &str) -> Option<String> {
 fn or_none(text: &str) -> String {
     let (whole, rest) = text.trim().split_once(',').unwrap_or_default();
     match rest.bytes().take_while(u8::is_ascii_digit).count() {
-        3 => format!(", or {whole}{rest} if that was meant"),
+        3 if !whole.ends_with('0') || whole.len() > 1 => {
+            format!(", or {whole}{rest} if that was meant")
+        }
         _ => String::new(),
     }
 }
