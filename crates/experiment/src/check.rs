@@ -12,6 +12,8 @@ use crate::value::{Expected, Units, short};
 pub(crate) struct Check {
     pub(crate) units: Units,
     pub(crate) problems: Vec<Problem>,
+    /// Quantities with a dimension that suit the unit system.
+    pub(crate) fitting: usize,
 }
 
 /// The keys of a power law of the striker's speed.
@@ -150,7 +152,10 @@ impl Check {
             limits,
             units: self.units,
         };
-        self.problems.extend(expected.read(node).err());
+        match expected.read(node) {
+            Ok(_) => self.fitting += usize::from(unit != "1"),
+            Err(problem) => self.add(problem),
+        }
     }
 
     fn scaled(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {

@@ -10,6 +10,7 @@ use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
 use crate::spec::{Liquid, Near, SectionSpec, Solver, Spec};
+use crate::unit_slip;
 use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Chain, Sensor, System};
@@ -87,10 +88,12 @@ impl Experiment {
         let mut check = Check {
             units,
             problems: Vec::new(),
+            fitting: 0,
         };
         check.table(&tree, &ROOT, None);
         if !check.problems.is_empty() {
-            return Err(Mistakes::new(check.problems, &source));
+            let problems = unit_slip::gathered(check.problems, check.fitting, units, &tree);
+            return Err(Mistakes::new(problems, &source));
         }
         let root = View {
             node: &tree,

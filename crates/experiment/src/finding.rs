@@ -55,6 +55,20 @@ impl Problem {
         self
     }
 
+    /// Whether its message ends so.
+    pub(crate) fn says(&self, end: &str) -> bool {
+        self.message.ends_with(end)
+    }
+
+    /// Where it stands.
+    pub(crate) const fn place(&self) -> &Range<usize> {
+        &self.span
+    }
+
+    pub(crate) const fn start(&self) -> usize {
+        self.span.start
+    }
+
     /// Adds what to do.
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());

@@ -59,6 +59,7 @@ mod presets;
 mod schema;
 mod spec;
 mod syntax;
+mod unit_slip;
 mod value;
 mod view;
 

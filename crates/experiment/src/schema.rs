@@ -46,7 +46,10 @@ fn table(fields: &Fields, tag: Option<(&str, &str)>) -> Value {
 fn property(key: &Key) -> Value {
     let mut schema = kind(&key.kind);
     let unit = match &key.kind {
-        Kind::Quantity(unit, _) | Kind::Scaled(unit, _) if *unit != "1" => format!(", in {unit}"),
+        Kind::Quantity(unit, limits) | Kind::Scaled(unit, limits) if *unit != "1" => {
+            format!(", in {unit}, {}", limits.words)
+        }
+        Kind::Quantity(_, limits) | Kind::Scaled(_, limits) => format!(", {}", limits.words),
         _ => String::new(),
     };
     if let Some(object) = schema.as_object_mut() {

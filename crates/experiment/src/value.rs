@@ -15,6 +15,10 @@ pub enum Units {
     Dimensionless,
 }
 
+/// Ends of messages about a unit that is missing, or one too many.
+pub(crate) const HAS_NONE: &str = "has no unit";
+pub(crate) const HAS_ONE: &str = "has a unit in a dimensionless file";
+
 /// A value in SI and half a unit of its last written digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Si {
@@ -83,7 +87,7 @@ impl Expected<'_> {
                 half_digit: number.half_digit,
             });
         }
-        Err(self.problem(node, format!("`{}` has no unit", self.name)))
+        Err(self.problem(node, format!("`{}` {HAS_NONE}", self.name)))
     }
 
     fn quantity(&self, node: &Node, text: &str) -> Result<Si, Problem> {
@@ -100,9 +104,9 @@ impl Expected<'_> {
             });
         }
         let message = if found.dimension == Dimension::NONE {
-            format!("`{}` has no unit", self.name)
+            format!("`{}` {HAS_NONE}", self.name)
         } else if self.units == Units::Dimensionless {
-            format!("`{}` has a unit in a dimensionless file", self.name)
+            format!("`{}` {HAS_ONE}", self.name)
         } else {
             format!("`{}` is {}", self.name, found.dimension.name())
         };

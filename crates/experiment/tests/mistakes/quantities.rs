@@ -206,3 +206,26 @@ fn nan_and_infinities_are_refused_in_every_number_of_every_experiment() {
         }
     }
 }
+
+#[test]
+fn a_unit_system_that_suits_no_quantity_is_one_mistake() {
+    let finding = only(&format!("units = \"dimensionless\"\n{DRY}"));
+    let words = ["but its 6 quantities have units", "expected \"SI\""];
+    check(&finding, 1, "\"dimensionless\"", &words);
+    assert_eq!(finding.other_line(), Some(line_of("young_modulus") + 1));
+    let plain = "[striker]\nspeed = 1\n[[beads]]\nradius = 1\nmass = 1\nmaterial = \"a\"\n\
+                 [materials.a]\nyoung_modulus = 1\npoisson_ratio = 0\n\
+                 [[contacts]]\nlaws = [\"elastic_hertz\"]\n";
+    let finding = only(plain);
+    let words = ["none of the 4 quantities", "units = \"dimensionless\""];
+    check(&finding, 2, "1", &words);
+}
+
+#[test]
+fn a_unit_missing_beside_others_is_a_mistake_of_its_own() {
+    let text = DRY
+        .replace("= \"6.35 mm\"", "= 6.35")
+        .replace("= \"8.54 g\"", "= 8.54");
+    let mistakes = Experiment::from_text("test.toml", &text).unwrap_err();
+    assert_eq!(mistakes.findings().len(), 2, "{mistakes}");
+}
