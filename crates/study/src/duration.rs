@@ -45,9 +45,9 @@ const SHORT_CHAIN: f64 = 10.0;
 
 /// A striker is followed for at most this many times the time that the pulse
 /// took to the wall. It is back at 2 and has hit the striker; behind strong
-/// losses slow beads follow until 4.5; in all of the paper's chains the striker is
+/// losses slow beads follow until 4; in all of the paper's chains the striker is
 /// away for good before 6. Chains under load ring for ever and end here.
-const RETURNS: f64 = 8.0;
+const RETURNS: f64 = 6.0;
 
 /// Looks at the striker in the time of a contact time a bead.
 const LOOKS: f64 = 32.0;

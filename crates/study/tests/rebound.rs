@@ -104,7 +104,7 @@ fn dimensionless_rows_of_any_length_end_a_few_flights_after_the_pulse() {
         let shot = shoot(&plan(&row, 1.0, 1e-6)).unwrap();
         let wall_s = shot.passage.as_ref().unwrap().wall.time_s;
         assert!(end_m_s(&shot) < -0.9, "{count}: {:?}", shot.rebound);
-        assert!(shot.finished && shot.duration_s <= 8.01 * wall_s, "{count}");
+        assert!(shot.finished && shot.duration_s <= 6.01 * wall_s, "{count}");
     }
 }
 
@@ -118,12 +118,12 @@ fn without_a_wall_the_rebound_is_that_of_the_first_separation() {
 }
 
 #[test]
-fn a_chain_that_rings_under_load_ends_after_eight_flights() {
+fn a_chain_that_rings_under_load_ends_after_six_flights() {
     let loaded = preset("precompressed").unwrap();
     let (plan, _) = Plan::from_experiment(&loaded, None).unwrap();
     let shot = shoot(&plan).unwrap();
     let wall_s = shot.passage.as_ref().unwrap().wall.time_s;
-    // The shot ends with the step in which eight flights are over.
-    assert!((shot.duration_s / wall_s - 8.0).abs() < 0.02);
+    // The shot ends with the step in which six flights are over.
+    assert!((shot.duration_s / wall_s - 6.0).abs() < 0.02);
     assert!(end_m_s(&shot) < 0.0);
 }
