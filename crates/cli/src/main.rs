@@ -9,6 +9,7 @@ mod input;
 mod json;
 mod pictures;
 mod print;
+mod table;
 mod verbs;
 
 use arguments::{Program, Verb};

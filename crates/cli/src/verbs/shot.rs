@@ -6,7 +6,7 @@ mod traces;
 use crate::arguments::Shot as Arguments;
 use crate::failure::{Failure, print_warnings};
 use crate::folder::Folder;
-use crate::{input, json, print};
+use crate::{input, json, print, table};
 use hertzchain_study::{Plan, shoot, shoot_checked};
 use serde_json::json;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 json!(speed.or(experiment.speed_m_s())),
             );
         }
-        print::print_json(&result)?;
+        print::print_json(&table::named(result, experiment.units()))?;
     } else {
         print::print(&report::text(&experiment, &plan, &shot))?;
     }

@@ -6,7 +6,8 @@ use crate::folder::Folder;
 use crate::format::{self, Style, digits};
 use crate::given::check_speeds;
 use crate::print::heading;
-use crate::{input, json, pictures, print};
+use crate::table::cell;
+use crate::{input, json, pictures, print, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_signal::{FitError, PowerLaw};
 use hertzchain_study::{Plan, Point, Settings, Shot, Sweep, parse_speeds, sweep};
@@ -80,12 +81,13 @@ fn show(
     swept: &Sweep,
 ) -> Result<(), Failure> {
     if arguments.json {
-        return print::print_json(&json!({
+        let results = json!({
             "experiment": experiment.name(),
             "points": swept.points.iter().map(json::point).collect::<serde_json::Value>(),
             "power_law_incident": json::fit(&swept.incident),
             "power_law_reflected": json::fit(&swept.reflected),
-        }));
+        });
+        return print::print_json(&table::named(results, experiment.units()));
     }
     print_warnings(experiment, swept);
     let style = Style::of_accuracy(plan.accuracy, experiment.units());
@@ -197,17 +199,30 @@ fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> Strin
 }
 
 fn write(mut folder: Folder, experiment: &Experiment, swept: &Sweep) -> Result<(), Failure> {
-    folder.write("sweep.csv", csv(swept).as_bytes())?;
+    folder.write("sweep.csv", csv(swept, experiment.units()).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(experiment, swept))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }
 
-fn csv(swept: &Sweep) -> String {
-    let mut text = String::from(
-        "speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,returning_peak_n,\
-         striker_rebound_m_s,accuracy_reached\n",
-    );
+/// Columns of the file.
+const NAMES: [&str; 8] = [
+    "speed_m_s",
+    "tof_incident_s",
+    "tof_reflected_s",
+    "sensor_peak_n",
+    "wall_peak_n",
+    "returning_peak_n",
+    "striker_rebound_m_s",
+    "accuracy_reached",
+];
+
+fn csv(swept: &Sweep, units: Units) -> String {
+    let names = match units {
+        Units::Si => NAMES,
+        Units::Dimensionless => NAMES.map(table::without_unit),
+    };
+    let mut text = format!("{}\n", names.join(","));
     for point in &swept.points {
         let Ok(shot) = &point.shot else { continue };
         let seen = shot.passage.as_ref().ok();
@@ -221,7 +236,7 @@ fn csv(swept: &Sweep) -> String {
             shot.rebound.and_then(|rebound| rebound.end_m_s),
             shot.accuracy_reached,
         ];
-        let cells = cells.map(|cell| cell.map_or(String::new(), |value| value.to_string()));
+        let cells = cells.map(|value| value.map_or(String::new(), cell));
         text += &format!("{}\n", cells.join(","));
     }
     text

@@ -4,6 +4,7 @@ use crate::arguments::Shot as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures;
+use crate::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
@@ -83,7 +84,7 @@ pub fn write(
     }
     let columns = &trace.columns[shown.len()..];
     if arguments.npy {
-        npy(&mut folder, &trace, columns, &bodies)?;
+        npy(&mut folder, &trace, columns, &bodies, experiment.units())?;
     }
     if arguments.animate {
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
@@ -105,14 +106,6 @@ fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Fail
     trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
 }
 
-/// The end of a column's name: its unit, none in a dimensionless chain.
-fn suffix(unit: &str, units: Units) -> String {
-    match units {
-        Units::Si => format!("_{}", unit.replace('/', "_").to_lowercase()),
-        Units::Dimensionless => String::new(),
-    }
-}
-
 fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment) -> String {
     let (units, wall) = (experiment.units(), pictures::wall(experiment));
     let column = |sensor: &Sensor| {
@@ -122,9 +115,9 @@ fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment) -> String {
     let names: String = sensors.iter().map(column).collect();
     let mut text = format!("time{}{names}\n", suffix("s", units));
     for (row, time) in trace.time_s.iter().enumerate() {
-        text += &time.to_string();
+        text += &cell(*time);
         for column in trace.columns.iter().take(sensors.len()) {
-            text += &format!(",{}", column.get(row).copied().unwrap_or(f64::NAN));
+            text += &format!(",{}", cell(column.get(row).copied().unwrap_or(f64::NAN)));
         }
         text.push('\n');
     }
@@ -151,7 +144,7 @@ fn energy_csv(trace: &Trace, units: Units) -> String {
             b.residual_j(),
         ];
         let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest))
-            .map(|value| value.to_string())
+            .map(cell)
             .collect();
         text += &format!("{}\n", cells.join(","));
     }
@@ -163,17 +156,17 @@ fn npy(
     trace: &Trace,
     columns: &[Vec<f64>],
     bodies: &Bodies,
+    units: Units,
 ) -> Result<(), Failure> {
+    let file = |name: &str, unit| format!("{name}{}.npy", suffix(unit, units));
     let count = bodies.count();
     let (positions, rest) = columns.split_at(count.min(columns.len()));
     let (velocities, forces) = rest.split_at(count.min(rest.len()));
-    folder.write(
-        "time_s.npy",
-        &array(std::slice::from_ref(&trace.time_s), false)?,
-    )?;
-    folder.write("position_m.npy", &array(positions, true)?)?;
-    folder.write("velocity_m_s.npy", &array(velocities, true)?)?;
-    folder.write("force_n.npy", &array(forces, true)?)
+    let times = std::slice::from_ref(&trace.time_s);
+    folder.write(&file("time", "s"), &array(times, false)?)?;
+    folder.write(&file("position", "m"), &array(positions, true)?)?;
+    folder.write(&file("velocity", "m/s"), &array(velocities, true)?)?;
+    folder.write(&file("force", "N"), &array(forces, true)?)
 }
 
 /// Columns as an array [body][sample], or one column as [sample].
