@@ -24,7 +24,7 @@ impl Check {
     pub(crate) fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
         if !matches!(node.value, Value::Table(_)) {
             let message = format!("{} is {}", fields.title, node.kind());
-            let label = format!("expected a table, written {}", fields.title);
+            let label = format!("expected a table, written {}", written(fields));
             self.add(Problem::new(&node.span, message, label));
             return;
         }
@@ -87,9 +87,16 @@ impl Check {
         match &key.kind {
             Kind::Quantity(unit, limits) => self.quantity(key.name, unit, *limits, node),
             Kind::Scaled(unit, limits) => self.scaled(key.name, unit, *limits, node),
-            Kind::Quantities(unit) => self.each(key, node, |check, member| {
-                check.quantity(key.name, unit, Limits::ANY, member);
-            }),
+            Kind::Quantities(unit) => {
+                let before = self.problems.len();
+                self.each(key, node, |check, member| {
+                    check.quantity(key.name, unit, Limits::ANY, member);
+                });
+                // A slip that all members share is one mistake.
+                let mut own = self.problems.split_off(before);
+                own.dedup_by(|next, first| next.same_message(first));
+                self.problems.append(&mut own);
+            }
             Kind::Count { least, most } => self.count(key.name, *least, *most, node),
             Kind::Counts => self.each(key, node, |check, member| {
                 check.count(key.name, 0, i64::MAX, member);
@@ -137,7 +144,9 @@ impl Check {
             Value::List(members) => members.iter().for_each(|member| check(self, member)),
             _ => {
                 let expected = match key.kind {
-                    Kind::Tables(fields) => format!("a list of tables, written {}", fields.title),
+                    Kind::Tables(fields) => {
+                        format!("a list of tables, written {}", written(fields))
+                    }
                     _ => "a list in [ ]".to_owned(),
                 };
                 self.kind(key, node, &expected, false);
@@ -211,16 +220,19 @@ impl Check {
         self.kind(
             key,
             node,
-            "tables with names",
+            &format!("tables with names, such as [{}.steel]", key.name),
             matches!(node.value, Value::Table(_)),
         );
         let bare = |entry: &&Entry| !matches!(entry.node.value, Value::Table(_));
         if let Some(entry) = node.entries().iter().find(bare) {
             let message = format!("`{}` stands in [{}] itself", entry.key, key.name);
-            let label = format!(
-                "expected it in a table with a name, such as [{}.steel]",
-                key.name
-            );
+            let label = match entry.node.value {
+                Value::List(_) => format!("expected a table, written [{}.{}]", key.name, entry.key),
+                _ => format!(
+                    "expected it in a table with a name, such as [{}.steel]",
+                    key.name
+                ),
+            };
             return self.add(Problem::new(&entry.key_span, message, label));
         }
         for entry in node.entries() {
@@ -295,6 +307,14 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
 fn is_slip_of(part: &str, node: &Node) -> bool {
     let mut strange = (node.entries().iter()).filter(|e| !POWER_LAW.contains(&e.key.as_str()));
     strange.any(|entry| nearest::of(&entry.key, POWER_LAW) == Some(part))
+}
+
+/// How a table is written in a file.
+fn written(fields: &Fields) -> &'static str {
+    match fields.title.starts_with('[') {
+        true => fields.title,
+        false => "{ key = value, … }",
+    }
 }
 
 /// The key of a table that another word was probably meant for.

@@ -3,6 +3,7 @@
 use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
+use crate::crushed;
 use crate::document::{self, Node, Value};
 use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
@@ -145,11 +146,15 @@ impl Experiment {
     ///
     /// # Errors
     /// Those of [`Experiment::chain`]; laws that the materials can't serve; no
-    /// static equilibrium.
+    /// static equilibrium, or one in which beads are crushed.
     pub fn system(&self, speed_m_s: Option<f64>) -> Result<(System, Vec<Warning>), Mistakes> {
         let (chain, warnings) = self.chain(speed_m_s)?;
         let refused = |error| self.mistake(locate::problem(&self.spec, &error));
-        Ok((System::new(&chain).map_err(refused)?, warnings))
+        let system = System::new(&chain).map_err(refused)?;
+        match crushed::problem(&self.spec, &chain, &system) {
+            Some(problem) => Err(self.mistake(problem)),
+            None => Ok((system, warnings)),
+        }
     }
 
     /// Refuses an experiment without a striker where a speed is asked for,

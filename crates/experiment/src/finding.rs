@@ -60,6 +60,10 @@ impl Problem {
         self.message.ends_with(end)
     }
 
+    pub(crate) fn same_message(&self, other: &Self) -> bool {
+        self.message == other.message
+    }
+
     /// Where it stands.
     pub(crate) const fn place(&self) -> &Range<usize> {
         &self.span

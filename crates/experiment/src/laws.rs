@@ -27,6 +27,11 @@ impl LawSpec {
         self.row.info.name
     }
 
+    /// Whether a stiffness of 0 takes its force away.
+    pub(crate) fn is_slack(&self) -> bool {
+        self.given.contains(&("stiffness", 0.0))
+    }
+
     /// The law itself.
     pub(crate) fn build(&self) -> Result<Arc<dyn Law>, Problem> {
         let problem = |e: hertzchain_chain::laws::LawError| {

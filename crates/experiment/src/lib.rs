@@ -44,6 +44,7 @@
 mod apply;
 mod assemble;
 mod check;
+mod crushed;
 mod document;
 mod duplicate;
 mod experiment;

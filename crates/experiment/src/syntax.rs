@@ -24,6 +24,9 @@ pub(crate) fn problems(errors: &[Error], text: &str) -> Vec<Problem> {
         if !follows {
             problems.push(problem(error, &place, text));
         }
+        if leaves_open(error) {
+            break;
+        }
     }
     problems
 }
@@ -41,6 +44,12 @@ fn place(error: &Error, text: &str) -> Range<usize> {
 
 fn is_duplicate(error: &Error) -> bool {
     error.message().starts_with("duplicate key")
+}
+
+/// Whether a list or a table in braces may go on to the end of the file.
+fn leaves_open(error: &Error) -> bool {
+    let inside = ["key-value pairs", "inline table", "array elements"];
+    inside.iter().any(|part| error.message().contains(part))
 }
 
 /// How far the text has been told about.

@@ -108,6 +108,7 @@ impl Limits {
             Units::Dimensionless if unit != "1" && self.least == 0.0 && self.closed => {
                 Self::NOT_NEGATIVE
             }
+            Units::Dimensionless if unit != "1" => Self::ANY,
             _ => self,
         }
     }

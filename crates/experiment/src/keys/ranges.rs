@@ -29,6 +29,10 @@ pub(super) const YOUNG_MODULUS: Limits = range(1.0, 1e21, "from 1 Pa to 1e21 Pa"
 pub(super) const VISCOSITY: Limits = range(0.0, 1e24, "from 0 to 1e24 Pa s");
 /// From a creep to a hundred times any bullet.
 pub(crate) const SPEED: Limits = range(1e-12, 1e6, "from 1e-12 m/s to 1e6 m/s");
+/// Of a bead that starts moving, either way.
+pub(super) const VELOCITY: Limits = range(-1e6, 1e6, "from -1e6 m/s to 1e6 m/s");
+/// Of a body, either way.
+pub(super) const DISPLACEMENT: Limits = range(-1e6, 1e6, "from -1000 km to 1000 km");
 /// From light crossing an atom to thirty years.
 pub(super) const TIME: Limits = range(1e-18, 1e9, "from 1e-18 s to 1e9 s");
 /// The inverse of a time.

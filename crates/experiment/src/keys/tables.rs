@@ -33,8 +33,9 @@ pub(super) const fn not_negative(
     Key::new(name, Kind::Quantity(unit, Limits::NOT_NEGATIVE), about)
 }
 
-pub(super) const fn any(name: &'static str, unit: &'static str, about: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(unit, Limits::ANY), about)
+/// A displacement of body 0, either way.
+pub(super) const fn either_way(name: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Quantity("m", ranges::DISPLACEMENT), about)
 }
 
 const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
@@ -171,8 +172,16 @@ static INITIAL: Fields = Fields {
     title: "[[initial]]",
     keys: &[
         number_of("bead", 1, "bead").needed(Need::Always),
-        any("displacement", "m", "displacement from rest; default 0"),
-        any("velocity", "m/s", "velocity; default 0"),
+        Key::new(
+            "displacement",
+            Kind::Quantity("m", ranges::DISPLACEMENT),
+            "displacement from rest; default 0",
+        ),
+        Key::new(
+            "velocity",
+            Kind::Quantity("m/s", ranges::VELOCITY),
+            "velocity; default 0",
+        ),
     ],
 };
 

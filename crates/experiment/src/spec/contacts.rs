@@ -38,7 +38,7 @@ impl SectionSpec {
     pub(crate) fn is_elastic(&self) -> bool {
         self.laws
             .iter()
-            .any(|law| law.row.info.nature != Nature::Dissipative)
+            .any(|law| law.row.info.nature != Nature::Dissipative && !law.is_slack())
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Spec {
     pub(crate) beads_less: usize,
     pub(crate) near: Near,
     pub(crate) push: Push,
+    /// What presses the chain together, if anything does.
+    pub(crate) load_span: Range<usize>,
     pub(crate) far: Far,
     pub(crate) far_span: Range<usize>,
     pub(crate) sections: Vec<SectionSpec>,
@@ -69,6 +71,10 @@ impl Spec {
             beads_less: 0,
             near: ends::near(root, &materials, folder)?,
             push: ends::push(root)?,
+            load_span: ["near_end", "track", "far_end"]
+                .into_iter()
+                .find(|key| root.has(key))
+                .map_or(0..0, |key| root.span_of(key)),
             far: ends::far(root, &materials)?,
             far_span: root.span_of("far_end"),
             sections: contacts::read(root, &materials, &groups)?,

@@ -167,3 +167,28 @@ fn a_gap_that_a_load_closes_is_a_warning() {
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].one_line().contains("this gap closes"));
 }
+
+#[test]
+fn beads_pressed_into_each_other_beyond_their_radius_are_refused() {
+    let push = "[near_end]\npush = \"constant\"\nforce = \"1e30 N\"\n";
+    let finding = refused(&format!("{DRY}\n{push}"));
+    assert_eq!(finding.text(), "[near_end]");
+    assert!(finding.one_line().contains("more than a bead's radius"));
+    let text = format!("{DRY}\n[[initial]]\nbead = 3\ndisplacement = \"1 km\"\n");
+    assert_eq!(refused(&text).line(), DRY.lines().count() + 3);
+    // Away from its neighbour a ball may be lifted as far as one likes.
+    let lifted = DRY.replace(
+        "[striker]\nspeed = \"0.5 m/s\"",
+        "[[initial]]\nbead = 1\ndisplacement = \"-5 cm\"",
+    );
+    let experiment = Experiment::from_text("test.toml", &lifted).unwrap();
+    assert!(experiment.system(None).is_ok());
+}
+
+#[test]
+fn a_table_of_one_position_moves_nothing() {
+    let table =
+        "[driven]\nmotion = \"table\"\ntimes = [\"0 s\", \"1 ms\"]\npositions = [\"1 m\", \"1 m\"]";
+    let finding = only(&DRY.replace("[striker]\nspeed = \"0.5 m/s\"", table));
+    assert!(finding.one_line().contains("sets nothing in motion"));
+}

@@ -142,3 +142,22 @@ fn many_tables_given_twice_are_told_without_starting_over_for_each() {
     let mistakes = Experiment::from_text("test.toml", &text).unwrap_err();
     assert_eq!(mistakes.findings().len(), 20, "the first 20 are told");
 }
+
+#[test]
+fn a_slip_that_all_members_of_a_list_share_is_one_mistake() {
+    let table = "[driven]\nmotion = \"table\"\ntimes = [0, 1, 2]\npositions = [\"0 m\", \"1 um\", \"2 um\"]";
+    let finding = only(&DRY.replace("[striker]\nspeed = \"0.5 m/s\"", table));
+    assert_eq!(
+        (finding.text(), finding.line()),
+        ("0", line_of("[striker]") + 2)
+    );
+}
+
+#[test]
+fn braces_left_open_are_one_report() {
+    let finding = after(
+        "coefficient = \"77 kg s/m^2\" },",
+        "coefficient = \"77 kg s/m^2\"",
+    );
+    assert!(finding.one_line().contains("not valid TOML"));
+}
