@@ -67,15 +67,6 @@ impl Finding {
         self.expected.map(|expected| self.value - expected)
     }
 
-    /// The same finding with what the paper has for the number.
-    #[must_use]
-    pub(super) fn expecting(self, expected: f64) -> Self {
-        Self {
-            expected: Some(expected),
-            ..self
-        }
-    }
-
     /// Of a claim for which numbers are missing.
     #[must_use]
     pub fn without_numbers(why: &str) -> Self {

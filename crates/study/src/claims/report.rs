@@ -100,7 +100,8 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
 /// What was drawn, for the page.
 const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
     digit, steel's Poisson ratio 0.3 from 0.25 to 0.35; a claim that a draw decides otherwise \
-    is not decidable.\n\n";
+    is not decidable. Draws have fewer speeds than the tables; they are held against what the printed constants \
+    give at the same speeds.\n\n";
 
 /// How many claims have which verdict, in a sentence.
 fn totals(judged: &[Judged]) -> String {
@@ -120,15 +121,14 @@ fn section(page: &mut String, judged: &Judged) {
         claim.value
     );
     if let (Some(expected), Some(deviation)) = (finding.expected, finding.deviation()) {
-        let (expected, sign) = (
-            with_unit(expected, claim),
-            if deviation > 0.0 { "+" } else { "" },
+        let expected = with_unit(expected, claim);
+        let sign = if deviation > 0.0 { "+" } else { "" };
+        let deviation = value_text(deviation, finding.accuracy);
+        let _ = writeln!(
+            page,
+            "- The paper: {expected}. Deviation: {sign}{}.",
+            of_unit(deviation, claim)
         );
-        let deviation = match deviation.is_finite() {
-            true => format!("{sign}{}", with_unit(deviation, claim)),
-            false => "none".to_owned(),
-        };
-        let _ = writeln!(page, "- The paper: {expected}. Deviation: {deviation}.");
     }
     let _ = writeln!(page, "- Needed: {}. {}", needed(judged), claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
@@ -154,10 +154,7 @@ fn section(page: &mut String, judged: &Judged) {
 #[must_use]
 pub fn computed_text(judged: &Judged) -> String {
     let value = value_text(judged.finding.value, judged.finding.accuracy);
-    match judged.claim.unit.is_empty() || !judged.finding.value.is_finite() {
-        true => value,
-        false => format!("{value} {}", judged.claim.unit),
-    }
+    of_unit(value, &judged.claim)
 }
 
 /// What the claim needs, in the unit of what was computed.
@@ -188,9 +185,13 @@ pub(crate) fn rounded_text(judged: &Judged) -> Option<String> {
 
 /// A number with the unit of a claim.
 pub(crate) fn with_unit(value: f64, claim: &Claim) -> String {
-    match claim.unit.is_empty() {
-        true => digits(value),
-        false => format!("{} {}", digits(value), claim.unit),
+    of_unit(digits(value), claim)
+}
+
+fn of_unit(number: String, claim: &Claim) -> String {
+    match claim.unit.is_empty() || number == "none" {
+        true => number,
+        false => format!("{number} {}", claim.unit),
     }
 }
 

@@ -1,26 +1,13 @@
 //! Predicates on printed constants.
 
-use super::{Worst, missing};
+use super::missing;
 use crate::claims::{Claim, Evidence, Finding, Tally};
 
-/// The dynamic viscosity of every case, in Pa s, lies within the threshold of
-/// the printed one.
+/// The first case's dynamic viscosity, in Pa s, lies within the threshold of the
+/// printed one.
 pub(super) fn dynamic_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
-    let (mut least, mut printed) = (f64::INFINITY, f64::NAN);
-    for (case, expected) in claim.cases.iter().zip(&claim.expected) {
-        let Some(oil) = evidence.oil(case) else {
-            return missing();
-        };
-        let value = oil.dynamic_viscosity_pa_s();
-        let margin = claim.threshold - (value - expected).abs();
-        tally.margin(margin, 0.0);
-        worst.see(margin, value, 0.0, || case.clone());
-        if margin < least {
-            (least, printed) = (margin, *expected);
-        }
-    }
-    worst.finding(tally).expecting(printed)
+    let oil = claim.cases.first().and_then(|case| evidence.oil(case));
+    oil.map_or_else(missing, |oil| near(claim, oil.dynamic_viscosity_pa_s()))
 }
 
 /// The first case's dynamic viscosity over the second's lies within the
