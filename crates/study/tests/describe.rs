@@ -202,6 +202,13 @@ fn theory_prints_the_wave_of_an_unloaded_row_of_equal_beads_for_such_rows_only()
 }
 
 #[test]
+fn a_row_with_another_exponent_on_the_way_has_no_expected_time() {
+    let expected = |name: &str| theory(name).iter().any(|g| g.title.starts_with("Expected"));
+    assert!(expected("hertz") && expected("motor"));
+    assert!(!expected("exponent-section"));
+}
+
+#[test]
 fn small_waves_on_a_load_run_at_the_speed_of_sound_and_large_ones_faster() {
     let groups = theory("precompressed");
     let title = "Solitary wave on the static load";

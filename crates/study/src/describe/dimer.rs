@@ -31,7 +31,7 @@ pub(super) fn long_wave(chain: &Chain) -> Option<Group> {
     let title = "Solitary wave of a long, unloaded row of two kinds of beads by turns (long waves, to second order)";
     let mut group = Group::new(title);
     let speed = speed_beads_s(exponent, stiffness, masses_kg, 1.0);
-    group.number("speed at a peak contact force of 1", speed, "beads/s");
+    group.number("speed at unit peak contact force", speed, "beads/s");
     group.number(
         "it grows with the peak force to the power",
         0.5 * (exponent - 1.0) / exponent,

@@ -138,7 +138,7 @@ fn with_wave<T>(chain: &Chain, call: impl FnOnce(&SolitaryWave<'_>, &Bead) -> T)
 }
 
 pub(super) fn solitary(chain: &Chain) -> Option<Group> {
-    let title = "Exact solitary wave of a long, unloaded row of beads like the middle one, with the striker's energy";
+    let title = "Exact solitary wave of a long, unloaded row of beads and contacts like the middle ones, with the striker's energy";
     let mut group = Group::new(title);
     with_wave(chain, |wave, bead| {
         let speed = wave.speed_beads_s();
@@ -277,7 +277,11 @@ pub(super) fn loaded(chain: &Chain, system: &System) -> Option<Group> {
 pub(super) fn expected(experiment: &Experiment, chain: &Chain) -> Option<Group> {
     let equal = chain.beads.windows(2).all(|pair| pair[0] == pair[1]);
     let loaded = chain.push.force_n() > 0.0 || chain.incline_rad > 0.0;
-    if !equal || loaded || !experiment.has_wall() {
+    // The middle's wave is that of the whole way only where contacts are alike.
+    let way = experiment.sensor_bead()..chain.beads.len();
+    let mut contacts = way.map(|c| contact::elastic(chain, c));
+    let first = contacts.next()?;
+    if !equal || loaded || !experiment.has_wall() || contacts.any(|other| other != first) {
         return None;
     }
     let beads = (chain.beads.len() - experiment.sensor_bead()) as f64 + 0.5;
