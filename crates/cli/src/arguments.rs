@@ -1,8 +1,8 @@
 //! The command line, declared once: help, man pages and completions follow.
 
+use crate::given::Given;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use hertzchain_study::{parse_speed, parse_time};
 use std::path::PathBuf;
 
 /// Rows of beads and their solitary waves.
@@ -70,12 +70,14 @@ pub struct How {
     /// How the motion is computed
     #[arg(long, value_enum, value_name = "NAME")]
     pub solver: Option<Solver>,
-    /// Step of a fixed-step solver, such as "1 us"; found by halving when absent
-    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true)]
-    pub step: Option<f64>,
-    /// Duration of a shot, such as "2 ms"; until the reflected pulse has passed when absent
-    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true)]
-    pub duration: Option<f64>,
+    /// Step of a fixed-step solver, such as "1 us"; found by halving when absent; a plain number
+    /// where the experiment is dimensionless
+    #[arg(long, value_name = "TIME", value_parser = Given::time, allow_hyphen_values = true)]
+    pub step: Option<Given>,
+    /// Duration of a shot, such as "2 ms"; until the reflected pulse has passed when absent; a
+    /// plain number where the experiment is dimensionless
+    #[arg(long, value_name = "TIME", value_parser = Given::time, allow_hyphen_values = true)]
+    pub duration: Option<Given>,
     /// Where a pulse is timed
     #[arg(long, value_enum, value_name = "NAME")]
     pub pick: Option<Pick>,
@@ -126,9 +128,10 @@ pub struct Shot {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
-    /// Speed of the striker, such as "0.5 m/s" or 0.5
-    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_hyphen_values = true)]
-    pub speed: Option<f64>,
+    /// Speed of the striker, such as "0.5 m/s" or 0.5; a plain number is in m/s, or dimensionless
+    /// where the experiment is
+    #[arg(long, short, value_name = "SPEED", value_parser = Given::speed, allow_hyphen_values = true)]
+    pub speed: Option<Given>,
     /// How to compute.
     #[command(flatten)]
     pub how: How,
@@ -152,7 +155,8 @@ pub struct Sweep {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
-    /// Speeds in m/s: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT
+    /// Speeds in m/s, or dimensionless where the experiment is: 0.1,0.2,0.5 or FROM:TO:COUNT or
+    /// log:FROM:TO:COUNT
     #[arg(
         long,
         value_name = "SPEEDS",
@@ -180,9 +184,10 @@ pub struct Check {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
-    /// Speed of the striker, such as "0.5 m/s" or 0.5
-    #[arg(long, short, value_name = "SPEED", value_parser = parse_speed, allow_hyphen_values = true)]
-    pub speed: Option<f64>,
+    /// Speed of the striker, such as "0.5 m/s" or 0.5; a plain number is in m/s, or dimensionless
+    /// where the experiment is
+    #[arg(long, short, value_name = "SPEED", value_parser = Given::speed, allow_hyphen_values = true)]
+    pub speed: Option<Given>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

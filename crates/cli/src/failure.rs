@@ -3,7 +3,7 @@
 
 use hertzchain_experiment::{Finding, Mistakes, Warning};
 use hertzchain_study::StudyError;
-use miette::{GraphicalReportHandler, GraphicalTheme};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
@@ -37,7 +37,7 @@ impl Failure {
     pub fn report(&self) -> ExitCode {
         match self {
             Self::Mistakes(mistakes) => {
-                mistakes.findings().iter().for_each(print_finding);
+                print_findings(mistakes.findings(), "mistakes");
                 ExitCode::from(2)
             }
             Self::User(text) => {
@@ -62,18 +62,48 @@ fn handler() -> GraphicalReportHandler {
     GraphicalReportHandler::new_themed(theme).with_links(false)
 }
 
-/// A report that underlines the offending text.
-fn print_finding(finding: &Finding) {
-    let mut text = String::new();
-    match handler().render_report(&mut text, finding) {
-        Ok(()) => eprintln!("{}", text.trim_end()),
-        Err(_) => eprintln!("error: {}", finding.one_line()),
+/// Most reports that anybody reads at once.
+const MOST: usize = 20;
+
+fn print_findings(findings: &[Finding], kind: &str) {
+    findings.iter().take(MOST).for_each(print_finding);
+    let more = findings.len().saturating_sub(MOST);
+    if more > 0 {
+        eprintln!("… and {more} more {kind}");
     }
 }
 
-/// What is odd about an experiment, one line each.
-pub fn print_warnings(warnings: &[Warning]) {
-    for warning in warnings {
-        eprintln!("warning: {}", warning.one_line());
+/// Longest line that is shown with something underlined, in bytes; beyond the
+/// renderer's columns there is no place for marks.
+const LONGEST_LINE: usize = 2000;
+
+/// A report that underlines the offending text.
+fn print_finding(finding: &Finding) {
+    let mut text = String::new();
+    if fits(finding) && handler().render_report(&mut text, finding).is_ok() {
+        eprintln!("{}", text.trim_end());
+    } else {
+        let kind = match finding.severity() {
+            Some(Severity::Warning) => "warning",
+            _ => "error",
+        };
+        eprintln!("{kind}: {}", finding.one_line());
     }
+}
+
+/// Whether all lines that a report would show are of readable length.
+fn fits(finding: &Finding) -> bool {
+    let shown = |label: miette::LabeledSpan| {
+        let source = finding.source_code()?;
+        let context = source.read_span(label.inner(), 1, 1).ok()?;
+        let mut lines = context.data().split(|byte| *byte == b'\n');
+        Some(lines.all(|line| line.len() <= LONGEST_LINE))
+    };
+    let mut labels = finding.labels().into_iter().flatten();
+    labels.all(|label| shown(label) == Some(true))
+}
+
+/// What is odd about an experiment, each with the odd text underlined.
+pub fn print_warnings(warnings: &[Warning]) {
+    print_findings(warnings, "warnings");
 }

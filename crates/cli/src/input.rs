@@ -2,6 +2,7 @@
 
 use crate::arguments::{How, Input, Pick, Solver};
 use crate::failure::Failure;
+use crate::given::Given;
 use hertzchain_experiment::{Experiment, OpenError, preset};
 use hertzchain_study as study;
 use hertzchain_study::Plan;
@@ -35,10 +36,28 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
     })
 }
 
+/// The speed asked for, if it suits the experiment's units.
+pub fn speed(given: Option<&Given>, experiment: &Experiment) -> Result<Option<f64>, Failure> {
+    given.map_or(Ok(()), |given| given.check("--speed", experiment.units()))?;
+    Ok(given.map(Given::value))
+}
+
+/// Refuses times that do not suit the experiment's units.
+pub fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
+    for (option, given) in [("--step", &how.step), ("--duration", &how.duration)] {
+        if let Some(given) = given {
+            given.check(option, experiment.units())?;
+        }
+    }
+    Ok(())
+}
+
 /// Puts what the command line says in place of what the experiment says.
 pub fn adjust(how: &How, plan: &mut Plan) {
     plan.accuracy = how.accuracy.unwrap_or(plan.accuracy);
-    plan.duration_s = how.duration.or(plan.duration_s);
+    let step = how.step.as_ref().map(Given::value);
+    let duration = how.duration.as_ref().map(Given::value);
+    plan.duration_s = duration.or(plan.duration_s);
     if let Some(pick) = how.pick {
         plan.pick = match pick {
             Pick::Peak => study::Pick::Peak,
@@ -49,13 +68,13 @@ pub fn adjust(how: &How, plan: &mut Plan) {
     }
     plan.solver = match (how.solver, plan.solver) {
         (Some(Solver::Adaptive), _) => study::Solver::Adaptive,
-        (Some(Solver::Rk4), _) => study::Solver::Rk4 { step_s: how.step },
-        (Some(Solver::Verlet), _) => study::Solver::Verlet { step_s: how.step },
+        (Some(Solver::Rk4), _) => study::Solver::Rk4 { step_s: step },
+        (Some(Solver::Verlet), _) => study::Solver::Verlet { step_s: step },
         (None, study::Solver::Rk4 { step_s }) => study::Solver::Rk4 {
-            step_s: how.step.or(step_s),
+            step_s: step.or(step_s),
         },
         (None, study::Solver::Verlet { step_s }) => study::Solver::Verlet {
-            step_s: how.step.or(step_s),
+            step_s: step.or(step_s),
         },
         (None, study::Solver::Adaptive) => study::Solver::Adaptive,
     };
@@ -63,7 +82,7 @@ pub fn adjust(how: &How, plan: &mut Plan) {
 
 /// Refuses a step for a solver that chooses its own.
 pub fn check_step(how: &How, plan: &Plan) -> Result<(), Failure> {
-    match (how.step, plan.solver) {
+    match (&how.step, plan.solver) {
         (Some(_), study::Solver::Adaptive) => Err(Failure::User(
             "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),
         )),

@@ -4,10 +4,12 @@ mod arguments;
 mod failure;
 mod folder;
 mod format;
+mod given;
 mod input;
 mod json;
 mod pictures;
 mod print;
+mod table;
 mod verbs;
 
 use arguments::{Program, Verb};

@@ -1,8 +1,11 @@
 //! Figures of a shot and of a sweep.
 
+mod energy;
+
+pub use energy::energy;
+
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::Trace;
-use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_signal::{FitError, PowerLaw};
@@ -21,20 +24,23 @@ pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
 }
 
 /// Times in a unit that suits them.
-struct Clock {
-    scale: f64,
-    unit: &'static str,
+pub struct Clock {
+    /// Units in a second.
+    pub scale: f64,
+    /// Empty in a dimensionless chain.
+    pub unit: &'static str,
 }
 
 impl Clock {
-    fn of(times_s: &[f64], units: Units) -> Self {
+    /// Clear for the latest of the times.
+    pub fn of(times_s: &[f64], units: Units) -> Self {
         if units == Units::Dimensionless {
             return Self {
                 scale: 1.0,
                 unit: "",
             };
         }
-        let last = times_s.last().copied().unwrap_or(0.0);
+        let last = times_s.iter().copied().fold(0.0, f64::max);
         let (scale, unit) = match last {
             t if t < 2e-2 => (1e6, "µs"),
             t if t < 20.0 => (1e3, "ms"),
@@ -43,14 +49,14 @@ impl Clock {
         Self { scale, unit }
     }
 
-    fn times(&self, times_s: &[f64]) -> Vec<f64> {
+    fn scaled(&self, times_s: &[f64]) -> Vec<f64> {
         times_s.iter().map(|t| t * self.scale).collect()
     }
 
-    fn label(&self) -> String {
+    fn label(&self, quantity: &str) -> String {
         match self.unit {
-            "" => "Time".into(),
-            unit => format!("Time ({unit})"),
+            "" => quantity.to_owned(),
+            unit => format!("{quantity} ({unit})"),
         }
     }
 }
@@ -63,12 +69,18 @@ fn axis(quantity: &str, unit: &str, units: Units) -> String {
     }
 }
 
+/// Steep pulses are clearer unbroken: the first three colours differ enough in
+/// hue and lightness, dashes help after them.
+fn dash(line: usize) -> Dash {
+    if line < 3 { Dash::Solid } else { Dash::Dashed }
+}
+
 /// Signals of sensors against time, one panel a quantity.
 pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
     let units = experiment.units();
     let clock = Clock::of(&trace.time_s, units);
     let wall = wall(experiment);
-    let times = clock.times(&trace.time_s);
+    let times = clock.scaled(&trace.time_s);
     let panels = [("N", "Force"), ("m/s", "Velocity"), ("m", "Displacement")];
     let mut charts = Vec::new();
     for (unit, quantity) in panels {
@@ -77,18 +89,34 @@ pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Fi
             .filter(|(sensor, _)| name(**sensor, wall).1 == unit)
             .peekable();
         if shown.peek().is_some() {
-            let chart = Chart::new(&clock.label(), &axis(quantity, unit, units));
-            charts.push(shown.fold(chart, |chart, (sensor, column)| {
-                chart.with(Series::line(&name(*sensor, wall).0, &times, column))
-            }));
+            let chart = Chart::new(&clock.label("Time"), &axis(quantity, unit, units));
+            let lines = shown.enumerate().map(|(i, (sensor, column))| {
+                let name = legend(experiment, *sensor, wall);
+                Series::line(&name, &times, column).dash(dash(i))
+            });
+            charts.push(lines.fold(chart, Chart::with));
         }
     }
     if let Some(first) = charts.first_mut() {
         *first = first.clone().title(experiment.title());
     }
-    let height_mm = 55.0 * charts.len().max(1) as f64 + 10.0;
-    let empty = Figure::double_column(height_mm).share_x();
+    let height_mm = 50.0 * charts.len().max(1) as f64 + 12.0;
+    let empty = Figure::single_column(height_mm).share_x();
     charts.into_iter().fold(empty, Figure::panel)
+}
+
+/// What a sensor is called in a legend; the axis tells the quantity.
+fn legend(experiment: &Experiment, sensor: Sensor, wall: Option<usize>) -> String {
+    let body = match sensor {
+        Sensor::Position(body) | Sensor::Velocity(body) => body,
+        force => return name(force, wall).0,
+    };
+    match body {
+        0 if experiment.speed_m_s().is_some() => "striker".into(),
+        0 => "driven end".into(),
+        body if body > experiment.beads() => "stop".into(),
+        body => format!("bead {body}"),
+    }
 }
 
 /// The contact with the wall, if there is one.
@@ -96,101 +124,55 @@ pub fn wall(experiment: &Experiment) -> Option<usize> {
     experiment.has_wall().then(|| experiment.beads())
 }
 
-/// Where the energy is, against time, and what is missing.
-pub fn energy(budgets: &[Budget], units: Units) -> Figure {
-    let times_s: Vec<f64> = budgets.iter().map(|budget| budget.time_s).collect();
-    let clock = Clock::of(&times_s, units);
-    let times = clock.times(&times_s);
-    let line = |name: &str, of: &dyn Fn(&Budget) -> f64| {
-        let values: Vec<f64> = budgets.iter().map(of).collect();
-        Series::line(name, &times, &values)
-    };
-    let lost = |budget: &Budget| {
-        budget
-            .dissipated
-            .iter()
-            .map(|line| line.energy_j)
-            .sum::<f64>()
-    };
-    let outside = |b: &Budget| b.gravity_j + b.preload_j + b.stop_j;
-    let chart = Chart::new(&clock.label(), &axis("Energy", "J", units))
-        .with(line("kinetic", &|b| b.kinetic_j))
-        .with(line("elastic", &|b| b.elastic_j))
-        .with(line("dissipated", &lost))
-        .with(
-            line("all", &|b| b.start_j + b.driven_j)
-                .colour(Colour::BLACK)
-                .dash(Dash::Dashed),
-        );
-    let chart = match budgets.iter().any(|budget| outside(budget) != 0.0) {
-        true => chart.with(line("gravity, preload, stop", &outside)),
-        false => chart,
-    };
-    let residual =
-        Chart::new(&clock.label(), "Residual, relative").with(line("", &Budget::relative_residual));
-    Figure::single_column(100.0)
-        .letters()
-        .share_x()
-        .panel(chart)
-        .panel(residual)
-}
-
 /// Times of flight against speed with their power laws.
 pub fn sweep(experiment: &Experiment, sweep: &Sweep) -> Figure {
     let flights = sweep.flights();
-    let speeds: Vec<f64> = flights.iter().map(|flight| flight.0).collect();
-    let incident: Vec<f64> = flights.iter().map(|flight| flight.1).collect();
-    let reflected: Vec<f64> = flights.iter().map(|f| f.2.unwrap_or(f64::NAN)).collect();
+    let incident: Vec<(f64, f64)> = flights.iter().map(|flight| (flight.0, flight.1)).collect();
+    let reflected = flights
+        .iter()
+        .filter_map(|f| f.2.map(|time_s| (f.0, time_s)));
+    let reflected: Vec<(f64, f64)> = reflected.collect();
     let units = experiment.units();
+    let all = incident.iter().chain(&reflected);
+    let clock = Clock::of(&all.map(|(_, time_s)| *time_s).collect::<Vec<_>>(), units);
     let chart = Chart::new(
-        &axis("Impact speed $v_0$", "m/s", units),
-        &axis("Time of flight", "µs", units),
+        &axis("Striker speed $v_0$", "m/s", units),
+        &clock.label("Time of flight"),
     );
     let chart = chart.title(experiment.title()).x_log().y_log();
-    let scale = if units == Units::Si { 1e6 } else { 1.0 };
-    let chart = with(
-        chart,
-        "incident",
-        &speeds,
-        &incident,
-        &sweep.incident,
-        (Colour::BLUE, Marker::Circle, scale),
-    );
-    let chart = with(
-        chart,
-        "reflected",
-        &speeds,
-        &reflected,
-        &sweep.reflected,
-        (Colour::VERMILION, Marker::OpenSquare, scale),
-    );
-    Figure::single_column(70.0).panel(chart)
+    let chart = branch(chart, &clock, "reflected", &reflected, &sweep.reflected);
+    let chart = branch(chart, &clock, "incident", &incident, &sweep.incident);
+    Figure::single_column(78.0).panel(chart)
 }
 
-fn with(
+/// Points of one branch and the power law through them.
+fn branch(
     chart: Chart,
+    clock: &Clock,
     name: &str,
-    speeds: &[f64],
-    times_s: &[f64],
+    flights: &[(f64, f64)],
     fit: &Result<PowerLaw, FitError>,
-    (colour, marker, scale): (Colour, Marker, f64),
 ) -> Chart {
-    let micro = |values: Vec<f64>| -> Vec<f64> { values.iter().map(|t| scale * t).collect() };
-    let points = Series::points(name, speeds, &micro(times_s.to_vec()))
-        .marker(marker)
-        .colour(colour);
-    let chart = chart.with(points);
-    match fit {
-        Err(_) => chart,
-        Ok(law) => {
-            let mut ends: Vec<f64> = speeds.to_vec();
-            ends.sort_by(f64::total_cmp);
-            let values = ends.iter().map(|v| law.at(*v)).collect();
-            chart.with(
-                Series::line("", &ends, &micro(values))
-                    .colour(colour)
-                    .width(0.7),
-            )
-        }
+    if flights.is_empty() {
+        return chart;
     }
+    let (colour, marker) = match name {
+        "incident" => (Colour::BLUE, Marker::Circle),
+        _ => (Colour::VERMILION, Marker::OpenSquare),
+    };
+    let (mut speeds, times_s): (Vec<f64>, Vec<f64>) = flights.iter().copied().unzip();
+    let points = |name: &str| {
+        Series::points(name, &speeds, &clock.scaled(&times_s))
+            .marker(marker)
+            .colour(colour)
+    };
+    let Ok(law) = fit else {
+        return chart.with(points(name));
+    };
+    let named = format!("{name}, exponent {:.4}", law.exponent).replace('-', "\u{2212}");
+    let points = points(&named);
+    speeds.sort_by(f64::total_cmp);
+    let fitted: Vec<f64> = speeds.iter().map(|speed| law.at(*speed)).collect();
+    let line = Series::line("", &speeds, &clock.scaled(&fitted));
+    chart.with(line.colour(colour).width(0.7)).with(points)
 }

@@ -1,7 +1,9 @@
 //! From what a file says to a chain for one impact speed.
 
 use crate::finding::Problem;
+use crate::keys::ranges::SPEED;
 use crate::spec::{Far, Near, Shape, Spec};
+use crate::value::{Units, short};
 use hertzchain_chain::{Bead, Chain, FarEnd, Gap, Initial, Material, Section, Start};
 
 /// A chain and what is odd about it.
@@ -22,6 +24,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
     let start = start(spec, speed_m_s, first, &materials)?;
     let far = far(&spec.far, last, &materials);
     oddities.extend(inelastic(spec));
+    oddities.extend(closed_gaps(spec));
     let chain = Chain {
         start,
         far,
@@ -40,20 +43,35 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
 
 /// The speed of the shot: the one asked for, else the file's.
 fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Problem> {
-    let wrong = |message: String, label: &str| Problem::new(&spec.near_span(), message, label);
+    let limits = SPEED.within(spec.units, "m/s");
     match (&spec.near, asked_m_s) {
-        (Near::Striker { .. }, Some(speed)) if speed > 0.0 && speed.is_finite() => Ok(Some(speed)),
+        (Near::Striker { .. }, Some(speed)) if limits.hold(speed) => Ok(Some(speed)),
         (Near::Striker { .. }, Some(speed)) => {
-            let message = format!("a shot at {speed} m/s was asked for");
-            Err(wrong(message, "expected a positive, finite speed"))
+            let message = format!("a shot at {} was asked for", speed_words(spec, speed));
+            let label = format!("expected a positive, finite speed, {}", limits.words);
+            Err(Problem::new(&spec.near_span(), message, label))
         }
         (Near::Striker { speed_m_s, .. }, None) => Ok(Some(*speed_m_s)),
         (_, Some(speed)) => {
-            let message = format!("a shot at {speed} m/s was asked for, but there is no striker");
-            Err(wrong(message, "expected [striker]"))
+            let asked = speed_words(spec, speed);
+            let message = format!("a shot at {asked} was asked for, but there is no striker");
+            Err(no_striker(spec, message))
         }
         (_, None) => Ok(None),
     }
+}
+
+fn speed_words(spec: &Spec, speed: f64) -> String {
+    match spec.units {
+        Units::Si => format!("{} m/s", short(speed)),
+        Units::Dimensionless => short(speed),
+    }
+}
+
+/// What else sets the chain in motion, where a striker is needed.
+pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> Problem {
+    Problem::new(&spec.near_span(), message, "this sets the chain in motion")
+        .help("put a [striker] with a `speed` in its place")
 }
 
 impl Spec {
@@ -61,7 +79,7 @@ impl Spec {
     fn near_span(&self) -> std::ops::Range<usize> {
         match &self.near {
             Near::Striker { shape, .. } | Near::Driven { shape, .. } => shape.span.clone(),
-            Near::Free => 0..0,
+            Near::Free { span } => span.clone(),
         }
     }
 
@@ -71,7 +89,7 @@ impl Spec {
         let parts = self.groups.iter().flat_map(|group| &group.cell);
         let near = match &self.near {
             Near::Striker { shape, .. } | Near::Driven { shape, .. } => of(shape),
-            Near::Free => false,
+            Near::Free { .. } => false,
         };
         let far = match &self.far {
             Far::HalfBead { shape, .. } | Far::Plane { shape, .. } => of(shape),
@@ -221,9 +239,23 @@ fn inelastic(spec: &Spec) -> impl Iterator<Item = Problem> {
     let inelastic = spec.sections.iter().filter(|section| !section.is_elastic());
     inelastic.map(|section| {
         let message = "no law of these contacts pushes the beads apart";
-        Problem::new(&section.span, message, "an elastic law is missing")
+        Problem::new(&section.laws_span, message, "an elastic law is missing")
             .help("add \"elastic_hertz\" to `laws`")
     })
+}
+
+/// A warning for gaps in contacts that are pressed together at rest.
+fn closed_gaps(spec: &Spec) -> impl Iterator<Item = Problem> {
+    let ring = matches!(spec.far, Far::Periodic { force_n } if force_n > 0.0);
+    let weighs = spec.incline_rad > 0.0 && spec.gravity_m_s2 > 0.0;
+    let pressed = ring || weighs || spec.push.force_n() > 0.0;
+    let closed = (spec.gaps.iter()).filter(move |(gap, _)| pressed && gap.contact > 0);
+    closed
+        .filter(|(gap, _)| gap.gap_m > 0.0)
+        .map(|(gap, span)| {
+            let message = format!("contact {} is pressed together at rest", gap.contact);
+            Problem::new(span, message, "this gap closes and has no effect")
+        })
 }
 
 fn gaps(spec: &Spec) -> Vec<Gap> {

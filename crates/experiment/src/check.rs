@@ -2,16 +2,18 @@
 
 use crate::document::{Entry, Node, Value};
 use crate::finding::Problem;
-use crate::keys::{self, Fields, Key, Kind, Limits, Need, Variants};
+use crate::keys::{self, Fields, Key, Kind, Limits, Need, Variants, advice};
 use crate::laws;
 use crate::nearest;
-use crate::value::{Expected, Units};
+use crate::value::{Expected, Units, short};
 
 /// Checks tables and collects what is wrong.
 #[derive(Debug)]
 pub(crate) struct Check {
     pub(crate) units: Units,
     pub(crate) problems: Vec<Problem>,
+    /// Quantities with a dimension that suit the unit system.
+    pub(crate) fitting: usize,
 }
 
 /// The keys of a power law of the striker's speed.
@@ -22,7 +24,8 @@ impl Check {
     pub(crate) fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
         if !matches!(node.value, Value::Table(_)) {
             let message = format!("{} is {}", fields.title, node.kind());
-            self.add(Problem::new(&node.span, message, "expected a table"));
+            let label = format!("expected a table, written {}", written(fields));
+            self.add(Problem::new(&node.span, message, label));
             return;
         }
         for entry in node.entries() {
@@ -32,12 +35,17 @@ impl Check {
                 None => self.unknown(entry, fields, tag),
             }
         }
-        for key in fields.keys {
+        // A misspelt key is one mistake, and has been reported.
+        let strange = |entry: &&Entry| fields.key(&entry.key).is_none();
+        let strange = node.entries().iter().filter(strange);
+        let misspelt: Vec<&str> = strange.filter_map(|e| slip_of(&e.key, fields)).collect();
+        let missing = |key: &&Key| !misspelt.contains(&key.name);
+        for key in fields.keys.iter().filter(missing) {
             self.needed(key, node, fields);
         }
     }
 
-    fn add(&mut self, problem: Problem) {
+    pub(crate) fn add(&mut self, problem: Problem) {
         self.problems.push(problem);
     }
 
@@ -50,13 +58,16 @@ impl Check {
         } else {
             label
         };
-        let near = nearest::of(&entry.key, known);
+        let near = slip_of(&entry.key, fields).or_else(|| nearest::of(&entry.key, tag));
         let problem = Problem::new(&entry.key_span, message, label);
         let problem = match keys::home(&entry.key) {
             Some(place) => problem.help(format!("`{}` belongs {place}", entry.key)),
             None => problem,
         };
-        self.add(problem.nearest(near));
+        self.add(match advice::about(fields.title, &entry.key) {
+            Some(advice) => problem.help(advice),
+            None => problem.nearest(near),
+        });
     }
 
     fn needed(&mut self, key: &Key, node: &Node, fields: &Fields) {
@@ -76,9 +87,16 @@ impl Check {
         match &key.kind {
             Kind::Quantity(unit, limits) => self.quantity(key.name, unit, *limits, node),
             Kind::Scaled(unit, limits) => self.scaled(key.name, unit, *limits, node),
-            Kind::Quantities(unit) => self.each(key, node, |check, member| {
-                check.quantity(key.name, unit, Limits::ANY, member);
-            }),
+            Kind::Quantities(unit) => {
+                let before = self.problems.len();
+                self.each(key, node, |check, member| {
+                    check.quantity(key.name, unit, Limits::ANY, member);
+                });
+                // A slip that all members share is one mistake.
+                let mut own = self.problems.split_off(before);
+                own.dedup_by(|next, first| next.same_message(first));
+                self.problems.append(&mut own);
+            }
             Kind::Count { least, most } => self.count(key.name, *least, *most, node),
             Kind::Counts => self.each(key, node, |check, member| {
                 check.count(key.name, 0, i64::MAX, member);
@@ -126,7 +144,9 @@ impl Check {
             Value::List(members) => members.iter().for_each(|member| check(self, member)),
             _ => {
                 let expected = match key.kind {
-                    Kind::Tables(fields) => format!("a list of tables, written {}", fields.title),
+                    Kind::Tables(fields) => {
+                        format!("a list of tables, written {}", written(fields))
+                    }
                     _ => "a list in [ ]".to_owned(),
                 };
                 self.kind(key, node, &expected, false);
@@ -141,7 +161,10 @@ impl Check {
             limits,
             units: self.units,
         };
-        self.problems.extend(expected.read(node).err());
+        match expected.read(node) {
+            Ok(_) => self.fitting += usize::from(unit != "1"),
+            Err(problem) => self.add(problem),
+        }
     }
 
     fn scaled(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
@@ -151,6 +174,7 @@ impl Check {
         for (part, unit) in POWER_LAW.into_iter().zip([unit, "1"]) {
             match node.get(part) {
                 Some(value) => self.quantity(part, unit, Limits::ANY, value),
+                None if is_slip_of(part, node) => {}
                 None => {
                     let message = format!("`{name}` has no `{part}`");
                     let label = "expected { prefactor = …, exponent = … }, a power law of the \
@@ -184,19 +208,33 @@ impl Check {
             None => format!("`{name}` is {}", node.kind()),
         };
         let label = format!("expected one of: \"{}\"", options.join("\", \""));
-        let near = node
-            .text()
-            .and_then(|text| nearest::of(text, options.iter().copied()));
-        self.add(Problem::new(&node.span, message, label).nearest(near));
+        let problem = Problem::new(&node.span, message, label);
+        let text = node.text().unwrap_or_default();
+        self.add(match advice::option(name, text) {
+            Some(advice) => problem.help(advice),
+            None => problem.nearest(nearest::of(text, options.iter().copied())),
+        });
     }
 
     fn named(&mut self, key: &Key, node: &Node, fields: &'static Fields) {
         self.kind(
             key,
             node,
-            "tables with names",
+            &format!("tables with names, such as [{}.steel]", key.name),
             matches!(node.value, Value::Table(_)),
         );
+        let bare = |entry: &&Entry| !matches!(entry.node.value, Value::Table(_));
+        if let Some(entry) = node.entries().iter().find(bare) {
+            let message = format!("`{}` stands in [{}] itself", entry.key, key.name);
+            let label = match entry.node.value {
+                Value::List(_) => format!("expected a table, written [{}.{}]", key.name, entry.key),
+                _ => format!(
+                    "expected it in a table with a name, such as [{}.steel]",
+                    key.name
+                ),
+            };
+            return self.add(Problem::new(&entry.key_span, message, label));
+        }
         for entry in node.entries() {
             self.table(&entry.node, fields, None);
         }
@@ -205,14 +243,36 @@ impl Check {
     fn variants(&mut self, node: &Node, variants: &'static Variants) {
         let options: Vec<&str> = variants.options.iter().map(|(name, _)| *name).collect();
         let Some(tag) = node.get(variants.tag) else {
-            let message = format!("{} has no `{}`", variants.title, variants.tag);
-            let label = format!("expected {} = one of: {}", variants.tag, options.join(", "));
-            return self.add(Problem::new(&node.span, message, label));
+            return self.untagged(node, variants, &options);
         };
         self.choice(variants.tag, &options, tag);
         if let Some(fields) = tag.text().and_then(|tag| variants.fields(tag)) {
             self.table(node, fields, Some(variants.tag));
         }
+    }
+
+    /// A table without its deciding key, at the key that may stand for it.
+    fn untagged(&mut self, node: &Node, variants: &Variants, options: &[&str]) {
+        if !matches!(node.value, Value::Table(_)) {
+            let message = format!("{} is {}", variants.title, node.kind());
+            return self.add(Problem::new(&node.span, message, "expected a table"));
+        }
+        let (title, tag) = (variants.title, variants.tag);
+        let label = format!("expected {tag} = \"{}\"", options.join("\" or \""));
+        let known = |key: &str| variants.options.iter().any(|(_, f)| f.key(key).is_some());
+        let mut entries = node.entries().iter();
+        self.add(match entries.find(|entry| !known(&entry.key)) {
+            Some(entry) => {
+                let message = format!("{title} has no key `{}`, and needs `{tag}`", entry.key);
+                let advice = entry.node.text().and_then(|text| advice::option(tag, text));
+                let problem = Problem::new(&entry.key_span, message, label);
+                match advice {
+                    Some(advice) => problem.help(advice),
+                    None => problem,
+                }
+            }
+            None => Problem::new(&node.span, format!("{title} has no `{tag}`"), label),
+        });
     }
 }
 
@@ -229,7 +289,10 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
     let value = number.value;
     // Whole numbers beyond 2^53 are not told apart by a double.
     if value.fract() != 0.0 || value.abs() > 9e15 || !value.is_finite() {
-        let message = format!("`{name}` = {value} is not a whole number, or is too large");
+        let message = match value.fract() == 0.0 {
+            true => format!("`{name}` = {} is too large", short(value)),
+            false => format!("`{name}` = {} is not a whole number", short(value)),
+        };
         return Err(problem(message));
     }
     let found = value as i64;
@@ -238,6 +301,26 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
     } else {
         Err(problem(format!("`{name}` = {found} is out of range")))
     }
+}
+
+/// Whether a key that a power law does not know is a slip of this one.
+fn is_slip_of(part: &str, node: &Node) -> bool {
+    let mut strange = (node.entries().iter()).filter(|e| !POWER_LAW.contains(&e.key.as_str()));
+    strange.any(|entry| nearest::of(&entry.key, POWER_LAW) == Some(part))
+}
+
+/// How a table is written in a file.
+fn written(fields: &Fields) -> &'static str {
+    match fields.title.starts_with('[') {
+        true => fields.title,
+        false => "{ key = value, … }",
+    }
+}
+
+/// The key of a table that another word was probably meant for.
+fn slip_of(word: &str, fields: &Fields) -> Option<&'static str> {
+    let known: Vec<&'static str> = fields.keys.iter().map(|key| key.name).collect();
+    advice::meant(word, &known).or_else(|| nearest::of(word, known))
 }
 
 /// A key with a value, as an example of what is missing.

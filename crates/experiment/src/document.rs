@@ -1,6 +1,7 @@
 //! A TOML text as a tree that knows where each value stands.
 
 use crate::finding::Problem;
+use crate::syntax;
 use crate::units;
 use std::ops::Range;
 use toml::Spanned;
@@ -90,34 +91,22 @@ impl Node {
 /// Parses a text; every syntax error is one problem.
 pub(crate) fn parse(text: &str) -> Result<Node, Vec<Problem>> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        return Err(syntax_errors(&errors, text));
+    match errors.is_empty() {
+        true => Ok(root(&table)),
+        false => Err(syntax::problems(&errors, text)),
     }
-    let span = table.span();
-    Ok(Node {
+}
+
+/// What can be understood of a text, whatever is wrong with the rest.
+pub(crate) fn understood(text: &str) -> Node {
+    root(&DeTable::parse_recoverable(text).0)
+}
+
+fn root(table: &Spanned<DeTable<'_>>) -> Node {
+    Node {
         value: Value::Table(entries(table.get_ref())),
-        span,
-    })
-}
-
-/// The first error of each line: the others follow from it.
-fn syntax_errors(errors: &[toml::de::Error], text: &str) -> Vec<Problem> {
-    let line = |error: &toml::de::Error| {
-        let end = error.span().map_or(text.len(), |span| span.start);
-        let before = text.as_bytes().iter().take(end);
-        before.filter(|byte| **byte == b'\n').count()
-    };
-    let mut last = None;
-    let first_of_line = |error: &&toml::de::Error| last.replace(line(error)) != Some(line(error));
-    let first = errors.iter().filter(first_of_line);
-    first.map(|error| syntax(error, text)).collect()
-}
-
-fn syntax(error: &toml::de::Error, text: &str) -> Problem {
-    let end = text.len();
-    let span = error.span().unwrap_or(end..end);
-    let span = span.start.min(end)..span.end.min(end);
-    Problem::new(&span, "this is not valid TOML", error.message())
+        span: table.span(),
+    }
 }
 
 /// Entries in the order of the text.

@@ -3,17 +3,19 @@
 use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
+use crate::crushed;
 use crate::document::{self, Node, Value};
+use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
 use crate::spec::{Liquid, Near, SectionSpec, Solver, Spec};
+use crate::unit_slip;
 use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,9 +47,6 @@ pub enum OpenError {
     Mistakes(#[from] Mistakes),
 }
 
-/// Larger files are a mistake.
-const MOST_BYTES: u64 = 16 << 20;
-
 impl Experiment {
     /// Reads an experiment file.
     ///
@@ -55,20 +54,10 @@ impl Experiment {
     /// An unreadable file, or every mistake found in it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let unreadable = |error| OpenError::Unreadable {
+        let text = file::read(path).map_err(|error| OpenError::Unreadable {
             path: path.display().to_string(),
             error,
-        };
-        let mut text = String::new();
-        // A device or a pipe has no size to ask for beforehand.
-        let file = std::fs::File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES + 1)
-            .read_to_string(&mut text)
-            .map_err(unreadable)?;
-        if text.len() as u64 > MOST_BYTES {
-            let error = std::io::Error::other("an experiment file has at most 16 MiB");
-            return Err(unreadable(error));
-        }
+        })?;
         Ok(Self::from_text(&path.display().to_string(), &text)?)
     }
 
@@ -91,14 +80,21 @@ impl Experiment {
         tree: Node,
         reading: Option<&Reading>,
     ) -> Result<Self, Mistakes> {
+        if tree.entries().is_empty() {
+            let problem = Problem::new(&(0..0), "this experiment is empty", "expected keys here");
+            let help = "`hertzchain presets dry` prints an experiment to start from";
+            return Err(Mistakes::one(problem.help(help), &source));
+        }
         let units = units(&tree);
         let mut check = Check {
             units,
             problems: Vec::new(),
+            fitting: 0,
         };
         check.table(&tree, &ROOT, None);
         if !check.problems.is_empty() {
-            return Err(Mistakes::new(check.problems, &source));
+            let problems = unit_slip::gathered(check.problems, check.fitting, units, &tree);
+            return Err(Mistakes::new(problems, &source));
         }
         let root = View {
             node: &tree,
@@ -150,11 +146,27 @@ impl Experiment {
     ///
     /// # Errors
     /// Those of [`Experiment::chain`]; laws that the materials can't serve; no
-    /// static equilibrium.
+    /// static equilibrium, or one in which beads are crushed.
     pub fn system(&self, speed_m_s: Option<f64>) -> Result<(System, Vec<Warning>), Mistakes> {
         let (chain, warnings) = self.chain(speed_m_s)?;
         let refused = |error| self.mistake(locate::problem(&self.spec, &error));
-        Ok((System::new(&chain).map_err(refused)?, warnings))
+        let system = System::new(&chain).map_err(refused)?;
+        match crushed::problem(&self.spec, &chain, &system) {
+            Some(problem) => Err(self.mistake(problem)),
+            None => Ok((system, warnings)),
+        }
+    }
+
+    /// Refuses an experiment without a striker where a speed is asked for,
+    /// with what sets its chain in motion instead.
+    ///
+    /// # Errors
+    /// An experiment that is driven or starts by itself.
+    pub fn needs_striker(&self, why: &str) -> Result<(), Mistakes> {
+        match self.speed_m_s() {
+            Some(_) => Ok(()),
+            None => Err(self.mistake(assemble::no_striker(&self.spec, why))),
+        }
     }
 
     fn mistake(&self, problem: Problem) -> Mistakes {
@@ -205,7 +217,7 @@ impl Experiment {
     pub fn speed_m_s(&self) -> Option<f64> {
         match self.spec.near {
             Near::Striker { speed_m_s, .. } => Some(speed_m_s),
-            Near::Driven { .. } | Near::Free => None,
+            Near::Driven { .. } | Near::Free { .. } => None,
         }
     }
 
@@ -257,12 +269,6 @@ impl Experiment {
     #[must_use]
     pub fn solver(&self) -> Solver {
         self.spec.solver
-    }
-
-    /// Seed of all randomness.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.spec.seed
     }
 
     /// The choices that the paper leaves open.

@@ -29,6 +29,8 @@ pub(crate) struct Problem {
     label: String,
     help: Option<String>,
     span: Range<usize>,
+    /// Another place that has to do with it, and what stands there.
+    other: Option<Box<(Range<usize>, String)>>,
 }
 
 impl Problem {
@@ -39,11 +41,36 @@ impl Problem {
         label: impl Into<String>,
     ) -> Self {
         Self {
-            message: message.into(),
-            label: label.into(),
+            message: shortened(message.into()),
+            label: shortened(label.into()),
             help: None,
             span: span.clone(),
+            other: None,
         }
+    }
+
+    /// Points at another place too, with what stands there.
+    pub(crate) fn beside(mut self, span: &Range<usize>, label: impl Into<String>) -> Self {
+        self.other = Some(Box::new((span.clone(), label.into())));
+        self
+    }
+
+    /// Whether its message ends so.
+    pub(crate) fn says(&self, end: &str) -> bool {
+        self.message.ends_with(end)
+    }
+
+    pub(crate) fn same_message(&self, other: &Self) -> bool {
+        self.message == other.message
+    }
+
+    /// Where it stands.
+    pub(crate) const fn place(&self) -> &Range<usize> {
+        &self.span
+    }
+
+    pub(crate) const fn start(&self) -> usize {
+        self.span.start
     }
 
     /// Adds what to do.
@@ -75,6 +102,16 @@ impl Problem {
     }
 }
 
+/// Longest message: a text of a million letters is not repeated in full.
+const LONGEST: usize = 600;
+
+fn shortened(text: String) -> String {
+    match text.char_indices().nth(LONGEST) {
+        None => text,
+        Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
+    }
+}
+
 impl Finding {
     /// Name of the file.
     #[must_use]
@@ -85,8 +122,19 @@ impl Finding {
     /// Line in the file, from 1.
     #[must_use]
     pub fn line(&self) -> usize {
-        let before = self.source.inner().get(..self.problem.span.start);
+        self.line_of(&self.problem.span)
+    }
+
+    fn line_of(&self, span: &Range<usize>) -> usize {
+        let before = self.source.inner().get(..span.start);
         1 + before.unwrap_or_default().matches('\n').count()
+    }
+
+    /// Line of the other place that has to do with it, if there is one.
+    #[must_use]
+    pub fn other_line(&self) -> Option<usize> {
+        let (span, _) = self.problem.other.as_deref()?;
+        Some(self.line_of(span))
     }
 
     /// The offending text.
@@ -105,6 +153,8 @@ impl Finding {
     /// File, line, message, expectation and advice in one line, for logs.
     #[must_use]
     pub fn one_line(&self) -> String {
+        let other = self.problem.other.as_deref().into_iter();
+        let other = other.map(|(span, label)| format!("; line {}: {label}", self.line_of(span)));
         let help = self.problem.help.iter().map(|help| format!(" ({help})"));
         format!(
             "{}:{}: {}: {}{}",
@@ -112,7 +162,7 @@ impl Finding {
             self.line(),
             self.problem.message,
             self.problem.label,
-            help.collect::<String>()
+            other.chain(help).collect::<String>()
         )
     }
 }
@@ -141,8 +191,11 @@ impl Diagnostic for Finding {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let label = Some(self.problem.label.clone());
-        let span = LabeledSpan::new_with_span(label, self.problem.span.clone());
-        Some(Box::new(std::iter::once(span)))
+        let here = LabeledSpan::new_primary_with_span(label, self.problem.span.clone());
+        let other = self.problem.other.as_deref().into_iter();
+        let other = other
+            .map(|(span, label)| LabeledSpan::new_with_span(Some(label.clone()), span.clone()));
+        Some(Box::new(std::iter::once(here).chain(other)))
     }
 }
 

@@ -27,6 +27,11 @@ impl LawSpec {
         self.row.info.name
     }
 
+    /// Whether a stiffness of 0 takes its force away.
+    pub(crate) fn is_slack(&self) -> bool {
+        self.given.contains(&("stiffness", 0.0))
+    }
+
     /// The law itself.
     pub(crate) fn build(&self) -> Result<Arc<dyn Law>, Problem> {
         let problem = |e: hertzchain_chain::laws::LawError| {
@@ -43,7 +48,15 @@ pub(crate) fn check(node: &Node, units: Units) -> Vec<Problem> {
         Err(problem) => return vec![problem],
     };
     let mut problems = unknown_parameters(node, row);
+    let unsound = unsound(node, row, units);
     for parameter in row.info.parameters {
+        // Its unit is not known: the exponent's own report comes first.
+        if unsound
+            .iter()
+            .any(|name| parameter.unit.contains(&format!("{{{name}}}")))
+        {
+            continue;
+        }
         match (node.get(parameter.name), parameter.source) {
             (Some(value), _) => {
                 let read = expected(parameter, row, node, units, |e| e.read(value));
@@ -56,6 +69,20 @@ pub(crate) fn check(node: &Node, units: Units) -> Vec<Problem> {
         }
     }
     problems
+}
+
+/// Parameters that are needed and missing, or wrong.
+fn unsound(node: &Node, row: &Row, units: Units) -> Vec<&'static str> {
+    let wrong = |p: &&Parameter| match node.get(p.name) {
+        Some(value) => expected(p, row, node, units, |e| e.read(value)).is_err(),
+        None => p.source == Source::Required,
+    };
+    row.info
+        .parameters
+        .iter()
+        .filter(wrong)
+        .map(|p| p.name)
+        .collect()
 }
 
 /// One member of `laws`, already checked.
@@ -75,13 +102,36 @@ pub(crate) fn read(node: &Node, units: Units) -> Result<LawSpec, Problem> {
     })
 }
 
+/// Refuses the same law with the same parameters twice in one section: its
+/// force would count twice, which nobody writes on purpose that way. The same
+/// law with other parameters is a sum of two terms.
+pub(crate) fn each_once(laws: &[LawSpec]) -> Result<(), Problem> {
+    for (index, law) in laws.iter().enumerate() {
+        let same = |other: &&LawSpec| other.name() == law.name() && other.given == law.given;
+        let Some(first) = laws.iter().take(index).find(same) else {
+            continue;
+        };
+        let message = format!("law `{}` stands twice in this section", law.name());
+        return Err(Problem::new(&law.span, message, "expected each term once")
+            .beside(&first.span, "the first one is here")
+            .help("forces of laws add, so this would double them; change a parameter instead"));
+    }
+    Ok(())
+}
+
 /// The registry row that a member of `laws` names.
 pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
     let name = match &node.value {
         Value::Text(_) => node,
         Value::Table(_) => node.get("law").ok_or_else(|| {
             let label = "expected { law = \"name\", parameter = value, … }";
-            Problem::new(&node.span, "this law has no name", label)
+            let called = |key: &&str| node.get(key).is_some();
+            let called = ["name", "type", "kind", "model"].into_iter().find(called);
+            let problem = Problem::new(&node.span, "this law has no name", label);
+            match called {
+                Some(word) => problem.help(format!("write `law` in place of `{word}`")),
+                None => problem,
+            }
         })?,
         _ => node,
     };
@@ -95,7 +145,9 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
     };
     find(text).ok_or_else(|| {
         let names: Vec<&str> = LAWS.iter().map(|row| row.info.name).collect();
+        let part = |name: &&str| !text.is_empty() && name.split('_').any(|word| word == text);
         let near = nearest::of(text, names.iter().copied());
+        let near = near.or_else(|| names.iter().copied().find(part));
         let label = format!("expected one of: {}", names.join(", "));
         Problem::new(&name.span, format!("there is no law `{text}`"), label).nearest(near)
     })
@@ -136,6 +188,13 @@ fn missing(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> Probl
     Problem::new(&node.span, message, label)
 }
 
+/// Largest exponent: steeper is a wall that no step can follow.
+const STEEPEST: f64 = 100.0;
+
+fn is_exponent(parameter: &Parameter) -> bool {
+    parameter.name == "exponent"
+}
+
 /// Calls with what a parameter must be; a law's unit may depend on another
 /// of its parameters.
 fn expected<T>(
@@ -146,15 +205,21 @@ fn expected<T>(
     call: impl FnOnce(Expected<'_>) -> T,
 ) -> T {
     let unit = unit(parameter, row, node, units);
+    let most = if is_exponent(parameter) {
+        STEEPEST
+    } else {
+        f64::MAX
+    };
     let words = match parameter.least {
         0.0 => "0 or more",
+        1.0 if is_exponent(parameter) => "from 1 to 100",
         1.0 => "1 or more",
         _ => "above the law's least value",
     };
     call(Expected {
         name: parameter.name,
         unit: &unit,
-        limits: Limits::new(parameter.least, f64::MAX, true, words),
+        limits: Limits::new(parameter.least, most, true, words),
         units,
     })
 }

@@ -44,8 +44,11 @@
 mod apply;
 mod assemble;
 mod check;
+mod crushed;
 mod document;
+mod duplicate;
 mod experiment;
+mod file;
 mod finding;
 mod keys;
 mod laws;
@@ -56,6 +59,8 @@ mod paths;
 mod presets;
 mod schema;
 mod spec;
+mod syntax;
+mod unit_slip;
 mod value;
 mod view;
 

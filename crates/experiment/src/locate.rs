@@ -1,7 +1,7 @@
 //! What the physics refuses, back at its place in the file.
 
 use crate::finding::Problem;
-use crate::spec::Spec;
+use crate::spec::{Far, Spec};
 use hertzchain_chain::ChainError;
 use hertzchain_chain::laws::{LawError, Source};
 use std::ops::Range;
@@ -10,11 +10,7 @@ use std::ops::Range;
 pub(crate) fn problem(spec: &Spec, error: &ChainError) -> Problem {
     match error {
         ChainError::Law { contact, error } => law(spec, *contact, error),
-        ChainError::Equilibrium(why) => {
-            let message = format!("the chain has no rest position: {why}");
-            let label = "expected ends that hold what pushes and pulls";
-            Problem::new(&spec.far_span, message, label)
-        }
+        ChainError::Equilibrium(why) => equilibrium(spec, why),
         ChainError::Value {
             what,
             value,
@@ -29,6 +25,27 @@ pub(crate) fn problem(spec: &Spec, error: &ChainError) -> Problem {
         }
         ChainError::Layout(why) => {
             Problem::new(&beads(spec), why, "expected parts that fit together")
+        }
+    }
+}
+
+/// No rest position: nothing holds the far end, or no law carries the load.
+fn equilibrium(spec: &Spec, why: &str) -> Problem {
+    let message = format!("the chain has no rest position: {why}");
+    if let Some(span) = &spec.suspension_span {
+        let label = "expected no [near_end] push and no incline beside threads";
+        return Problem::new(span, message, label);
+    }
+    let inelastic = spec.sections.iter().find(|section| !section.is_elastic());
+    match (&spec.far, inelastic) {
+        (Far::Free | Far::Periodic { .. }, _) | (_, None) => {
+            let label = "expected a far end that holds what pushes and pulls";
+            Problem::new(&spec.far_span, message, label)
+        }
+        (_, Some(section)) => {
+            let message = "the chain has no rest position: no law of these contacts carries a load";
+            let label = "expected a law that pushes the beads apart";
+            Problem::new(&section.laws_span, message, label).help("add \"elastic_hertz\" to `laws`")
         }
     }
 }

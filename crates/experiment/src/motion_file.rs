@@ -48,6 +48,10 @@ pub(crate) fn table(table: &View<'_>, folder: &Path) -> Result<Motion, Problem> 
         let label = "expected each time to be later than the one before";
         return Err(wrong("the times do not increase", label));
     }
+    if positions_m.windows(2).all(|pair| pair[0] == pair[1]) {
+        let label = "expected positions that differ";
+        return Err(wrong("this motion sets nothing in motion", label));
+    }
     Ok(Motion::Table {
         times_s,
         positions_m,

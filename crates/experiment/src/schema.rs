@@ -46,7 +46,10 @@ fn table(fields: &Fields, tag: Option<(&str, &str)>) -> Value {
 fn property(key: &Key) -> Value {
     let mut schema = kind(&key.kind);
     let unit = match &key.kind {
-        Kind::Quantity(unit, _) | Kind::Scaled(unit, _) if *unit != "1" => format!(", in {unit}"),
+        Kind::Quantity(unit, limits) | Kind::Scaled(unit, limits) if *unit != "1" => {
+            format!(", in {unit}, {}", limits.words)
+        }
+        Kind::Quantity(_, limits) | Kind::Scaled(_, limits) => format!(", {}", limits.words),
         _ => String::new(),
     };
     if let Some(object) = schema.as_object_mut() {
@@ -96,6 +99,9 @@ fn quantity(unit: &str, limits: &Limits) -> Value {
         return schema;
     };
     // Limits of quantities with a dimension are those of their SI values.
+    if unit != "1" && limits.least > 0.0 {
+        object.insert("exclusiveMinimum".to_owned(), json!(0.0));
+    }
     if limits.least == 0.0 || unit == "1" && limits.least > f64::MIN {
         object.insert(least.to_owned(), json!(limits.least));
     }

@@ -2,7 +2,7 @@
 
 use crate::document::{Node, Number, Value};
 use crate::finding::Problem;
-use crate::keys::Limits;
+use crate::keys::{Limits, ranges};
 use crate::units::{self, Dimension};
 
 /// The unit system of a file.
@@ -14,6 +14,10 @@ pub enum Units {
     /// Plain numbers, K = m = 1 unless written.
     Dimensionless,
 }
+
+/// Ends of messages about a unit that is missing, or one too many.
+pub(crate) const HAS_NONE: &str = "has no unit";
+pub(crate) const HAS_ONE: &str = "has a unit in a dimensionless file";
 
 /// A value in SI and half a unit of its last written digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,14 +43,23 @@ impl Expected<'_> {
         units::parse_unit(self.unit).map_or(Dimension::NONE, |unit| unit.dimension)
     }
 
+    fn limits(&self) -> Limits {
+        self.limits.within(self.units, self.unit)
+    }
+
     /// "a length in m, such as "6.35 mm"".
     fn words(&self) -> String {
         let dimension = self.dimension();
         if self.units == Units::Dimensionless || dimension == Dimension::NONE {
-            return format!("expected a plain number, {}", self.limits.words);
+            return format!("expected a plain number, {}", self.limits().words);
         }
-        let (name, example) = (dimension.name(), dimension.example());
-        format!("expected {name} in {}, such as \"{example}\"", self.unit)
+        match dimension.known_name() {
+            Some(name) => {
+                let example = dimension.example();
+                format!("expected {name} in {}, such as \"{example}\"", self.unit)
+            }
+            None => format!("expected a quantity in {0}, such as \"1 {0}\"", self.unit),
+        }
     }
 
     fn problem(&self, node: &Node, message: String) -> Problem {
@@ -74,7 +87,7 @@ impl Expected<'_> {
                 half_digit: number.half_digit,
             });
         }
-        Err(self.problem(node, format!("`{}` has no unit", self.name)))
+        Err(self.problem(node, format!("`{}` {HAS_NONE}", self.name)))
     }
 
     fn quantity(&self, node: &Node, text: &str) -> Result<Si, Problem> {
@@ -91,9 +104,9 @@ impl Expected<'_> {
             });
         }
         let message = if found.dimension == Dimension::NONE {
-            format!("`{}` has no unit", self.name)
+            format!("`{}` {HAS_NONE}", self.name)
         } else if self.units == Units::Dimensionless {
-            format!("`{}` has a unit in a dimensionless file", self.name)
+            format!("`{}` {HAS_ONE}", self.name)
         } else {
             format!("`{}` is {}", self.name, found.dimension.name())
         };
@@ -105,17 +118,41 @@ impl Expected<'_> {
             let message = format!("`{}` is not a finite number", self.name);
             return Err(self.problem(node, message));
         }
-        if self.limits.hold(si.value) {
-            return Ok(si);
-        }
-        let unit = match (self.unit, self.units) {
-            ("1", _) | (_, Units::Dimensionless) => String::new(),
-            (unit, Units::Si) => format!(" {unit}"),
+        let size = si.value.abs();
+        let extreme = size != 0.0 && !(ranges::SMALLEST..=ranges::LARGEST).contains(&size);
+        let words = match (self.limits().hold(si.value), extreme) {
+            (true, false) => return Ok(si),
+            (true, true) => "0, or from 1e-100 to 1e100 in size",
+            (false, _) if si.value <= 0.0 && self.limits().least > 0.0 => "positive",
+            (false, _) => self.limits().words,
         };
         let message = format!(
-            "`{}` is {}{unit}, but must be {}",
-            self.name, si.value, self.limits.words
+            "`{}` is {}, but must be {words}",
+            self.name,
+            self.written(node, si)
         );
         Err(self.problem(node, message))
+    }
+
+    /// The value as the user wrote it; in SI when a program set it.
+    fn written(&self, node: &Node, si: Si) -> String {
+        match (&node.value, self.unit, self.units) {
+            (Value::Text(text), _, _) => text.trim().to_owned(),
+            (_, "1", _) | (_, _, Units::Dimensionless) => short(si.value),
+            (_, unit, Units::Si) => format!("{} {unit}", short(si.value)),
+        }
+    }
+}
+
+/// A computed number for messages, to six digits.
+pub(crate) fn rounded(value: f64) -> String {
+    short(format!("{value:.5e}").parse().unwrap_or(value))
+}
+
+/// A number for messages: as short as it can be read back.
+pub(crate) fn short(value: f64) -> String {
+    match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        true => format!("{value}"),
+        false => format!("{value:e}"),
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct Scaled {
     pub(crate) prefactor: f64,
     /// 0 for a plain number.
     pub(crate) exponent: f64,
+    /// What its value must be at any speed.
+    pub(crate) limits: Limits,
     pub(crate) span: Range<usize>,
 }
 
@@ -102,6 +104,7 @@ impl<'a> View<'a> {
         Ok(Some(Scaled {
             prefactor,
             exponent,
+            limits: limits.within(self.units, unit),
             span: node.span.clone(),
         }))
     }

@@ -146,8 +146,14 @@ fn initial_states_start_a_ring_or_an_open_chain() {
             .to_string()
             .contains("there is no striker")
     );
-    assert!(mistake("[[initial]]\nbead = 11\n").contains("bead 11 is outside the chain of 10"));
-    assert!(mistake("[[initial]]\nbead = 1\n[[initial]]\nbead = 1\n").contains("a second time"));
+    assert!(
+        mistake("[[initial]]\nbead = 11\nvelocity = \"1 m/s\"\n")
+            .contains("bead 11 is outside the chain of 10")
+    );
+    assert!(
+        mistake(&"[[initial]]\nbead = 1\nvelocity = \"1 m/s\"\n".repeat(2))
+            .contains("a second time")
+    );
 }
 
 #[test]

@@ -89,7 +89,7 @@ fn mistakes_say_what_and_where() {
         "`Gpa` is not a known unit; did you mean `GPa`?"
     );
     assert_eq!(mistake("nan"), "`nan` is not a finite number");
-    assert_eq!(mistake("-inf m"), "`-inf m` does not start with a number");
+    assert_eq!(mistake("-inf m"), "`-inf m` is not a finite number");
     assert_eq!(mistake("six mm"), "`six mm` does not start with a number");
     assert_eq!(mistake("1e400 m"), "`1e400 m` is too large a number");
     assert_eq!(

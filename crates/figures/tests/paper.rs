@@ -1,6 +1,9 @@
 //! The paper's figures from a whole, coarse reproduction.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+mod covered;
+
+use covered::covered;
 use hertzchain_figures::paper;
 use hertzchain_study::reproduce::{Options, Silent, reproduce};
 use std::collections::BTreeSet;
@@ -27,13 +30,17 @@ const FIGURES: [&str; 6] = [
 ];
 
 #[test]
-fn a_reproduction_writes_all_its_tables_and_figures_and_nothing_else() {
+fn a_reproduction_writes_all_its_tables_and_figures_and_its_legends_hide_nothing() {
     let coarse = Options {
         accuracy: 1e-4,
         draws: 0,
         ..Options::default()
     };
     let computed = reproduce(&coarse, &Silent).unwrap();
+    for (name, figure) in paper::figures(&computed).unwrap() {
+        assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");
+        assert!(figure.caption_text().len() > 40, "{name} has no caption");
+    }
     let folder = std::env::temp_dir().join(format!("hertzchain-paper-{}", std::process::id()));
     computed.write_tables(&folder).unwrap();
     paper::write(&computed, &folder).unwrap();
@@ -50,6 +57,7 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_nothing_else() {
         .iter()
         .map(|name| (*name).to_owned())
         .chain(figures)
+        .chain(["captions.md".to_owned()])
         .collect();
     assert_eq!(written, expected);
     assert!(png.starts_with(b"\x89PNG"));

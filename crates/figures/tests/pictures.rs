@@ -1,6 +1,9 @@
 //! What every picture must be: well-formed, complete on the page, the same
 //! every time, and not empty.
 
+mod covered;
+
+use covered::covered;
 use hertzchain_figures::{
     Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series, Verdict,
     VerdictMatrix,
@@ -73,6 +76,37 @@ fn check(svg: &str) {
     });
 }
 
+/// Many named curves that leave no free paper: noise from edge to edge.
+fn crowded(names: usize) -> Chart {
+    let x: Vec<f64> = (0..400).map(f64::from).collect();
+    (0..names).fold(Chart::new("Time (µs)", "Force (N)"), |chart, n| {
+        let y: Vec<f64> = x.iter().map(|x| (x * (1.3 + n as f64)).sin()).collect();
+        chart.with(Series::line(&format!("contact {n}"), &x, &y))
+    })
+}
+
+#[test]
+fn legends_of_crowded_and_filled_charts_cover_nothing() {
+    let x = [0.0, 1.0, 2.0];
+    let filled = Chart::new("Time (µs)", "Share")
+        .y_range(0.0, 1.0)
+        .with(Series::band("lower", &x, &[0.0; 3], &[0.4; 3]))
+        .with(Series::band("upper", &x, &[0.4; 3], &[1.0; 3]));
+    let heat = HeatMap::new(2, 1, &[-1.0, 1.0]);
+    let map = Chart::new("Time (µs)", "Bead").heat(heat);
+    let map = map.with(Series::line("front", &[0.0, 1.0], &[0.0, 1.0]));
+    let mut charts = vec![filled, map, wave().inset(wave())];
+    charts.extend([1, 4, 9].map(crowded));
+    charts.extend([1, 4, 9].map(|names| crowded(names).y_range(-0.9, 0.9)));
+    for chart in charts {
+        let figure = Figure::single_column(70.0).letters().panel(chart.clone());
+        assert_eq!(covered(&figure.svg()), (1, 0), "{chart:?}");
+        let both = Figure::single_column(110.0).share_x();
+        let both = both.panel(chart.clone()).panel(chart.clone());
+        assert_eq!(covered(&both.svg()), (2, 0), "{chart:?}");
+    }
+}
+
 fn each_group(group: &Group, visit: &mut impl FnMut(&Group)) {
     visit(group);
     for child in group.children() {
@@ -114,6 +148,20 @@ fn texts_of_a_picture_do_not_touch() {
     for figure in every_kind() {
         check_apart(&figure.svg());
     }
+}
+
+#[test]
+fn a_covered_curve_is_noticed() {
+    let curve = "<path d=\"M0 50H100\" stroke=\"#000000\"/>";
+    let picture = |y: u32| {
+        let (svg, xml) = ("<svg xmlns=\"http://www.w3.org/2000/svg\"", "</svg>");
+        let legend = format!("<g id=\"legend1\"><rect y=\"{y}\" width=\"30\" height=\"20\"/></g>");
+        format!(
+            "{svg} width=\"100\" height=\"100\"><rect width=\"100\" height=\"100\" fill=\"#fff\"/>{curve}{legend}{xml}"
+        )
+    };
+    assert_eq!(covered(&picture(10)), (1, 0));
+    assert!(covered(&picture(40)).1 > 20);
 }
 
 #[test]

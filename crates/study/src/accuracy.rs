@@ -57,3 +57,95 @@ pub(crate) fn fixed(solver: Solver, step_s: f64) -> Box<dyn Method> {
         Solver::Rk4 { .. } | Solver::Adaptive => Box::new(Rk4 { step_s }),
     }
 }
+
+/// A search for a fixed step halves it at most this often, down to some 1e-5
+/// of the contact time: beyond, adaptive steps are the only sane choice.
+pub(crate) const MOST_HALVINGS: u32 = 11;
+
+/// Changes of a result from which an order of convergence is read: the runs
+/// behind them take a hundredth of the time of the whole search.
+const SEEN: usize = 4;
+
+/// At impact an order of 1 is what every method has; less is scatter.
+const LEAST_ORDER: f64 = 1.0;
+
+/// How a result changes as a fixed step is halved again and again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Halvings {
+    changes: Vec<f64>,
+}
+
+/// What an accuracy would take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outlook {
+    /// Observed order of convergence, at least 1.
+    pub order: f64,
+    /// Halvings still to be made.
+    pub halvings: f64,
+}
+
+impl Halvings {
+    /// Notes the relative change that the latest halving made.
+    pub(crate) fn note(&mut self, change: f64) {
+        self.changes.push(change);
+    }
+
+    /// The latest change.
+    pub(crate) fn last(&self) -> f64 {
+        self.changes.last().copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The larger of the latest two changes: one small change may be two errors
+    /// that happen to be alike.
+    pub(crate) fn standing(&self) -> f64 {
+        match self.changes[..] {
+            [.., one, two] => one.max(two),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Halvings that an accuracy still takes at the order seen so far (Richardson);
+    /// `None` as long as too few changes are known.
+    pub(crate) fn outlook(&self, accuracy: f64) -> Option<Outlook> {
+        let seen = self.changes.get(self.changes.len().checked_sub(SEEN)?..)?;
+        let (first, last) = (seen.first()?, seen.last()?);
+        let order = (first / last).log2() / (SEEN - 1) as f64;
+        let order = order.is_finite().then_some(order.max(LEAST_ORDER))?;
+        let halvings = ((last / accuracy).log2() / order).ceil();
+        Some(Outlook { order, halvings })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn halvings(order: f64, first: f64, count: i32) -> Halvings {
+        let mut halvings = Halvings::default();
+        for i in 0..count {
+            halvings.note(first * (-order * f64::from(i)).exp2());
+        }
+        halvings
+    }
+
+    #[test]
+    fn halvings_to_come_follow_from_the_observed_order() {
+        for order in [1.0, 1.5, 2.0, 4.0] {
+            let seen = halvings(order, 1e-2, 5);
+            let outlook = seen.outlook(1e-9).unwrap();
+            assert!((outlook.order - order).abs() < 1e-12, "{outlook:?}");
+            let after = seen.last() * (-order * outlook.halvings).exp2();
+            // Just enough: one halving less would not do.
+            assert!(after <= 1e-9 && after * order.exp2() > 1e-9, "{outlook:?}");
+        }
+    }
+
+    #[test]
+    fn few_or_missing_results_give_no_outlook() {
+        assert_eq!(halvings(2.0, 1e-2, 3).outlook(1e-9), None);
+        let mut lost = halvings(2.0, f64::INFINITY, 2);
+        lost.note(1e-3);
+        lost.note(1e-4);
+        assert_eq!(lost.outlook(1e-9), None);
+    }
+}

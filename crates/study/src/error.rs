@@ -51,4 +51,27 @@ pub enum StudyError {
         /// Contact in which it was picked.
         contact: usize,
     },
+    /// A fixed step would get there, but not in reasonable time.
+    #[error(
+        "{method} does not reach an accuracy of {accuracy:e} in reasonable time: it would take about \
+         {steps:.0e} steps of {step_s:.0e} s, since halving the step divides the error only by 2^{order:.1}, \
+         seen at t = {time_s:.4e} s in contact {contact}; ask for less accuracy, give a step, or use the \
+         adaptive solver"
+    )]
+    TooManySteps {
+        /// The method.
+        method: String,
+        /// Accuracy asked for.
+        accuracy: f64,
+        /// Number of steps that it would take.
+        steps: f64,
+        /// Their length in s.
+        step_s: f64,
+        /// Observed order of convergence.
+        order: f64,
+        /// Time of the last pulse that was picked in s, or the end of the shot.
+        time_s: f64,
+        /// Contact in which it was picked.
+        contact: usize,
+    },
 }

@@ -1,12 +1,13 @@
 //! Running a plan: once, with steps halved, or again to check.
 
-use crate::accuracy::{self, TIGHTEST};
+use crate::accuracy::{self, Halvings, MOST_HALVINGS, Outlook, TIGHTEST};
 use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::flight::Flight;
+use crate::following::Following;
 use crate::plan::{Plan, Solver};
 use crate::shot::{Rebound, Shot, reported};
-use hertzchain_chain::observe::{Apart, PassageError, Passages, Separation, Trace, Tracer};
+use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Budget, Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
 
@@ -16,10 +17,6 @@ pub(crate) struct Gun<'a> {
     system: System,
     end: End,
 }
-
-/// A search for a fixed step halves it at most this often, down to some 1e-5
-/// of the contact time: beyond, adaptive steps are the only sane choice.
-const MOST_HALVINGS: i32 = 11;
 
 impl<'a> Gun<'a> {
     /// Sets up the chain and decides when its shot ends.
@@ -74,10 +71,27 @@ impl<'a> Gun<'a> {
             ));
         }
         if checked {
-            let again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
-            self.judge(&mut shot, &again);
+            self.refine(&mut shot, tolerance)?;
         }
         Ok(shot)
+    }
+
+    /// Computes a shot again at a tenth of the tolerance; where that shows that
+    /// the accuracy was not reached, the finer shot takes its place.
+    fn refine(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
+        let mut again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
+        while shot.change(&again) > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST {
+            tolerance *= 0.1;
+            let notes = std::mem::take(&mut shot.notes);
+            *shot = match self.plan.watch {
+                Some(_) => self.once(&*accuracy::adaptive(tolerance), true)?,
+                None => again,
+            };
+            (shot.tolerance, shot.notes) = (Some(tolerance), notes);
+            again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
+        }
+        self.judge(shot, &again);
+        Ok(())
     }
 
     /// A fixed step as given, whatever accuracy that is.
@@ -90,23 +104,27 @@ impl<'a> Gun<'a> {
         Ok(shot)
     }
 
-    /// Halves the step until the result stands still, twice in a row: one
-    /// small change may be two errors that happen to be alike.
+    /// Halves the step until the result stands still; gives up as soon as the
+    /// order of convergence tells that it would take too long.
     fn halving(&self, solver: Solver) -> Result<Shot, StudyError> {
         let first_s = accuracy::first_step_s(&self.system);
+        let step_s = |halving: u32| first_s * 0.5_f64.powf(f64::from(halving));
         let mut last = self.at_step(solver, first_s, false);
-        let mut changes = [f64::INFINITY; 2];
+        let mut halvings = Halvings::default();
         for halving in 1..=MOST_HALVINGS {
-            let step_s = first_s * 0.5_f64.powi(halving);
-            let next = self.at_step(solver, step_s, false);
-            let change = match (&last, &next) {
+            let next = self.at_step(solver, step_s(halving), false);
+            halvings.note(match (&last, &next) {
                 (Ok(one), Ok(two)) => one.change(two),
                 _ => f64::INFINITY,
-            };
-            changes = [changes[1], change];
-            let worst = changes[0].max(changes[1]);
-            if worst <= self.plan.accuracy {
-                return self.settled(solver, step_s, worst, next);
+            });
+            if halvings.standing() <= self.plan.accuracy {
+                return self.settled(solver, step_s(halving), halvings.standing(), next);
+            }
+            let outlook = halvings.outlook(self.plan.accuracy);
+            if let (Some(outlook), Ok(shot)) = (outlook, &next)
+                && f64::from(halving) + outlook.halvings > f64::from(MOST_HALVINGS)
+            {
+                return Err(self.too_many_steps(shot, outlook));
             }
             last = next;
         }
@@ -115,11 +133,26 @@ impl<'a> Gun<'a> {
         Err(StudyError::NotConverged {
             method: accuracy::fixed(solver, first_s).name(),
             accuracy: self.plan.accuracy,
-            step_s: first_s * 0.5_f64.powi(MOST_HALVINGS),
-            change: changes[1],
+            step_s: step_s(MOST_HALVINGS),
+            change: halvings.last(),
             time_s,
             contact,
         })
+    }
+
+    /// The refusal of an accuracy, from a shot with a longer step.
+    fn too_many_steps(&self, shot: &Shot, outlook: Outlook) -> StudyError {
+        let finer = outlook.halvings.exp2();
+        let (time_s, contact) = self.last_pulse(shot);
+        StudyError::TooManySteps {
+            method: shot.solver.clone(),
+            accuracy: self.plan.accuracy,
+            steps: shot.work.steps as f64 * finer,
+            step_s: shot.step_s.unwrap_or(f64::NAN) / finer,
+            order: outlook.order,
+            time_s,
+            contact,
+        }
     }
 
     /// When and in which contact a shot's last pulse was picked.
@@ -168,12 +201,11 @@ impl<'a> Gun<'a> {
 
     /// One run with one method.
     fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
-        let wall = self.system.contacts() - 1;
-        let mut passages = Passages::new(self.plan.sensor_bead, wall, self.end.at_reflection);
+        let mut following = Following::new(self.plan, &self.end);
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut passages, &mut separation];
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut following, &mut separation];
         if self.end.when_apart {
             observers.push(&mut apart);
         }
@@ -184,7 +216,7 @@ impl<'a> Gun<'a> {
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;
         let trace = tracer.map(Tracer::into_trace);
-        Ok(self.shot(method, outcome, &passages, separation, trace))
+        Ok(self.shot(method, outcome, &following, separation, trace))
     }
 
     fn tracer(&self) -> Option<Tracer> {
@@ -198,10 +230,11 @@ impl<'a> Gun<'a> {
         &self,
         method: &dyn Method,
         outcome: Outcome,
-        passages: &Passages,
+        following: &Following,
         separation: Separation,
         trace: Option<Trace>,
     ) -> Shot {
+        let passages = following.passages();
         let passage = match duration::has_wall(&self.plan.chain.far) {
             true => passages.passage(),
             false => Err(PassageError::NoWallPulse {
@@ -212,13 +245,16 @@ impl<'a> Gun<'a> {
         let picked = seen.and_then(|passage| Flight::picked(self.plan.pick, passages, passage));
         let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
+        // A shot that came to the end of the rule by another way than the striker's.
+        let own_end = self.plan.rebound && self.plan.duration_s.is_none();
+        let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         Shot {
             flight: picked,
             sensor_maxima: reported(passages.sensor().maxima()),
             pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),
-                end_m_s: outcome.velocity_m_s.first().copied().unwrap_or(0.0),
+                end_m_s: following.last_word_m_s().or(at_end_m_s),
             }),
             passage,
             budget: outcome.budget,

@@ -23,6 +23,7 @@ mod describe;
 mod duration;
 mod error;
 mod flight;
+mod following;
 mod gun;
 mod plan;
 mod shot;

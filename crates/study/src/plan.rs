@@ -66,8 +66,12 @@ pub struct Plan {
     /// How the motion is computed.
     pub solver: Solver,
     /// Duration in s; when `None` the shot ends once the reflected pulse has
-    /// passed the sensor bead, or all bodies fly apart.
+    /// passed the sensor bead and the striker is away for good, or all bodies
+    /// fly apart.
     pub duration_s: Option<f64>,
+    /// Follow the striker until it is away for good; without, a shot ends once
+    /// the reflected pulse has passed and tells no rebound.
+    pub rebound: bool,
     /// Where pulses are timed.
     pub pick: Pick,
     /// Keep an energy budget.
@@ -87,6 +91,7 @@ impl Plan {
             accuracy: experiment::Solver::DEFAULT_ACCURACY,
             solver: Solver::Adaptive,
             duration_s: None,
+            rebound: true,
             pick: Pick::Peak,
             budget: false,
             watch: None,
@@ -123,6 +128,13 @@ impl Plan {
             ..Self::new(chain, experiment.sensor_bead())
         };
         Ok((plan, warnings))
+    }
+
+    /// This plan for times of flight alone, without the striker's rebound.
+    #[must_use]
+    pub fn for_flights(mut self) -> Self {
+        self.rebound = false;
+        self
     }
 
     /// This plan with an energy budget.

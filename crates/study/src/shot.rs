@@ -12,8 +12,10 @@ use hertzchain_chain::wave::{Budget, Work};
 pub struct Rebound {
     /// When it first let go of bead 1, in s, and its velocity then, in m/s.
     pub first: Option<(f64, f64)>,
-    /// Its velocity at the end of the shot in m/s.
-    pub end_m_s: f64,
+    /// Its velocity in m/s at the end of the shot: once it is away for good, or
+    /// after six times the pulse's way to the wall. `None` when the plan does
+    /// not follow it, or when a duration that was asked for was over before.
+    pub end_m_s: Option<f64>,
 }
 
 /// What one shot gave.

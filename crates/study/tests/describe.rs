@@ -155,3 +155,72 @@ fn every_preset_and_example_can_be_described_without_nonsense() {
         }
     }
 }
+
+#[test]
+fn rows_of_a_theory_have_names_of_their_own() {
+    for file in presets().iter().chain(examples()) {
+        let experiment = preset(file.name).unwrap();
+        let (chain, _) = experiment.chain(None).unwrap();
+        for group in describe_theory(&experiment, &chain).unwrap() {
+            let mut names: Vec<&str> = group.rows.iter().map(|row| row.name.as_str()).collect();
+            names.sort_unstable();
+            let count = names.len();
+            names.dedup();
+            assert_eq!(names.len(), count, "{}: {}", file.name, group.title);
+        }
+    }
+}
+
+fn theory(name: &str) -> Vec<Group> {
+    let experiment = preset(name).unwrap();
+    let (chain, _) = experiment.chain(None).unwrap();
+    describe_theory(&experiment, &chain).unwrap()
+}
+
+#[test]
+fn theory_prints_the_wave_of_an_unloaded_row_of_equal_beads_for_such_rows_only() {
+    let has = |name: &str, title: &str| theory(name).iter().any(|g| g.title.starts_with(title));
+    let exact = "Exact solitary wave of a long, unloaded row";
+    for name in ["hertz", "dry", "motor"] {
+        assert!(has(name, exact), "{name}");
+    }
+    for (name, instead) in [
+        ("precompressed", "Solitary wave on the static load"),
+        ("vertical-on-specimen", "Solitary wave on the static load"),
+        (
+            "dimer-steel-ptfe",
+            "Solitary wave of a long, unloaded row of two kinds",
+        ),
+        ("tapered", "Solitary waves"),
+    ] {
+        assert!(
+            !has(name, exact) && !has(name, "Long-wave theory"),
+            "{name}"
+        );
+        assert!(has(name, instead), "{name}");
+    }
+}
+
+#[test]
+fn a_row_with_another_exponent_on_the_way_has_no_expected_time() {
+    let expected = |name: &str| theory(name).iter().any(|g| g.title.starts_with("Expected"));
+    assert!(expected("hertz") && expected("motor"));
+    assert!(!expected("exponent-section"));
+}
+
+#[test]
+fn small_waves_on_a_load_run_at_the_speed_of_sound_and_large_ones_faster() {
+    let groups = theory("precompressed");
+    let title = "Solitary wave on the static load";
+    let sound = number(&groups, "Small waves under", "sound speed at contact 1");
+    let speeds = [0.1, 1.0, 10.0].map(|excess| {
+        number(
+            &groups,
+            title,
+            &format!("speed, dynamic peak force {excess} times"),
+        )
+    });
+    assert!(sound < speeds[0] && speeds[0] < speeds[1] && speeds[1] < speeds[2]);
+    // To first order V = c (1 + excess of the overlap (n − 1)/6), overlap growing by 2/3 of 0.1.
+    assert_close(speeds[0], sound * (1.0 + 0.1 * (2.0 / 3.0) / 12.0), 1e-3);
+}

@@ -9,7 +9,7 @@ use hertzchain_experiment::{Reading, preset};
 use hertzchain_study::claims::{Branch, Evidence};
 use hertzchain_study::readings::{Draw, DryPoisson, Prefactors, scan};
 use hertzchain_study::reproduce::{Cases, SPEEDS_M_S};
-use hertzchain_study::reproduce::{Gathering, Silent, gather, oils_csv, tof_csv};
+use hertzchain_study::reproduce::{Gathering, Options, Silent, gather, oils_csv, tof_csv};
 
 fn gathered(speeds_m_s: &[f64], accuracy: f64, checked: bool) -> Evidence {
     let how = Gathering {
@@ -42,15 +42,24 @@ fn times_of_flight_are_those_of_an_independent_integration() {
         let p = evidence.curve(case).unwrap().at(speed).unwrap();
         for (branch, known) in Branch::BOTH.into_iter().zip([incident, reflected]) {
             let off = (p.tof_s(branch) / known - 1.0).abs();
-            // Asked 1e-8; the rerun says what was reached, here below 1e-6.
+            // The rerun that tells what was reached is itself wrong by a fraction.
             assert!(
-                off < 1e-6 && p.accuracy_reached < 1e-6,
+                off < 2.0 * p.accuracy_reached.max(1e-9),
                 "{case} {speed}: {off:e}"
             );
-            assert!(
-                off < 2.0 * p.accuracy_reached.max(1e-8),
-                "{case} {speed}: {off:e}"
-            );
+        }
+    }
+}
+
+#[test]
+fn every_time_of_flight_keeps_the_accuracy_that_is_asked() {
+    let asked = Options::default().accuracy;
+    // Speeds at which wet chains amplify errors most.
+    let evidence = gathered(&[0.075, 0.2, 0.28, 1.0], asked, true);
+    for curve in &evidence.curves {
+        for p in &curve.points {
+            let (case, speed, reached) = (&curve.case, p.speed_m_s, p.accuracy_reached);
+            assert!(reached <= asked, "{case} at {speed} m/s: {reached:e}");
         }
     }
 }

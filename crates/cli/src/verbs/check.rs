@@ -14,7 +14,10 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
         ));
     }
     let experiment = input::open(&arguments.input)?;
-    let (chain, warnings) = experiment.chain(arguments.speed)?;
+    let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
+    // What the physics refuses is reported at its place in the file.
+    experiment.system(speed)?;
+    let (chain, warnings) = experiment.chain(speed)?;
     let groups = describe(&experiment, &chain)?;
     if arguments.json {
         let warnings: Vec<String> = warnings.iter().map(|w| w.one_line()).collect();

@@ -6,7 +6,7 @@ use crate::folder::Folder;
 use crate::print::print;
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_figures::paper::{self, PaperError};
-use hertzchain_study::claims::{Judged, Verdict, value_text};
+use hertzchain_study::claims::{Judged, Verdict, computed_text};
 use hertzchain_study::readings::Scan;
 use hertzchain_study::reproduce::{
     HELD, Options, Progress, ReproduceError, Reproduction, reproduce,
@@ -76,10 +76,11 @@ fn summary(computed: &Reproduction, folder: &Path) -> String {
     let provenance = &computed.provenance;
     let _ = write!(
         text,
-        "\nRead as: {}. Times of flight right to {:.0e}; computed in {:.0} s.\n\
+        "\nRead as: {}. Times of flight asked to {:.0e}, reached {:.1e} at worst; computed in {:.0} s.\n\
          Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
          Verdicts one by one: {}\n",
         computed.reading,
+        provenance.accuracy_asked,
         provenance.accuracy_reached,
         provenance.wall_time_s,
         folder.display(),
@@ -120,13 +121,12 @@ fn times(computed: &Reproduction) -> Table {
 /// Every claim with its verdict and value.
 fn verdicts(judged: &[Judged]) -> String {
     let mut table = plain();
-    table.set_header(["claim of the paper", "verdict", "value"]);
+    table.set_header(["claim of the paper", "verdict", "computed"]);
     for judged in judged {
-        let value = value_text(judged.finding.value, judged.finding.accuracy);
         let row = [
             judged.claim.statement.clone(),
             judged.verdict.to_string(),
-            value,
+            computed_text(judged),
         ];
         table.add_row(row);
     }

@@ -6,8 +6,7 @@ mod traces;
 use crate::arguments::Shot as Arguments;
 use crate::failure::{Failure, print_warnings};
 use crate::folder::Folder;
-use crate::{input, json, print};
-use hertzchain_experiment::Experiment;
+use crate::{input, json, print, table};
 use hertzchain_study::{Plan, shoot, shoot_checked};
 use serde_json::json;
 use std::path::Path;
@@ -15,7 +14,9 @@ use std::path::Path;
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
-    let (mut plan, warnings) = Plan::from_experiment(&experiment, arguments.speed)?;
+    let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
+    input::check_times(&arguments.how, &experiment)?;
+    let (mut plan, warnings) = Plan::from_experiment(&experiment, speed)?;
     input::adjust(&arguments.how, &mut plan);
     input::check_step(&arguments.how, &plan)?;
     plan.budget = true;
@@ -30,19 +31,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let mut result = json::shot(&shot);
         if let Some(object) = result.as_object_mut() {
             object.insert("experiment".to_owned(), json!(experiment.name()));
-            object.insert("speed_m_s".to_owned(), json!(speed(arguments, &experiment)));
+            object.insert(
+                "speed_m_s".to_owned(),
+                json!(speed.or(experiment.speed_m_s())),
+            );
         }
-        print::print_json(&result)?;
+        print::print_json(&table::named(result, experiment.units()))?;
     } else {
         print::print(&report::text(&experiment, &plan, &shot))?;
     }
     folder.map_or(Ok(()), |folder| {
         traces::write(folder, arguments, &experiment, &plan, &shot)
     })
-}
-
-fn speed(arguments: &Arguments, experiment: &Experiment) -> Option<f64> {
-    arguments.speed.or(experiment.speed_m_s())
 }
 
 fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {

@@ -1,11 +1,13 @@
 //! `hertzchain sweep`: times of flight against speed.
 
 use crate::arguments::{How, Sweep as Arguments};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::{self, Style, digits};
+use crate::given::check_speeds;
 use crate::print::heading;
-use crate::{input, json, pictures, print};
+use crate::table::cell;
+use crate::{input, json, pictures, print, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_signal::{FitError, PowerLaw};
 use hertzchain_study::{Plan, Point, Settings, Shot, Sweep, parse_speeds, sweep};
@@ -17,6 +19,7 @@ use serde_json::json;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = parse_speeds(&arguments.speeds).map_err(|e| Failure::User(e.to_string()))?;
     let experiment = input::open(&arguments.input)?;
+    check_speeds("--speeds", &arguments.speeds, experiment.units())?;
     let plan = adjusted(&experiment, &arguments.how)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
@@ -37,11 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A plan at the experiment's own speed, to refuse options before any work.
 fn adjusted(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
-    if experiment.speed_m_s().is_none() {
-        return Err(Failure::User(
-            "a sweep over speeds needs a chain with a striker".into(),
-        ));
-    }
+    experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
+    input::check_times(how, experiment)?;
     let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
     input::adjust(how, &mut plan);
     input::check_step(how, &plan)?;
@@ -81,14 +81,15 @@ fn show(
     swept: &Sweep,
 ) -> Result<(), Failure> {
     if arguments.json {
-        return print::print_json(&json!({
+        let results = json!({
             "experiment": experiment.name(),
             "points": swept.points.iter().map(json::point).collect::<serde_json::Value>(),
             "power_law_incident": json::fit(&swept.incident),
             "power_law_reflected": json::fit(&swept.reflected),
-        }));
+        });
+        return print::print_json(&table::named(results, experiment.units()));
     }
-    print_warnings(swept);
+    print_warnings(experiment, swept);
     let style = Style::of_accuracy(plan.accuracy, experiment.units());
     let mut text = format!("{}\n{}", heading(experiment.title()), rows(style, swept));
     text += &fit_line(style, "incident", &swept.incident);
@@ -96,18 +97,19 @@ fn show(
     print::print(&text)
 }
 
-/// The first warning stands for those of its kind at other speeds.
-fn print_warnings(swept: &Sweep) {
-    let warned = swept
-        .points
-        .iter()
-        .filter(|point| !point.warnings.is_empty());
-    let (first, others) = (warned.clone().next(), warned.count().saturating_sub(1));
-    for warning in first.map_or(&[][..], |point| &point.warnings) {
-        eprintln!("warning: {warning}");
+/// The first warnings stand for those of their kind at other speeds.
+fn print_warnings(experiment: &Experiment, swept: &Sweep) {
+    let mut warned = (swept.points.iter()).filter(|point| !point.warnings.is_empty());
+    let Some(first) = warned.next() else {
+        return;
+    };
+    if let Ok((_, warnings)) = experiment.chain(Some(first.speed_m_s)) {
+        failure::print_warnings(&warnings);
     }
-    if others > 0 {
-        eprintln!("warning: there are warnings at {others} other speeds too; --json has them all");
+    match warned.count() {
+        0 => {}
+        1 => eprintln!("warning: the same goes for another speed; --json has all warnings"),
+        n => eprintln!("warning: the same goes for {n} other speeds; --json has all warnings"),
     }
 }
 
@@ -128,9 +130,7 @@ const COLUMNS: [Column; 6] = [
     ("wall peak", "N", 1.0, |point| {
         Some(ok(point)?.passage.as_ref().ok()?.wall.value)
     }),
-    ("rebound", "m/s", 1.0, |point| {
-        Some(ok(point)?.rebound?.end_m_s)
-    }),
+    ("rebound", "m/s", 1.0, |point| ok(point)?.rebound?.end_m_s),
 ];
 
 fn ok(point: &Point) -> Option<&Shot> {
@@ -199,17 +199,30 @@ fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> Strin
 }
 
 fn write(mut folder: Folder, experiment: &Experiment, swept: &Sweep) -> Result<(), Failure> {
-    folder.write("sweep.csv", csv(swept).as_bytes())?;
+    folder.write("sweep.csv", csv(swept, experiment.units()).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(experiment, swept))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }
 
-fn csv(swept: &Sweep) -> String {
-    let mut text = String::from(
-        "speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,returning_peak_n,\
-         striker_rebound_m_s,accuracy_reached\n",
-    );
+/// Columns of the file.
+const NAMES: [&str; 8] = [
+    "speed_m_s",
+    "tof_incident_s",
+    "tof_reflected_s",
+    "sensor_peak_n",
+    "wall_peak_n",
+    "returning_peak_n",
+    "striker_rebound_m_s",
+    "accuracy_reached",
+];
+
+fn csv(swept: &Sweep, units: Units) -> String {
+    let names = match units {
+        Units::Si => NAMES,
+        Units::Dimensionless => NAMES.map(table::without_unit),
+    };
+    let mut text = format!("{}\n", names.join(","));
     for point in &swept.points {
         let Ok(shot) = &point.shot else { continue };
         let seen = shot.passage.as_ref().ok();
@@ -220,10 +233,10 @@ fn csv(swept: &Sweep) -> String {
             seen.map(|seen| seen.incident.value),
             seen.map(|seen| seen.wall.value),
             seen.and_then(|seen| Some(seen.reflected?.value)),
-            shot.rebound.map(|rebound| rebound.end_m_s),
+            shot.rebound.and_then(|rebound| rebound.end_m_s),
             shot.accuracy_reached,
         ];
-        let cells = cells.map(|cell| cell.map_or(String::new(), |value| value.to_string()));
+        let cells = cells.map(|value| value.map_or(String::new(), cell));
         text += &format!("{}\n", cells.join(","));
     }
     text

@@ -8,7 +8,10 @@ use hertzchain_study::describe_theory;
 /// Runs the verb.
 pub fn run(arguments: &Check) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
-    let (chain, warnings) = experiment.chain(arguments.speed)?;
+    let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
+    // What the physics refuses is reported at its place in the file.
+    experiment.system(speed)?;
+    let (chain, warnings) = experiment.chain(speed)?;
     let groups = describe_theory(&experiment, &chain)?;
     if arguments.json {
         return print::print_json(&json::groups(&groups));

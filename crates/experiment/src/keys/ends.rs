@@ -1,6 +1,6 @@
 //! Tables of what stands at the two ends of a chain.
 
-use super::tables::{MATERIAL_NAME, any, not_negative, positive, text};
+use super::tables::{MATERIAL_NAME, either_way, not_negative, positive, text};
 use super::{Fields, Key, Kind, Need, Variants};
 
 pub(super) static STRIKER: Fields = Fields {
@@ -22,7 +22,7 @@ const DRIVEN_RADIUS: Key = positive(
     "m",
     "radius of the driven body; default: as bead 1",
 );
-const AMPLITUDE: Key = any("amplitude", "m", "largest displacement").needed(Need::Always);
+const AMPLITUDE: Key = either_way("amplitude", "largest displacement").needed(Need::Always);
 
 pub(super) static DRIVEN: Variants = Variants {
     title: "[driven]",

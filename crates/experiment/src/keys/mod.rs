@@ -1,10 +1,14 @@
 //! The keys of an experiment file, declared once: the check of a file, its
 //! reading, the JSON Schema and the parameter paths all go by these tables.
 
+pub(crate) mod advice;
 mod ends;
+pub(crate) mod ranges;
 mod tables;
 
 pub(crate) use tables::{MOST_BEADS, ROOT};
+
+use crate::value::Units;
 
 /// The keys of one table.
 #[derive(Debug)]
@@ -72,7 +76,7 @@ pub(crate) struct Variants {
 }
 
 /// Values that a quantity may have, in SI.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
     pub(crate) least: f64,
     pub(crate) most: f64,
@@ -93,6 +97,19 @@ impl Limits {
             most,
             closed,
             words,
+        }
+    }
+
+    /// The limits in a file of this unit system: physical ranges are of SI
+    /// values, and dimensionless numbers need only be computable.
+    pub(crate) fn within(self, units: Units, unit: &str) -> Self {
+        match units {
+            Units::Dimensionless if unit != "1" && self.least > 0.0 => ranges::PLAIN,
+            Units::Dimensionless if unit != "1" && self.least == 0.0 && self.closed => {
+                Self::NOT_NEGATIVE
+            }
+            Units::Dimensionless if unit != "1" => Self::ANY,
+            _ => self,
         }
     }
 
@@ -134,8 +151,15 @@ impl Key {
 
 /// Where a key belongs that stands in the wrong table, in words.
 pub(crate) fn home(key: &str) -> Option<String> {
-    if ROOT.key(key).is_some() {
-        return Some("at the top of the file, before the first table".to_owned());
+    if let Some(found) = ROOT.key(key) {
+        return Some(match &found.kind {
+            Kind::Tables(fields) => format!("into a table of its own, {}", fields.title),
+            Kind::Table(fields) | Kind::Named(fields) => {
+                format!("into a table of its own, {}", fields.title)
+            }
+            Kind::Variants(variants) => format!("into a table of its own, {}", variants.title),
+            _ => "at the top of the file, before the first table".to_owned(),
+        });
     }
     let tables = ROOT.keys.iter().flat_map(|key| tables_of(&key.kind));
     let mut holding = tables.filter(|fields| fields.key(key).is_some());

@@ -1,15 +1,28 @@
 //! Every table of an experiment file.
 
 use super::ends::{DRIVEN, FAR_END, NEAR_END, STRIKER};
-use super::{Fields, Key, Kind, Limits, Need};
+use super::{Fields, Key, Kind, Limits, Need, ranges};
 use crate::reading;
 use std::f64::consts::FRAC_PI_2;
 
 /// Longest chain: what fits into memory with all that a shot needs.
 pub(crate) const MOST_BEADS: i64 = 2_000_000;
 
+/// A positive quantity within the range of its unit.
 pub(super) const fn positive(name: &'static str, unit: &'static str, about: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(unit, Limits::POSITIVE), about)
+    Key::new(name, Kind::Quantity(unit, range_of(unit)), about)
+}
+
+const fn range_of(unit: &str) -> Limits {
+    match unit.as_bytes() {
+        b"m" => ranges::LENGTH,
+        b"kg" => ranges::MASS,
+        b"s" => ranges::TIME,
+        b"Hz" => ranges::FREQUENCY,
+        b"m/s" => ranges::SPEED,
+        b"kg/m^3" => ranges::DENSITY,
+        _ => Limits::POSITIVE,
+    }
 }
 
 pub(super) const fn not_negative(
@@ -20,8 +33,9 @@ pub(super) const fn not_negative(
     Key::new(name, Kind::Quantity(unit, Limits::NOT_NEGATIVE), about)
 }
 
-pub(super) const fn any(name: &'static str, unit: &'static str, about: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(unit, Limits::ANY), about)
+/// A displacement of body 0, either way.
+pub(super) const fn either_way(name: &'static str, about: &'static str) -> Key {
+    Key::new(name, Kind::Quantity("m", ranges::DISPLACEMENT), about)
 }
 
 const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
@@ -45,7 +59,7 @@ static MATERIAL: Fields = Fields {
     keys: &[
         Key::new(
             "young_modulus",
-            Kind::Scaled("Pa", Limits::POSITIVE),
+            Kind::Scaled("Pa", ranges::YOUNG_MODULUS),
             "Young modulus Y",
         )
         .needed(Need::Always),
@@ -57,12 +71,12 @@ static MATERIAL: Fields = Fields {
         .needed(Need::Always),
         Key::new(
             "shear_viscosity",
-            Kind::Scaled("Pa s", Limits::NOT_NEGATIVE),
+            Kind::Scaled("Pa s", ranges::VISCOSITY),
             "shear viscosity η1; default 0",
         ),
         Key::new(
             "bulk_viscosity",
-            Kind::Scaled("Pa s", Limits::NOT_NEGATIVE),
+            Kind::Scaled("Pa s", ranges::VISCOSITY),
             "bulk viscosity η2; default: as shear_viscosity",
         ),
         positive("density", "kg/m^3", "density, for beads without a mass"),
@@ -126,7 +140,11 @@ static TRACK: Fields = Fields {
             Kind::Quantity("rad", INCLINE),
             "incline, the wall below; default 0",
         ),
-        not_negative("gravity", "m/s^2", "gravity; default 9.80665 m/s^2"),
+        Key::new(
+            "gravity",
+            Kind::Quantity("m/s^2", ranges::GRAVITY),
+            "gravity; default 9.80665 m/s^2",
+        ),
     ],
 };
 
@@ -141,7 +159,12 @@ static GAP: Fields = Fields {
     title: "[[gaps]]",
     keys: &[
         number_of("contact", 0, "contact").needed(Need::Always),
-        not_negative("gap", "m", "gap before the shot").needed(Need::Always),
+        Key::new(
+            "gap",
+            Kind::Quantity("m", ranges::GAP),
+            "gap before the shot",
+        )
+        .needed(Need::Always),
     ],
 };
 
@@ -149,8 +172,16 @@ static INITIAL: Fields = Fields {
     title: "[[initial]]",
     keys: &[
         number_of("bead", 1, "bead").needed(Need::Always),
-        any("displacement", "m", "displacement from rest; default 0"),
-        any("velocity", "m/s", "velocity; default 0"),
+        Key::new(
+            "displacement",
+            Kind::Quantity("m", ranges::DISPLACEMENT),
+            "displacement from rest; default 0",
+        ),
+        Key::new(
+            "velocity",
+            Kind::Quantity("m/s", ranges::VELOCITY),
+            "velocity; default 0",
+        ),
     ],
 };
 
@@ -228,14 +259,6 @@ pub(crate) static ROOT: Fields = Fields {
             "tension",
             Kind::Choice(&["allowed", "clipped"]),
             "whether contacts may pull",
-        ),
-        Key::new(
-            "seed",
-            Kind::Count {
-                least: 0,
-                most: i64::MAX,
-            },
-            "seed of all randomness",
         ),
         Key::new(
             "materials",

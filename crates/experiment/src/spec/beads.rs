@@ -2,7 +2,8 @@
 
 use super::Materials;
 use crate::finding::Problem;
-use crate::keys::MOST_BEADS;
+use crate::keys::ranges::{LENGTH, MASS};
+use crate::keys::{Limits, MOST_BEADS};
 use crate::value::Units;
 use crate::view::View;
 use hertzchain_chain::{Bead, Material};
@@ -183,13 +184,15 @@ fn part(table: &View<'_>, materials: &Materials, count: usize) -> Result<Part, P
 /// A tapered group must keep radii and masses that a number can hold.
 fn smallest_and_largest(group: &Group, table: &View<'_>) -> Result<(), Problem> {
     let scale = group.scale(group.repeat.saturating_sub(1));
-    let sound = |value: f64| value.is_normal();
-    let fits =
-        |part: &Part| sound(part.radius_m * scale) && sound(part.mass_kg * scale * scale * scale);
+    let sound = |value: f64, of: Limits, unit| of.within(table.units, unit).hold(value);
+    let fits = |part: &Part| {
+        let (radius_m, mass_kg) = (part.radius_m * scale, part.mass_kg * scale * scale * scale);
+        sound(radius_m, LENGTH, "m") && sound(mass_kg, MASS, "kg")
+    };
     if group.cell.iter().all(fits) {
         return Ok(());
     }
-    let message = "the last beads of this group have no size or mass that can be computed with";
+    let message = "the last beads of this group have a size or mass that no solid body has";
     let label = "expected a ratio nearer to 1, or fewer beads";
     Err(Problem::new(&table.span_of("radius_ratio"), message, label))
 }

@@ -23,6 +23,8 @@ pub struct SectionSpec {
     pub(crate) material: Option<usize>,
     pub(crate) span: Range<usize>,
     pub(crate) from_span: Range<usize>,
+    pub(crate) to_span: Range<usize>,
+    pub(crate) laws_span: Range<usize>,
 }
 
 impl SectionSpec {
@@ -36,7 +38,7 @@ impl SectionSpec {
     pub(crate) fn is_elastic(&self) -> bool {
         self.laws
             .iter()
-            .any(|law| law.row.info.nature != Nature::Dissipative)
+            .any(|law| law.row.info.nature != Nature::Dissipative && !law.is_slack())
     }
 }
 
@@ -77,6 +79,8 @@ fn hertz(root: &View<'_>) -> SectionSpec {
         material: None,
         span: root.span(),
         from_span: root.span(),
+        to_span: root.span(),
+        laws_span: root.span(),
     }
 }
 
@@ -92,14 +96,18 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
     }
     let members = table.node.get("laws").map_or(&[][..], Node::members).iter();
     let laws = members.map(|member| laws::read(member, table.units));
+    let laws: Vec<LawSpec> = laws.collect::<Result<_, _>>()?;
+    laws::each_once(&laws)?;
     Ok(SectionSpec {
         from,
         to: to.filter(|&contact| contact != beads),
-        laws: laws.collect::<Result<_, _>>()?,
+        laws,
         wet: table.flag("wet"),
         material: materials.find(table)?,
         span: table.span(),
         from_span: table.span_of("from"),
+        to_span: table.span_of("to"),
+        laws_span: table.span_of("laws"),
     })
 }
 
@@ -130,12 +138,12 @@ fn unit_stiffness(section: &mut SectionSpec) {
 /// Every contact belongs to one section.
 fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), Problem> {
     let mut next = 0;
+    let mut before: Option<&SectionSpec> = None;
     for section in sections {
         if section.from < next {
-            let message = format!("contact {} belongs to two sections", section.from);
-            let label = format!("expected a section that begins at contact {next} or later");
-            return Err(Problem::new(&section.from_span, message, label));
+            return Err(overlap(before.unwrap_or(section), section, beads));
         }
+        before = Some(section);
         if section.from > next {
             return Err(uncovered(section, next, section.from - 1));
         }
@@ -144,6 +152,50 @@ fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), Problem> {
     match sections.last() {
         Some(section) if next <= beads => Err(uncovered(section, next, beads)),
         _ => Ok(()),
+    }
+}
+
+/// Two sections that share contacts, both shown.
+fn overlap(first: &SectionSpec, second: &SectionSpec, beads: usize) -> Problem {
+    let (from, end) = (second.from, first.last(beads));
+    let last = end.min(second.last(beads));
+    let message = match from == last {
+        true => format!("contact {from} belongs to two sections"),
+        false => format!("contacts {from} to {last} belong to two sections"),
+    };
+    let reach = |section: &SectionSpec| {
+        let (from, last) = (section.from, section.last(beads));
+        match from == last {
+            true => format!("contact {from}"),
+            false => format!("contacts {from} to {last}"),
+        }
+    };
+    let ends = match first.to {
+        Some(_) => reach(first),
+        None => format!("{}: no `to` means up to the wall contact", reach(first)),
+    };
+    let begins = match second.from_span == second.span {
+        true => format!("{}: no `from` means from contact 0", reach(second)),
+        false => reach(second),
+    };
+    let expected = format!("{begins}; expected contacts that no other section has");
+    Problem::new(&second.from_span, message, expected)
+        .beside(&first.to_span, format!("this section has {ends}"))
+        .help(advice(first, second, end))
+}
+
+fn advice(first: &SectionSpec, second: &SectionSpec, end: usize) -> String {
+    match second.from.checked_sub(1) {
+        Some(before) if before >= first.from => {
+            let mut text = format!("end the first section with `to = {before}`");
+            if first.to.is_some() {
+                text += &format!(", or begin this one with `from = {}`", end + 1);
+            }
+            text
+        }
+        _ => "give the sections `from` and `to`: each contact belongs to one; several laws on the \
+              same contacts go into one `laws`"
+            .to_owned(),
     }
 }
 

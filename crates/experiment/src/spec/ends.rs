@@ -21,9 +21,18 @@ pub(crate) struct Shape {
 /// What sets the chain in motion.
 #[derive(Clone, Debug)]
 pub(crate) enum Near {
-    Striker { shape: Shape, speed_m_s: f64 },
-    Driven { shape: Shape, motion: Motion },
-    Free,
+    Striker {
+        shape: Shape,
+        speed_m_s: f64,
+    },
+    Driven {
+        shape: Shape,
+        motion: Motion,
+    },
+    /// Beads that start displaced or moving, as the file tells here.
+    Free {
+        span: Range<usize>,
+    },
 }
 
 /// What bead N leans on.
@@ -61,13 +70,10 @@ fn shape(table: &View<'_>, materials: &Materials, keys: [&str; 2]) -> Result<Sha
 /// What sets the chain in motion.
 pub(crate) fn near(root: &View<'_>, materials: &Materials, folder: &Path) -> Result<Near, Problem> {
     match (root.table("striker"), root.variant("driven")) {
-        (Some(_), Some((_, driven))) => {
+        (Some(striker), Some((_, driven))) => {
             let message = "there are a striker and a driven end";
-            Err(Problem::new(
-                &driven.span(),
-                message,
-                "expected one of the two",
-            ))
+            let problem = Problem::new(&driven.span(), message, "expected one of the two");
+            Err(problem.beside(&striker.span(), "the striker is here"))
         }
         (Some(striker), None) => Ok(Near::Striker {
             shape: shape(&striker, materials, ["radius", "mass"])?,
@@ -77,7 +83,9 @@ pub(crate) fn near(root: &View<'_>, materials: &Materials, folder: &Path) -> Res
             shape: shape(&table, materials, ["radius", ""])?,
             motion: motion(tag, &table, folder)?,
         }),
-        (None, None) if root.has("initial") => Ok(Near::Free),
+        (None, None) if root.has("initial") => Ok(Near::Free {
+            span: root.tables("initial").first().map_or(0..0, View::span),
+        }),
         (None, None) => {
             let message = "nothing sets the chain in motion";
             let label = "expected [striker], [driven] or [[initial]]";
@@ -89,15 +97,26 @@ pub(crate) fn near(root: &View<'_>, materials: &Materials, folder: &Path) -> Res
 fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, Problem> {
     match tag {
         "sine" => Ok(Motion::Sine {
-            amplitude_m: table.needed("amplitude")?,
+            amplitude_m: amplitude_m(table)?,
             frequency_hz: table.needed("frequency")?,
         }),
         "pulse" => Ok(Motion::Pulse {
-            amplitude_m: table.needed("amplitude")?,
+            amplitude_m: amplitude_m(table)?,
             duration_s: table.needed("duration")?,
         }),
         _ => motion_file::table(table, folder),
     }
+}
+
+/// An amplitude, which must move the body at all.
+fn amplitude_m(table: &View<'_>) -> Result<f64, Problem> {
+    let amplitude_m = table.needed("amplitude")?;
+    if amplitude_m == 0.0 {
+        let message = "an amplitude of 0 sets nothing in motion";
+        let label = "expected a length, such as \"1 um\"";
+        return Err(Problem::new(&table.span_of("amplitude"), message, label));
+    }
+    Ok(amplitude_m)
 }
 
 /// What pushes bead 1.

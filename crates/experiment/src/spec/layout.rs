@@ -2,6 +2,7 @@
 
 use super::{Far, Near, Spec};
 use crate::finding::Problem;
+use hertzchain_chain::Initial;
 use std::ops::{Range, RangeInclusive};
 
 impl Spec {
@@ -21,12 +22,13 @@ impl Spec {
             self.inside("bead", initial.bead, 1..=beads, span)?;
         }
         self.check_repeated()?;
+        self.check_motion()?;
         self.check_ring()
     }
 
     /// Bodies that move: the beads, and body 0 if there is one.
     fn bodies(&self) -> RangeInclusive<usize> {
-        usize::from(matches!(self.near, Near::Free))..=self.bead_count()
+        usize::from(matches!(self.near, Near::Free { .. }))..=self.bead_count()
     }
 
     /// Contacts between two bodies; a free end has none.
@@ -99,11 +101,24 @@ impl Spec {
         repeated("bead", initial.collect())
     }
 
+    /// Without striker or driven end some bead must move or be displaced.
+    fn check_motion(&self) -> Result<(), Problem> {
+        let still = |i: &Initial| i.displacement_m == 0.0 && i.velocity_m_s == 0.0;
+        match (&self.near, self.initial.first()) {
+            (Near::Free { .. }, Some((_, span))) if self.initial.iter().all(|(i, _)| still(i)) => {
+                let message = "nothing sets the chain in motion";
+                let label = "all [[initial]] are 0: expected a bead that moves or is displaced";
+                Err(Problem::new(span, message, label))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// A ring has no end to strike, to drive or to push.
     fn check_ring(&self) -> Result<(), Problem> {
         let ring = matches!(self.far, Far::Periodic { .. });
         let pushed = !matches!(self.push, hertzchain_chain::Push::None);
-        if ring && (pushed || !matches!(self.near, Near::Free)) {
+        if ring && (pushed || !matches!(self.near, Near::Free { .. })) {
             let message = "a periodic chain has no near end";
             let label = "expected [[initial]] and neither striker, driven nor near_end";
             return Err(Problem::new(&self.far_span, message, label));
@@ -118,11 +133,8 @@ fn repeated(what: &str, mut found: Vec<(usize, &Range<usize>)>) -> Result<(), Pr
         None => Ok(()),
         Some(pair) => {
             let message = format!("{what} {} stands here a second time", pair[1].0);
-            Err(Problem::new(
-                pair[1].1,
-                message,
-                "expected each at most once",
-            ))
+            let problem = Problem::new(pair[1].1, message, "expected each at most once");
+            Err(problem.beside(pair[0].1, "the first one is here"))
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::finding::Problem;
 use crate::nearest;
+use crate::value::{rounded, short};
 use crate::view::{Scaled, View};
 use hertzchain_chain::Material;
 use std::ops::Range;
@@ -79,17 +80,12 @@ impl MaterialSpec {
         &self,
         speed_m_s: Option<f64>,
     ) -> Result<(Material, Option<Problem>), Problem> {
-        let positive = |v: f64| v > 0.0;
-        let not_negative = |v: f64| v >= 0.0;
-        let young_modulus_pa = self
-            .young_modulus
-            .at(speed_m_s, "Young modulus", positive)?;
-        let inside = |v: f64| -1.0 < v && v < 1.0;
-        let bounded = |v: f64| inside(v.min(self.largest_poisson_ratio));
-        let printed = self.poisson_ratio.at(speed_m_s, "Poisson ratio", bounded)?;
-        let poisson_ratio = printed.min(self.largest_poisson_ratio);
+        let any = f64::INFINITY;
+        let young_modulus_pa = self.young_modulus.at(speed_m_s, "Young modulus", any)?;
+        let most = self.largest_poisson_ratio;
+        let poisson_ratio = self.poisson_ratio.at(speed_m_s, "Poisson ratio", most)?;
         let viscosity = |given: &Option<Scaled>| {
-            let value = |s: &Scaled| s.at(speed_m_s, "viscosity", not_negative);
+            let value = |s: &Scaled| s.at(speed_m_s, "viscosity", any);
             given.as_ref().map(value).transpose()
         };
         let shear_viscosity_pa_s = viscosity(&self.shear_viscosity)?.unwrap_or(0.0);
@@ -110,12 +106,15 @@ impl MaterialSpec {
     /// A warning when ν exceeds 1/2.
     fn beyond_half(&self, poisson_ratio: f64, speed_m_s: Option<f64>) -> Option<Problem> {
         let at = match speed_m_s {
-            Some(speed) if self.poisson_ratio.exponent != 0.0 => format!(" at {speed} m/s"),
+            Some(speed) if self.poisson_ratio.exponent != 0.0 => {
+                format!(" at {} m/s", short(speed))
+            }
             _ => String::new(),
         };
         let message = format!(
-            "the Poisson ratio of `{}` is {poisson_ratio:.4}{at}",
-            self.name
+            "the Poisson ratio of `{}` is {}{at}",
+            self.name,
+            rounded(poisson_ratio)
         );
         (poisson_ratio > 0.5).then(|| {
             Problem::new(&self.poisson_ratio.span, message, "no solid is above 1/2")
@@ -125,13 +124,8 @@ impl MaterialSpec {
 }
 
 impl Scaled {
-    /// The value at a speed; what is in the way is a problem.
-    fn at(
-        &self,
-        speed_m_s: Option<f64>,
-        name: &str,
-        holds: impl Fn(f64) -> bool,
-    ) -> Result<f64, Problem> {
+    /// The value at a speed, at most so much; what is in the way is a problem.
+    fn at(&self, speed_m_s: Option<f64>, name: &str, most: f64) -> Result<f64, Problem> {
         let value = match (speed_m_s, self.exponent == 0.0) {
             (_, true) => self.prefactor,
             (Some(speed), false) => self.prefactor * speed.powf(self.exponent),
@@ -141,15 +135,13 @@ impl Scaled {
                 return Err(Problem::new(&self.span, message, label));
             }
         };
-        if holds(value) && value.is_finite() {
-            return Ok(value);
+        let bounded = value.min(most);
+        if self.limits.hold(bounded) {
+            return Ok(bounded);
         }
-        let at = speed_m_s.map_or(String::new(), |speed| format!(" at {speed} m/s"));
-        let message = format!("{name} is {value}{at}");
-        let label = match name {
-            "Poisson ratio" => "expected a value between -1 and 1",
-            _ => "expected a positive, finite value",
-        };
+        let at = speed_m_s.map_or(String::new(), |speed| format!(" at {} m/s", short(speed)));
+        let message = format!("{name} is {}{at}", rounded(value));
+        let label = format!("expected a value {}", self.limits.words);
         Err(Problem::new(&self.span, message, label))
     }
 }

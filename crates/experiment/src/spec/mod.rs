@@ -35,6 +35,8 @@ pub(crate) struct Spec {
     pub(crate) beads_less: usize,
     pub(crate) near: Near,
     pub(crate) push: Push,
+    /// What presses the chain together, if anything does.
+    pub(crate) load_span: Range<usize>,
     pub(crate) far: Far,
     pub(crate) far_span: Range<usize>,
     pub(crate) sections: Vec<SectionSpec>,
@@ -43,11 +45,11 @@ pub(crate) struct Spec {
     pub(crate) incline_rad: f64,
     pub(crate) gravity_m_s2: f64,
     pub(crate) suspension_m: Option<f64>,
+    pub(crate) suspension_span: Option<Range<usize>>,
     pub(crate) tension: Tension,
     pub(crate) sensors: Sensors,
     pub(crate) solver: Solver,
     pub(crate) liquid: Option<Liquid>,
-    pub(crate) seed: u64,
     pub(crate) reading: Reading,
 }
 
@@ -69,6 +71,10 @@ impl Spec {
             beads_less: 0,
             near: ends::near(root, &materials, folder)?,
             push: ends::push(root)?,
+            load_span: ["near_end", "track", "far_end"]
+                .into_iter()
+                .find(|key| root.has(key))
+                .map_or(0..0, |key| root.span_of(key)),
             far: ends::far(root, &materials)?,
             far_span: root.span_of("far_end"),
             sections: contacts::read(root, &materials, &groups)?,
@@ -80,11 +86,11 @@ impl Spec {
                 .table("suspension")
                 .map(|t| t.needed("length"))
                 .transpose()?,
+            suspension_span: root.table("suspension").map(|t| t.span()),
             tension: setting::tension(root),
             sensors: Sensors::read(root, count)?,
             solver: Solver::read(root)?,
             liquid: Liquid::read(root)?,
-            seed: root.count("seed")?.unwrap_or(1) as u64,
             reading: reading(root),
             materials,
             groups,

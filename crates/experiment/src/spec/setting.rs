@@ -143,6 +143,11 @@ pub(super) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, Problem>
 /// Initial deviations with their places in the file.
 pub(super) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, Problem> {
     let initial = |table: &View<'_>| {
+        if !table.has("displacement") && !table.has("velocity") {
+            let message = "this bead is neither displaced nor moving";
+            let label = "expected `displacement` or `velocity`, or no such table";
+            return Err(Problem::new(&table.span(), message, label));
+        }
         let initial = Initial {
             bead: table.count("bead")?.unwrap_or(0),
             displacement_m: table.quantity("displacement")?.unwrap_or(0.0),

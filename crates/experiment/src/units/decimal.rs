@@ -35,6 +35,13 @@ impl Decimal {
         if whole.is_empty() && fraction.is_empty() {
             return Err(no_number(text, start));
         }
+        if let Some(better) = with_decimal_point(text) {
+            let what = format!(
+                "a comma is no decimal mark: write {better}{}",
+                or_none(text)
+            );
+            return Err(UnitError::new(what, start..text.len()));
+        }
         let (power, length) = power_of_ten(text, at)?;
         let number = Self {
             negative,
@@ -83,6 +90,27 @@ fn digits(text: &str, from: usize) -> &str {
     rest.get(..end).unwrap_or_default()
 }
 
+/// "6,35 mm" as "6.35 mm"; `None` where no comma stands between digits.
+pub(crate) fn with_decimal_point(text: &str) -> Option<String> {
+    let text = text.trim();
+    let (whole, rest) = text.split_once(',')?;
+    let figures = whole.trim_start_matches(['+', '-']);
+    let number = !figures.is_empty() && figures.bytes().all(|b| b.is_ascii_digit());
+    let fraction = rest.starts_with(|c: char| c.is_ascii_digit());
+    (number && fraction).then(|| format!("{whole}.{rest}"))
+}
+
+/// A comma before three digits may have meant thousands.
+fn or_none(text: &str) -> String {
+    let (whole, rest) = text.trim().split_once(',').unwrap_or_default();
+    match rest.bytes().take_while(u8::is_ascii_digit).count() {
+        3 if !whole.ends_with('0') || whole.len() > 1 => {
+            format!(", or {whole}{rest} if that was meant")
+        }
+        _ => String::new(),
+    }
+}
+
 /// "e-3" at a byte: −3 and its length; 0 and 0 when there is none.
 fn power_of_ten(text: &str, at: usize) -> Result<(i64, usize), UnitError> {
     let bytes = text.as_bytes();
@@ -109,13 +137,14 @@ fn power_of_ten(text: &str, at: usize) -> Result<(i64, usize), UnitError> {
 
 fn no_number(text: &str, start: usize) -> UnitError {
     let trimmed = text.trim();
-    let what = match trimmed
-        .trim_start_matches(['+', '-'])
-        .to_lowercase()
-        .as_str()
-    {
+    let first = trimmed.split_whitespace().next().unwrap_or_default();
+    let first = first.trim_start_matches(['+', '-']).to_lowercase();
+    let what = match first.as_str() {
         "nan" | "inf" | "infinity" => format!("`{trimmed}` is not a finite number"),
         "" => "a number is missing".to_owned(),
+        dash if dash.starts_with(['−', '–', '—']) => {
+            format!("`{trimmed}` begins with a dash: write the minus sign of the keyboard, -")
+        }
         _ => format!("`{trimmed}` does not start with a number"),
     };
     UnitError::new(what, start..text.len())

@@ -92,6 +92,11 @@ impl Dimension {
         }
     }
 
+    /// "a length"; `None` where there is no common name.
+    pub(crate) fn known_name(&self) -> Option<&'static str> {
+        self.known().map(|(name, _, _)| *name)
+    }
+
     /// A quantity of this dimension, as an example.
     #[must_use]
     pub fn example(&self) -> String {

@@ -13,6 +13,8 @@ mod symbols;
 pub use dimension::Dimension;
 pub use parse::parse_unit;
 
+pub(crate) use decimal::with_decimal_point;
+
 use decimal::Decimal;
 use num_rational::Ratio;
 use std::ops::Range;

@@ -114,5 +114,8 @@ pub(super) fn nearest(text: &str) -> Option<String> {
             .iter()
             .map(move |(prefix, _)| format!("{prefix}{}", symbol.text))
     });
-    crate::nearest::of_owned(text, plain.chain(prefixed))
+    // Any letter is one slip away from any other: only its case may be wrong.
+    let single = text.chars().count() == 1;
+    let close = |unit: &String| !single || unit.eq_ignore_ascii_case(text);
+    crate::nearest::of_owned(text, plain.chain(prefixed).filter(close))
 }

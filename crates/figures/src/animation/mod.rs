@@ -27,6 +27,9 @@ pub struct Animation {
     marks: Vec<(usize, String)>,
     wet_contacts: Option<(usize, usize)>,
     exaggeration: Option<f64>,
+    time_unit: (f64, String),
+    force_unit: String,
+    first_contact: usize,
 }
 
 impl Animation {
@@ -49,6 +52,9 @@ impl Animation {
             marks: Vec::new(),
             wet_contacts: None,
             exaggeration: None,
+            time_unit: (1e6, "µs".into()),
+            force_unit: "N".into(),
+            first_contact: 0,
         }
     }
 
@@ -77,6 +83,22 @@ impl Animation {
     #[must_use]
     pub fn exaggeration(mut self, factor: f64) -> Self {
         self.exaggeration = Some(factor).filter(|f| f.is_finite() && *f > 0.0);
+        self
+    }
+
+    /// Unit of shown times with its number in a second, and unit of forces;
+    /// empty names in a dimensionless chain. Microseconds and newtons by default.
+    #[must_use]
+    pub fn units(mut self, (per_second, time): (f64, &str), force: &str) -> Self {
+        self.time_unit = (per_second, time.into());
+        self.force_unit = force.into();
+        self
+    }
+
+    /// Number of the contact behind the first bead; 0 by default.
+    #[must_use]
+    pub fn first_contact(mut self, number: usize) -> Self {
+        self.first_contact = number;
         self
     }
 
@@ -122,6 +144,10 @@ impl Animation {
                     .map_or("null".into(), |(a, b)| format!("[{a},{b}]")),
             ),
             ("marks", self.marks_json()),
+            ("timeScale", number(self.time_unit.0)),
+            ("timeUnit", json_text(&self.time_unit.1)),
+            ("forceUnit", json_text(&self.force_unit)),
+            ("firstContact", self.first_contact.to_string()),
             ("colours", colours()),
         ];
         let body: Vec<String> = fields.iter().map(|(k, v)| format!("{k}:{v}")).collect();
@@ -258,6 +284,13 @@ mod tests {
         ] {
             assert!(!page.contains(outside), "{outside}");
         }
+    }
+
+    #[test]
+    fn units_are_those_asked_for() {
+        let page = moving(3, 4).units((1.0, ""), "").html();
+        assert!(page.contains("timeUnit:\"\",forceUnit:\"\""));
+        assert!(!page.contains("µs"));
     }
 
     #[test]

@@ -25,9 +25,30 @@ function colour(strength) {
   return colours[i];
 }
 
-// Lengths on the page, in metres of the row.
+// Places on the page. Few beads do not fill it: balls larger than LARGEST_BALL
+// would hide the names below them.
+const LARGEST_BALL = 26;
+const thickest = radius.reduce((most, r) => Math.max(most, r), 0);
 const left = x0[0] - 3.5 * radius[0];
 const right = x0[data.beads - 1] + 2.5 * radius[data.beads - 1];
+let scale = 1, offset = 0;
+const at = (x) => offset + (x - left) * scale;
+const place = (bead, frame) => at(x0[bead] + data.factor * moved(bead, frame));
+function rescale() {
+  scale = Math.min(width / (right - left), LARGEST_BALL / thickest);
+  offset = 0.5 * (width - scale * (right - left));
+}
+
+// Round numbers from 0 or above to the end of an axis, at most `most` of them.
+function ticks(from, to, most) {
+  const wanted = (to - from) / most, decade = 10 ** Math.floor(Math.log10(wanted));
+  const pitch = [1, 2, 5, 10].map((n) => n * decade).find((n) => n >= wanted) || 1;
+  const found = [];
+  for (let n = Math.ceil(from / pitch - 1e-9); n * pitch <= to * (1 + 1e-9); n++) found.push(n * pitch);
+  return found;
+}
+const text = (value) => Number(value.toPrecision(6)).toLocaleString("en", { maximumSignificantDigits: 6 }).replace("-", "\u2212");
+const unit = (name) => name ? " (" + name + ")" : "";
 
 function fit(canvas, height) {
   const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
@@ -40,26 +61,23 @@ function fit(canvas, height) {
 }
 
 let pen, width, height, mapImage;
-const curveTop = 26, curveBase = 170;
+const curveTop = 26, curveBase = 170, middle = 214;
 
 function drawRow(frame) {
   pen.clearRect(0, 0, width, height);
-  const scale = width / (right - left);
-  const at = (x) => (x - left) * scale;
-  const place = (bead) => at(x0[bead] + data.factor * moved(bead, frame));
-  const middle = 214;
-  drawWet(middle, place, scale);
-  for (let b = 0; b < data.beads; b++) drawBead(b, place(b), middle, scale, frame);
-  drawWall(at, middle, scale);
-  drawCurve(place, frame);
-  drawMarks(place, middle, scale);
+  drawGrid();
+  drawWet(frame);
+  for (let b = 0; b < data.beads; b++) drawBead(b, frame);
+  drawWall();
+  drawCurve(frame);
+  drawMarks(frame);
 }
 
-function drawBead(b, x, y, scale, frame) {
+function drawBead(b, frame) {
   const r = Math.max(0.6, radius[b] * scale);
   const squeezed = b > 0 ? 0.5 * (force(b - 1, frame) + force(b, frame)) : force(0, frame);
   pen.beginPath();
-  pen.arc(x, y, r, 0, 2 * Math.PI);
+  pen.arc(place(b, frame), middle, r, 0, 2 * Math.PI);
   pen.fillStyle = colour(squeezed);
   pen.fill();
   if (r > 2) {
@@ -69,49 +87,52 @@ function drawBead(b, x, y, scale, frame) {
   }
 }
 
-function drawWet(y, place, scale) {
+function drawWet(frame) {
   if (!data.wet) return;
   pen.fillStyle = "#e0a01e";
   for (let b = 0; b < data.beads; b++) {
     const contact = b * data.stride;
     if (contact < data.wet[0] || contact > data.wet[1]) continue;
-    const r = radius[b] * scale, x = place(b) + r;
-    pen.fillRect(x - 0.28 * r, y - 0.6 * r, 0.56 * r, 1.2 * r);
+    const r = radius[b] * scale, x = place(b, frame) + r;
+    pen.fillRect(x - 0.28 * r, middle - 0.6 * r, 0.56 * r, 1.2 * r);
   }
 }
 
-function drawWall(at, y, scale) {
+function drawWall() {
   const r = radius[data.beads - 1] * scale, x = at(x0[data.beads - 1]) + r;
   if (data.contacts < data.beads) return;
   pen.fillStyle = "#9aa0a8";
-  pen.fillRect(x + 1, y - 1.6 * Math.max(r, 6), 8, 3.2 * Math.max(r, 6));
+  pen.fillRect(x + 1, middle - 1.6 * Math.max(r, 6), 8, 3.2 * Math.max(r, 6));
 }
 
-function drawCurve(place, frame) {
-  const up = (F) => curveBase - (curveBase - curveTop) * F / largest;
-  pen.strokeStyle = "#bbb";
-  pen.lineWidth = 1;
+const lowest = Math.min(data.fRange[0], 0);
+const up = (F) => curveBase - (curveBase - curveTop) * (F - lowest) / (largest - lowest);
+function drawGrid() {
+  pen.font = "12px sans-serif";
+  pen.textAlign = "left";
+  for (const F of ticks(lowest, largest, 5)) {
+    pen.fillStyle = F === 0 ? "#999" : "#ddd";
+    pen.fillRect(0, up(F) - 0.5, width, 1);
+    pen.fillStyle = "#444";
+    if (F !== 0) pen.fillText(text(F), 2, up(F) - 3);
+  }
+  pen.fillText("Contact force" + unit(data.forceUnit), 2, 13);
+}
+
+function drawCurve(frame) {
   pen.beginPath();
-  pen.moveTo(0, curveBase);
-  pen.lineTo(width, curveBase);
-  pen.stroke();
-  pen.beginPath();
-  const scale = width / (right - left);
   for (let c = 0; c < data.contacts && c < data.beads; c++) {
-    const x = place(c) + radius[c] * scale;
+    const x = place(c, frame) + radius[c] * scale;
     if (c === 0) pen.moveTo(x, up(force(c, frame))); else pen.lineTo(x, up(force(c, frame)));
   }
   pen.strokeStyle = "#ce5600";
   pen.lineWidth = 2;
   pen.lineJoin = "round";
   pen.stroke();
-  pen.fillStyle = "#555";
-  pen.font = "12px sans-serif";
-  pen.textAlign = "left";
-  pen.fillText("contact force; top of the curve's range: " + largest.toPrecision(3) + " N", 2, 13);
 }
 
-function drawMarks(place, y, scale) {
+function drawMarks(frame) {
+  const y = middle;
   pen.fillStyle = "#111";
   pen.font = "12px sans-serif";
   pen.textAlign = "center";
@@ -119,9 +140,9 @@ function drawMarks(place, y, scale) {
     const b = Math.round(bead / data.stride);
     if (b >= data.beads) continue;
     const r = Math.max(radius[b] * scale, 3), half = 0.5 * pen.measureText(name).width;
-    const x = Math.min(Math.max(place(b), half + 2), width - half - 2);
+    const x = Math.min(Math.max(place(b, frame), half + 2), width - half - 2);
     pen.fillText(name, x, y + r + 18);
-    pen.fillRect(place(b) - 0.5, y + r + 2, 1, 5);
+    pen.fillRect(place(b, frame) - 0.5, y + r + 2, 1, 5);
   }
 }
 
@@ -146,24 +167,59 @@ function drawMap() {
 }
 
 let mapPen, mapWidth, mapHeight;
+const gutter = { left: 56, right: 12, top: 10, bottom: 38 };
+const mapSize = () => [mapWidth - gutter.left - gutter.right, mapHeight - gutter.top - gutter.bottom];
 function drawCursor(frame) {
+  const [across, down] = mapSize();
+  mapPen.clearRect(0, 0, mapWidth, mapHeight);
   mapPen.imageSmoothingEnabled = false;
-  mapPen.drawImage(mapImage, 0, 0, mapWidth, mapHeight);
+  mapPen.drawImage(mapImage, gutter.left, gutter.top, across, down);
   mapPen.strokeStyle = "#999";
-  mapPen.strokeRect(0.5, 0.5, mapWidth - 1, mapHeight - 1);
-  const x = mapWidth * frame / (data.frames - 1);
+  mapPen.strokeRect(gutter.left + 0.5, gutter.top + 0.5, across - 1, down - 1);
+  drawMapAxes(across, down);
+  const x = gutter.left + across * frame / (data.frames - 1);
   mapPen.fillStyle = "#0060a6";
-  mapPen.fillRect(x - 1, 0, 2, mapHeight);
+  mapPen.fillRect(x - 1, gutter.top, 2, down);
 }
 
-let share = 0, playing = true, before = null;
+const clock = (time) => time * data.timeScale;
+function drawMapAxes(across, down) {
+  mapPen.fillStyle = "#444";
+  mapPen.font = "12px sans-serif";
+  mapPen.textAlign = "center";
+  const [from, to] = [clock(data.from), clock(data.to)], bottom = gutter.top + down;
+  for (const t of ticks(from, to, 8)) {
+    const x = gutter.left + across * (t - from) / (to - from);
+    mapPen.fillRect(x - 0.5, bottom, 1, 4);
+    mapPen.fillText(text(t), x, bottom + 16);
+  }
+  mapPen.fillText("Time" + unit(data.timeUnit), gutter.left + 0.5 * across, bottom + 32);
+  mapPen.textAlign = "right";
+  const first = data.firstContact, last = first + (data.contacts - 1) * data.stride;
+  for (const c of ticks(first, last, 5).filter(Number.isInteger)) {
+    const y = bottom - down * ((c - first) / data.stride + 0.5) / data.contacts;
+    mapPen.fillRect(gutter.left - 4, y - 0.5, 4, 1);
+    mapPen.fillText(text(c), gutter.left - 7, y + 4);
+  }
+  mapPen.save();
+  mapPen.translate(12, gutter.top + 0.5 * down);
+  mapPen.rotate(-0.5 * Math.PI);
+  mapPen.textAlign = "center";
+  mapPen.fillText("Contact", 0, 0);
+  mapPen.restore();
+}
+
+// Who asked their system for less motion starts it by hand.
+const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+let share = 0, playing = !still, before = null;
 function draw() {
   const frame = share * (data.frames - 1);
   drawRow(frame);
   drawCursor(frame);
   element("time").value = share;
-  const microseconds = 1e6 * (data.from + share * (data.to - data.from));
-  element("clock").textContent = "t = " + microseconds.toFixed(1) + " µs";
+  const time = clock(data.from + share * (data.to - data.from));
+  const digits = Math.max(0, 3 - Math.floor(Math.log10(Math.max(clock(data.to), 1e-300))));
+  element("clock").textContent = ("t = " + time.toFixed(Math.min(digits, 20)) + " " + data.timeUnit).trim();
 }
 
 function step(now) {
@@ -180,32 +236,38 @@ function setPlaying(on) {
   playing = on;
   element("play").textContent = on ? "Pause" : "Play";
 }
+setPlaying(playing);
 function seek(to) {
   share = Math.min(Math.max(to, 0), 1);
   draw();
 }
 function layout() {
-  [pen, width, height] = fit(row, 262);
-  [mapPen, mapWidth, mapHeight] = fit(map, 150);
+  [pen, width, height] = fit(row, 266);
+  [mapPen, mapWidth, mapHeight] = fit(map, 206);
+  rescale();
   draw();
 }
 
 element("play").addEventListener("click", () => setPlaying(!playing));
 element("time").addEventListener("input", (e) => { setPlaying(false); seek(Number(e.target.value)); });
-map.addEventListener("click", (e) => seek(e.offsetX / map.clientWidth));
+map.addEventListener("click", (e) => seek((e.offsetX - gutter.left) / mapSize()[0]));
 document.addEventListener("keydown", (e) => {
-  if (e.target.tagName === "BUTTON" || e.target.tagName === "SELECT") return;
-  if (e.key === " ") { e.preventDefault(); setPlaying(!playing); }
-  if (e.key === "ArrowRight") seek(share + 0.005);
-  if (e.key === "ArrowLeft") seek(share - 0.005);
+  const on = e.target.tagName;
+  if (on === "SELECT" || e.ctrlKey || e.altKey || e.metaKey) return;
+  const steps = { ArrowRight: 0.005, ArrowLeft: -0.005, Home: -1, End: 1 };
+  if (e.key === " " && on !== "BUTTON") setPlaying(!playing);
+  else if (e.key in steps) { setPlaying(false); seek(share + steps[e.key]); }
+  else return;
+  e.preventDefault();
 });
 window.addEventListener("resize", layout);
 
-const slower = SECONDS_PER_RUN / Math.max(data.to - data.from, 1e-300);
+const pace = SECONDS_PER_RUN / Math.max(data.to - data.from, 1e-300);
+const round = (value) => Number(value.toPrecision(2)).toLocaleString("en", { maximumSignificantDigits: 2 });
 element("note").textContent =
-  "Displacements are drawn " + data.factor.toLocaleString("en") + " times as large as they are; at speed 1, time runs "
-  + Number(slower.toPrecision(2)).toLocaleString("en") + " times slower than in the shot. Colour and map show the contact force "
-  + "on a square-root scale; the map has time across and contacts upward."
+  (data.factor === 1 ? "Displacements are drawn as large as they are" : "Displacements are drawn " + data.factor.toLocaleString("en") + " times as large as they are")
+  + (data.timeUnit ? "; at speed 1, time runs " + round(pace) + " times slower than in the shot. " : "; at speed 1, one unit of time takes " + round(pace) + " s. ")
+  + "Colours of beads and map show the contact force on a square-root scale. Space pauses, the arrow keys step, a click on the map goes to that time."
   + (data.stride > 1 ? " One bead in " + data.stride + " is drawn." : "");
 mapImage = drawMap();
 layout();

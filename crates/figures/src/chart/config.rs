@@ -25,7 +25,7 @@ pub(crate) struct Reference {
 /// Where the legend goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Legend {
-    /// The corner that hides least data.
+    /// On free paper inside the frame, or above the frame if there is none.
     #[default]
     Auto,
     /// No legend.

@@ -3,9 +3,9 @@
 use super::config::{Chart, Legend};
 use super::legend::{LegendBox, band_paint, line_paint, marker_of};
 use super::occupancy::{Occupancy, places};
+use super::placement::{self, Spot, occupancy};
 use super::plot::Plot;
-use super::prepare::{Prepared, occupancy};
-use super::series::Series;
+use super::prepare::Prepared;
 use super::{inset, markers, references, strokes};
 use crate::axis::{Scale, Ticks};
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
@@ -170,17 +170,30 @@ impl Prepared {
     }
 
     fn draw_legend(&self, svg: &mut Svg, chart: &Chart, plot: &Plot, taken: &mut Occupancy) {
-        let legend = LegendBox::new(chart, &self.style, 0.9 * plot.frame.width());
-        if chart.legend == Legend::Off || legend.is_empty() {
+        if chart.legend == Legend::Off {
             return;
         }
-        let inner = plot.frame.grown(-self.style.tick - 1.0);
-        let places = places(&inner, legend.width(), legend.height());
-        if let Some((place, cost)) = taken.freest(&places) {
-            let veil = cost > 0 || chart.heat.is_some() || chart.series.iter().any(Series::is_band);
+        if self.spot == Spot::Above {
+            return self.draw_legend_above(svg, chart, &plot.frame);
+        }
+        let legend = LegendBox::upright(chart, &self.style, 0.9 * plot.frame.width());
+        if legend.is_empty() {
+            return;
+        }
+        if let Some((place, cost)) = placement::inside(&self.style, plot, &legend, taken) {
+            let veil = cost > 0 || chart.heat.is_some();
             legend.draw(svg, chart, &self.style, &place, veil);
             taken.mark_rect(&place, 9);
         }
+    }
+
+    fn draw_legend_above(&self, svg: &mut Svg, chart: &Chart, frame: &Rect) {
+        let legend = LegendBox::flat(chart, &self.style, frame.width());
+        let bottom = frame.y0 - self.factor_room() - 0.3 * self.style.small;
+        let left = frame.centre().x - 0.5 * legend.width();
+        let top = bottom - legend.height();
+        let place = Rect::sized(left, top, legend.width(), legend.height());
+        legend.draw(svg, chart, &self.style, &place, false);
     }
 
     fn draw_notes(&self, svg: &mut Svg, chart: &Chart, plot: &Plot, taken: &mut Occupancy) {

@@ -27,7 +27,7 @@ pub(crate) fn draw(svg: &mut Svg, inset: &Chart, area: &Rect) {
     if area.width() < SMALLEST.0 || area.height() < SMALLEST.1 {
         return;
     }
-    let prepare = |size: (f64, f64)| Prepared::new(inset, Style::INSET, size.0, size.1);
+    let prepare = |size: (f64, f64)| Prepared::new(inset, Style::INSET, size, None);
     let mut size = (0.7 * area.width(), 0.7 * area.height());
     let mut margins = prepare(size).margins(inset, size);
     for _ in 0..3 {

@@ -12,42 +12,61 @@ const SAMPLE: f64 = 2.6;
 /// Distance of lines in font sizes.
 const LEADING: f64 = 1.4;
 
-/// The names of a chart's series, laid out in one column.
+/// Distance of columns in font sizes.
+const GAP: f64 = 1.2;
+
+/// The names of a chart's series beside samples of their look.
 pub(crate) struct LegendBox {
     entries: Vec<(usize, TextLine)>,
+    columns: usize,
     font: f64,
 }
 
 impl LegendBox {
-    pub(crate) fn new(chart: &Chart, style: &Style, widest: f64) -> Self {
+    /// One name below the other, none wider than `widest`.
+    pub(crate) fn upright(chart: &Chart, style: &Style, widest: f64) -> Self {
         let font = style.small;
         let room = widest - (SAMPLE + 1.2) * font;
-        let named = chart
-            .series
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| !s.name.is_empty());
+        let named = chart.series.iter().enumerate();
         let entries = named
+            .filter(|(_, s)| !s.name.is_empty())
             .map(|(i, s)| (i, TextLine::new(&s.name, font).fitted(room)))
             .collect();
-        Self { entries, font }
+        Self {
+            entries,
+            columns: 1,
+            font,
+        }
+    }
+
+    /// As few rows as `widest` allows, their columns aligned.
+    pub(crate) fn flat(chart: &Chart, style: &Style, widest: f64) -> Self {
+        let mut legend = Self::upright(chart, style, widest);
+        let pitch = legend.cell() + GAP * legend.font;
+        let most = ((widest + GAP * legend.font) / pitch).floor().max(1.0) as usize;
+        let rows = legend.entries.len().div_ceil(most).max(1);
+        legend.columns = legend.entries.len().div_ceil(rows).max(1);
+        legend
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
+    /// Width of one entry.
+    fn cell(&self) -> f64 {
+        let widths = self.entries.iter().map(|(_, name)| name.width());
+        widths.fold(0.0, f64::max) + (SAMPLE + 1.0) * self.font
+    }
+
     pub(crate) fn width(&self) -> f64 {
-        let widest = self
-            .entries
-            .iter()
-            .map(|(_, t)| t.width())
-            .fold(0.0, f64::max);
-        widest + (SAMPLE + 1.0) * self.font
+        let columns = self.columns as f64;
+        columns * self.cell() + (columns - 1.0) * GAP * self.font
     }
 
     pub(crate) fn height(&self) -> f64 {
-        (self.entries.len() as f64 * LEADING + 0.5) * self.font
+        let rows = self.entries.len().div_ceil(self.columns);
+        (rows as f64 * LEADING + 0.5) * self.font
     }
 
     /// Draws at `place`; a veil of paper keeps it legible over data.
@@ -59,17 +78,20 @@ impl LegendBox {
         place: &Rect,
         veil: bool,
     ) {
+        svg.open_legend();
         if veil {
             svg.rect(place, &Paint::fill(Colour::WHITE).opacity(0.85));
         }
-        let mut y = place.y0 + (0.25 + 0.5 * LEADING) * self.font;
-        for (index, name) in &self.entries {
-            let left = place.x0 + 0.2 * self.font;
+        let pitch = self.cell() + GAP * self.font;
+        for (number, (index, name)) in self.entries.iter().enumerate() {
+            let (column, row) = (number % self.columns, number / self.columns);
+            let left = place.x0 + 0.2 * self.font + column as f64 * pitch;
+            let y = place.y0 + (0.25 + (row as f64 + 0.5) * LEADING) * self.font;
             self.sample(svg, chart, style, *index, Point::new(left, y));
             let at = Point::new(left + (SAMPLE + 0.5) * self.font, y);
             name.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
-            y += LEADING * self.font;
         }
+        svg.close();
     }
 
     fn sample(&self, svg: &mut Svg, chart: &Chart, style: &Style, index: usize, left: Point) {

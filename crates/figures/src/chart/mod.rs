@@ -7,6 +7,7 @@ mod inset;
 mod legend;
 mod markers;
 mod occupancy;
+mod placement;
 mod plot;
 mod prepare;
 mod references;
@@ -17,6 +18,7 @@ mod style;
 pub use config::{Chart, Legend};
 pub use series::{Dash, Marker, Series};
 
+pub(crate) use placement::Spot;
 pub(crate) use plot::Plot;
 pub(crate) use prepare::{Prepared, x_scale, y_scale};
 pub(crate) use style::Style;

@@ -6,6 +6,8 @@ use crate::draw::{Point, Rect};
 /// Edge of a cell in points, on posters a share of the frame.
 const CELL: f64 = 2.0;
 const MOST_CELLS: f64 = 600.0;
+/// What lies this near, in points, counts as covered: half a line's width and more.
+const STROKE: f64 = 1.2;
 /// Places tried along either side of a frame.
 const FINE: u32 = 32;
 
@@ -53,7 +55,8 @@ impl Occupancy {
     pub(crate) fn mark_line(&mut self, points: &[Point], weight: u32) {
         for pair in points.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let steps = ((b.x - a.x).hypot(b.y - a.y) / self.cell)
+            // Half a cell a step: no more than a corner of a cell is missed.
+            let steps = (2.0 * (b.x - a.x).hypot(b.y - a.y) / self.cell)
                 .ceil()
                 .clamp(1.0, 4096.0);
             for i in 0..=steps as u32 {
@@ -75,9 +78,10 @@ impl Occupancy {
         }
     }
 
-    /// What covering `rect` would hide; zero if it is free.
+    /// What covering `rect` would hide; zero if it is free, strokes and corners of
+    /// cells included.
     pub(crate) fn cost(&self, rect: &Rect) -> u64 {
-        let cells = self.covered(rect);
+        let cells = self.covered(&rect.grown(STROKE));
         cells
             .filter_map(|(c, r)| self.cells.get(r * self.columns + c))
             .map(|w| u64::from(*w))

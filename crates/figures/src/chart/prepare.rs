@@ -1,14 +1,13 @@
 //! Scales, ticks and the room they need, before anything is drawn.
 
-use super::config::{Axis, Chart, Legend};
+use super::config::{Axis, Chart};
 use super::legend::LegendBox;
-use super::occupancy::{Occupancy, places};
+use super::placement::{self, Spot};
 use super::plot::Plot;
 use super::series::{Kind, Series};
-use super::strokes;
 use super::style::Style;
 use crate::axis::{Extent, Room, Scale, Ticks, ticks};
-use crate::draw::{Point, Rect, Side};
+use crate::draw::{Rect, Side};
 use crate::heat;
 use crate::text::TextLine;
 
@@ -20,23 +19,25 @@ pub(crate) struct Prepared {
     pub(crate) x_ticks: Ticks,
     pub(crate) y_ticks: Ticks,
     pub(crate) style: Style,
+    pub(crate) spot: Spot,
 }
 
 impl Prepared {
-    /// Chooses scales and ticks for a frame of about the given size.
-    pub(crate) fn new(chart: &Chart, style: Style, width: f64, height: f64) -> Self {
-        let (x, mut y) = (x_scale(chart, &style), y_scale(chart, &style));
-        if chart.y.range.is_none() && chart.heat.is_none() {
-            y = with_headroom(
-                chart,
-                &style,
-                Plot {
-                    frame: Rect::sized(0.0, 0.0, width, height),
-                    x,
-                    y,
-                },
-            );
-        }
+    /// Chooses scales, ticks and the legend's side of the frame, for a frame of
+    /// about the given size. `spot` is where the legend was found to stand before.
+    pub(crate) fn new(
+        chart: &Chart,
+        style: Style,
+        (width, height): (f64, f64),
+        spot: Option<Spot>,
+    ) -> Self {
+        let plot = Plot {
+            frame: Rect::sized(0.0, 0.0, width, height),
+            x: x_scale(chart, &style),
+            y: y_scale(chart, &style),
+        };
+        let (y, spot) = placement::choose(chart, &style, &plot, spot);
+        let x = plot.x;
         let font = style.small;
         let x_room = Room {
             length: width,
@@ -54,6 +55,7 @@ impl Prepared {
             x_ticks: ticks(&x, &x_room),
             y_ticks: ticks(&y, &y_room),
             style,
+            spot,
         }
     }
 
@@ -86,14 +88,20 @@ impl Prepared {
             Some(map) => heat::bar_room(map, style, frame.1),
             None => (0.0, 0.0),
         };
-        let factor = if self.y_ticks.exponent.is_some() {
-            1.5 * style.small
-        } else {
-            0.0
-        };
         side.right += bar;
-        side.top += factor.max(above);
+        side.top += self.factor_room().max(above);
+        if self.spot == Spot::Above {
+            side.top += LegendBox::flat(chart, style, frame.0).height();
+        }
         side
+    }
+
+    /// Room above the frame for a power of ten.
+    pub(crate) fn factor_room(&self) -> f64 {
+        match self.y_ticks.exponent {
+            Some(_) => 1.5 * self.style.small,
+            None => 0.0,
+        }
     }
 
     fn y_label_width(&self) -> f64 {
@@ -189,78 +197,11 @@ fn add_y(extent: &mut Extent, series: &Series, x: &Scale) {
 }
 
 /// Stacked areas fill their frame.
-fn areas_only(chart: &Chart) -> bool {
+pub(crate) fn areas_only(chart: &Chart) -> bool {
     !chart.series.is_empty() && chart.series.iter().all(Series::is_band)
 }
 
 fn chosen(axis: &Axis) -> Option<Scale> {
     axis.range
         .and_then(|(from, to)| Scale::fixed(from, to, axis.log))
-}
-
-/// Raises the upper end of the y axis if the legend would else hide data.
-fn with_headroom(chart: &Chart, style: &Style, plot: Plot) -> Scale {
-    let legend = LegendBox::new(chart, style, 0.9 * plot.frame.width());
-    let needed = legend.height() + 4.0;
-    let height = plot.frame.height();
-    if chart.legend == Legend::Off
-        || legend.is_empty()
-        || needed > 0.4 * height
-        || areas_only(chart)
-    {
-        return plot.y;
-    }
-    let mut taken = occupancy(chart, style, &plot);
-    if chart.inset.is_some() {
-        super::inset::place(chart, &plot.frame, &mut taken);
-    }
-    let inner = plot.frame.grown(-style.tick - 1.0);
-    let free = taken.freest(&places(&inner, legend.width(), legend.height()));
-    if free.is_none_or(|(_, cost)| cost == 0) {
-        return plot.y;
-    }
-    let raised = plot.y.value(height / (height - needed));
-    Scale::fixed(plot.y.lo, raised, plot.y.log).unwrap_or(plot.y)
-}
-
-/// Where the data of a chart lie.
-pub(crate) fn occupancy(chart: &Chart, style: &Style, plot: &Plot) -> Occupancy {
-    let mut taken = Occupancy::new(plot.frame);
-    for series in &chart.series {
-        for piece in strokes::pieces(plot, series)
-            .iter()
-            .filter(|_| series.has_line())
-        {
-            taken.mark_line(piece, 3);
-        }
-        mark_points(&mut taken, style, plot, series);
-    }
-    for reference in &chart.references {
-        super::references::mark(&mut taken, plot, reference);
-    }
-    taken
-}
-
-fn mark_points(taken: &mut Occupancy, style: &Style, plot: &Plot, series: &Series) {
-    for outline in strokes::band(plot, series) {
-        taken.mark_line(&outline, 1);
-    }
-    if matches!(series.kind, Kind::Points(_) | Kind::LinePoints(_)) {
-        let r = style.marker + 1.0;
-        for p in strokes::centres(plot, series) {
-            taken.mark_rect(&Rect::sized(p.x - r, p.y - r, 2.0 * r, 2.0 * r), 4);
-        }
-        mark_errors(taken, plot, series);
-    }
-}
-
-fn mark_errors(taken: &mut Occupancy, plot: &Plot, series: &Series) {
-    for (i, (x, y)) in series.xy().enumerate().take(series.y_error.0.len()) {
-        let end = |dy: f64| plot.at(x, y + dy).map(|p| Point::new(p.x, p.y));
-        let below = series.y_error.0.get(i).and_then(|e| end(-e));
-        let above = series.y_error.1.get(i).and_then(|e| end(*e));
-        if let (Some(a), Some(b)) = (below, above) {
-            taken.mark_line(&[a, b], 3);
-        }
-    }
 }

@@ -123,6 +123,7 @@ pub(crate) struct Svg {
     glyphs: BTreeMap<GlyphId, String>,
     gradients: Vec<(Colour, String)>,
     texts: usize,
+    legends: usize,
 }
 
 impl Svg {
@@ -156,6 +157,12 @@ impl Svg {
         self.body.push(' ');
         fmt(&mut self.body, origin.y);
         let _ = writeln!(self.body, ") scale({scale:.6})\">");
+    }
+
+    /// Everything drawn until [`Svg::close`] is one legend.
+    pub(crate) fn open_legend(&mut self) {
+        self.legends += 1;
+        let _ = writeln!(self.body, "<g id=\"legend{}\">", self.legends);
     }
 
     pub(crate) fn close(&mut self) {
@@ -216,7 +223,12 @@ impl Svg {
     }
 
     /// The finished document of the given size.
-    pub(crate) fn finish(self, width_mm: f64, height_mm: f64, title: &str) -> String {
+    pub(crate) fn finish(
+        self,
+        (width_mm, height_mm): (f64, f64),
+        title: &str,
+        description: &str,
+    ) -> String {
         let mut size = [String::new(), String::new()];
         fmt(&mut size[0], width_mm * PT_PER_MM);
         fmt(&mut size[1], height_mm * PT_PER_MM);
@@ -225,12 +237,11 @@ impl Svg {
              width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
             size[0], size[1]
         );
-        let _ = writeln!(
-            out,
-            "<title>{}</title>\n<defs>\n{}",
-            escape(title),
-            self.defs
-        );
+        let _ = writeln!(out, "<title>{}</title>", escape(title));
+        if !description.is_empty() {
+            let _ = writeln!(out, "<desc>{}</desc>", escape(description));
+        }
+        let _ = writeln!(out, "<defs>\n{}", self.defs);
         for (id, d) in self.glyphs {
             let _ = writeln!(out, "<path id=\"{id}\" d=\"{d}\"/>");
         }

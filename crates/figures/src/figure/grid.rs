@@ -1,7 +1,7 @@
 //! Where the panels' frames stand on the page.
 
 use super::Panel;
-use crate::chart::{Prepared, Style};
+use crate::chart::{Chart, Prepared, Spot, Style};
 use crate::draw::{Rect, Side};
 
 /// Space around and between panels, in points.
@@ -17,6 +17,8 @@ pub(super) struct Grid {
     /// Margins of each column (left, right) and row (top, bottom).
     across: Vec<Side>,
     down: Vec<Side>,
+    /// Where each panel's legend stands.
+    spots: Vec<Spot>,
 }
 
 impl Grid {
@@ -28,6 +30,7 @@ impl Grid {
             frame: (0.75 * page.0 / columns as f64, 0.75 * page.1 / rows as f64),
             across: vec![Side::default(); columns],
             down: vec![Side::default(); rows],
+            spots: vec![Spot::Inside; panels.len()],
         };
         // Ticks depend on the frame and the frame on the tick labels. The first
         // guess is forgotten; after it margins only grow, so this settles.
@@ -35,6 +38,7 @@ impl Grid {
             if round == 1 {
                 grid.across.fill(Side::default());
                 grid.down.fill(Side::default());
+                grid.spots.fill(Spot::Inside);
             }
             grid.measure(panels, letters);
             grid.fit(page);
@@ -44,7 +48,7 @@ impl Grid {
 
     fn measure(&mut self, panels: &[Panel], letters: bool) {
         for (i, panel) in panels.iter().enumerate() {
-            let mut side = self.margins(panel);
+            let mut side = self.margins(i, panel);
             if letters || !panel.title().is_empty() {
                 side.top += HEADING;
             }
@@ -57,14 +61,26 @@ impl Grid {
         }
     }
 
-    fn margins(&self, panel: &Panel) -> Side {
-        match panel {
-            Panel::Chart(chart) => {
-                let prepared = Prepared::new(chart, Style::JOURNAL, self.frame.0, self.frame.1);
-                prepared.margins(chart, self.frame)
-            }
-            Panel::Matrix(_) | Panel::Rig(_) => Side::default(),
+    fn margins(&mut self, index: usize, panel: &Panel) -> Side {
+        let Panel::Chart(chart) = panel else {
+            return Side::default();
+        };
+        // A legend that went above stays there: its room makes the frame lower.
+        let above = self.spot(index).filter(|spot| *spot == Spot::Above);
+        let prepared = Prepared::new(chart, Style::JOURNAL, self.frame, above);
+        if let Some(spot) = self.spots.get_mut(index) {
+            *spot = prepared.spot;
         }
+        prepared.margins(chart, self.frame)
+    }
+
+    fn spot(&self, index: usize) -> Option<Spot> {
+        self.spots.get(index).copied()
+    }
+
+    /// A panel's chart for its frame, its legend where there is room for it.
+    pub(super) fn prepared(&self, index: usize, chart: &Chart) -> Prepared {
+        Prepared::new(chart, Style::JOURNAL, self.frame, self.spot(index))
     }
 
     fn fit(&mut self, page: (f64, f64)) {
@@ -101,6 +117,6 @@ impl Grid {
     /// Room between the heading and the frame.
     pub(super) fn above(&self, index: usize) -> f64 {
         let top = self.down.get(index / self.columns).map_or(0.0, |s| s.top);
-        (top - HEADING - 0.55 * Style::JOURNAL.small).clamp(0.0, 12.0)
+        (top - HEADING - 0.55 * Style::JOURNAL.small).max(0.0)
     }
 }

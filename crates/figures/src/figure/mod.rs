@@ -6,7 +6,7 @@ mod share;
 use grid::Grid;
 
 use crate::FigureError;
-use crate::chart::{Chart, Prepared, Style};
+use crate::chart::Chart;
 use crate::draw::{Colour, PT_PER_MM, Point, Rect, Svg};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
@@ -78,6 +78,7 @@ pub struct Figure {
     share_x: bool,
     share_y: bool,
     title: String,
+    caption: String,
 }
 
 impl Figure {
@@ -100,6 +101,7 @@ impl Figure {
             share_x: false,
             share_y: false,
             title: String::new(),
+            caption: String::new(),
         }
     }
 
@@ -157,6 +159,23 @@ impl Figure {
         self
     }
 
+    /// What a journal prints below the figure: plain text, not drawn, kept in
+    /// the SVG as its description.
+    #[must_use]
+    pub fn caption(mut self, caption: &str) -> Self {
+        self.caption = caption.into();
+        self
+    }
+
+    /// The caption and, in front of it, the title.
+    #[must_use]
+    pub fn caption_text(&self) -> String {
+        let parts = [&self.title, &self.caption].into_iter();
+        let parts: Vec<&str> = parts.map(|text| text.trim_end_matches('.')).collect();
+        let written: Vec<&str> = parts.into_iter().filter(|text| !text.is_empty()).collect();
+        written.join(". ") + if written.is_empty() { "" } else { "." }
+    }
+
     /// Width and height in millimetres.
     #[must_use]
     pub fn size_mm(&self) -> (f64, f64) {
@@ -175,15 +194,13 @@ impl Figure {
             self.heading(&mut svg, panel, i, &frame, &grid);
             match panel {
                 Panel::Chart(chart) => {
-                    let prepared =
-                        Prepared::new(chart, Style::JOURNAL, frame.width(), frame.height());
-                    prepared.draw(&mut svg, chart, &frame);
+                    grid.prepared(i, chart).draw(&mut svg, chart, &frame);
                 }
                 Panel::Matrix(matrix) => matrix.draw(&mut svg, &frame),
                 Panel::Rig(rig) => rig.draw(&mut svg, &frame),
             }
         }
-        svg.finish(self.width_mm, self.height_mm, &self.title)
+        svg.finish(self.size_mm(), &self.title, &self.caption)
     }
 
     /// The picture as PNG at a resolution in dots per inch; journals ask for 300.

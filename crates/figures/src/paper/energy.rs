@@ -5,18 +5,17 @@ use crate::{Chart, Colour, Dash, Figure, Legend, Series};
 use hertzchain_chain::wave::Budget;
 use hertzchain_study::reproduce::Film;
 
-/// Shares of the energy above, what the budget misses below; a column a shot.
+/// A panel of stacked shares for each shot, and what the budgets miss.
 pub(super) fn figure(films: &[Film]) -> Figure {
-    let empty = Figure::double_column(110.0)
-        .columns(films.len().max(1))
-        .letters();
-    let tops = films
-        .iter()
-        .enumerate()
-        .map(|(i, film)| shares(film, i == 0));
-    let panels = tops.chain(films.iter().map(residual));
-    let full = panels.fold(empty, Figure::panel);
-    full.share_x().title("Energy budget over time")
+    let empty = Figure::single_column(150.0).letters();
+    let shares = films.iter().enumerate();
+    let shares = shares.map(|(i, film)| shares_of(film, i == 0));
+    let full = shares.fold(empty, Figure::panel).panel(residuals(films));
+    full.title("Energy budget over time").caption(
+        "Where the striker's energy is, as stacked shares: in motion, in overlaps, and lost to \
+         each dissipative term of the contact law. Last: what the budgets miss of the initial \
+         energy, the error of the computation.",
+    )
 }
 
 fn times_us(film: &Film) -> Vec<f64> {
@@ -27,7 +26,7 @@ fn times_us(film: &Film) -> Vec<f64> {
 }
 
 /// Stacked shares: kinetic lowest, then elastic, then one band a lossy law.
-fn shares(film: &Film, legend: bool) -> Chart {
+fn shares_of(film: &Film, legend: bool) -> Chart {
     let time = times_us(film);
     let title = format!("{}, $v_0$ = {:.4} m/s", label(&film.case), film.speed_m_s);
     let empty = Chart::new("Time (µs)", "Share of initial energy").title(&title);
@@ -73,18 +72,20 @@ fn parts(budgets: &[Budget]) -> Vec<(String, Colour, Vec<f64>)> {
     parts
 }
 
-fn residual(film: &Film) -> Chart {
-    let missing = film.budgets.iter().map(|b| b.relative_residual().abs());
-    let missing: Vec<f64> = missing
-        .map(|share| if share > 0.0 { share } else { f64::NAN })
-        .collect();
-    Chart::new("Time (µs)", "|Residual| / initial")
-        .y_log()
-        .y_range(1e-14, 1e-8)
-        .with(
-            Series::line("", &times_us(film), &missing)
-                .colour(Colour::BLACK)
-                .dash(Dash::Solid)
-                .width(0.6),
-        )
+fn residuals(films: &[Film]) -> Chart {
+    let looks = [
+        (Colour::BLACK, Dash::Solid),
+        (Colour::VERMILION, Dash::Dashed),
+        (Colour::BLUE, Dash::DashDotted),
+    ];
+    let empty = Chart::new("Time (µs)", "|Residual| / initial").y_log();
+    let looks = looks.into_iter().cycle();
+    films.iter().zip(looks).fold(empty, |chart, (film, look)| {
+        let missing = film.budgets.iter().map(|b| b.relative_residual().abs());
+        let missing: Vec<f64> = missing
+            .map(|share| if share > 0.0 { share } else { f64::NAN })
+            .collect();
+        let line = Series::line(label(&film.case), &times_us(film), &missing);
+        chart.with(line.colour(look.0).dash(look.1).width(0.8))
+    })
 }

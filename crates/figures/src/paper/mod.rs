@@ -55,14 +55,16 @@ pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, PaperEr
     Ok(figures)
 }
 
-/// Writes all figures of a reproduction into a folder, each as SVG and PNG;
-/// returns what was written.
+/// Writes all figures of a reproduction into a folder, each as SVG and PNG, and
+/// their captions; returns what was written.
 ///
 /// # Errors
 /// The first picture that can't be made or written; none is left half-written.
 pub fn write(of: &Reproduction, folder: &Path) -> Result<Vec<PathBuf>, PaperError> {
     let mut written = Vec::new();
+    let mut captions = String::from("# Captions\n");
     for (name, figure) in figures(of)? {
+        captions += &format!("\n## {name}\n{}\n", figure.caption_text());
         let png = figure.png(DOTS_PER_INCH);
         let png = png.map_err(|error| PaperError::Figure { name, error })?;
         for (ending, content) in [("svg", figure.svg().into_bytes()), ("png", png)] {
@@ -71,6 +73,9 @@ pub fn write(of: &Reproduction, folder: &Path) -> Result<Vec<PathBuf>, PaperErro
             written.push(path);
         }
     }
+    let path = folder.join("captions.md");
+    write_atomically(&path, captions.as_bytes())?;
+    written.push(path);
     Ok(written)
 }
 

@@ -15,6 +15,11 @@ pub(super) fn figure(evidence: &Evidence) -> Figure {
     Figure::single_column(68.0)
         .panel(chart)
         .title("Ratio of wet to dry time of flight against the striker's speed")
+        .caption(
+            "Incident time of flight of the chain with oil on the contacts from bead 7 to the \
+             wall over that of the dry chain at the same speed of the striker. Symbols: computed \
+             shots, one after the other joined by lines. Dashed line: oil makes no difference.",
+        )
 }
 
 fn series(evidence: &Evidence, case: &str) -> Series {

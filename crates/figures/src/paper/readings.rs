@@ -20,6 +20,10 @@ pub(super) fn figure(scan: &Scan) -> Figure {
     matrix
         .figure()
         .title("Claims of the paper in different readings of it")
+        .caption(
+            "Which claims of the paper hold in which reading of its model: the default, one \
+             switch changed at a time, and the reading that comes closest to the paper.",
+        )
 }
 
 fn symbol(verdict: Judged) -> Verdict {

@@ -24,7 +24,10 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {
         recorder: "charge amplifier, 16-bit ADC".to_owned(),
         ..drawing
     };
-    Ok(complete.figure().title("The rig"))
+    Ok(complete.figure().title("The rig").caption(
+        "The paper's rig, drawn from the experiment file of the motor oil: what moves, what is \
+         wet, where forces are measured. Not to scale.",
+    ))
 }
 
 /// A drawing of what an experiment file describes.

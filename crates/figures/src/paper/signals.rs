@@ -14,17 +14,23 @@ const PULSES: [(&str, Marker, Colour); 3] = [
 /// Shown beyond the returning peak, as a share of the time between the peaks.
 const AFTER: f64 = 0.55;
 
-/// Shown before the first peak.
-const BEFORE: f64 = 0.25;
+/// Paper above the highest and below the lowest force, as shares of the highest.
+const HEADROOM: f64 = 0.1;
+const FOOTROOM: f64 = 0.04;
 
-/// Four panels of force in the common channel against time.
+/// A panel a shot: force in the common channel against time.
 pub(super) fn figure(signals: &[SignalShot]) -> Figure {
-    let empty = Figure::double_column(105.0).columns(2).letters();
+    let empty = Figure::single_column(172.0).letters();
     let panels = signals.iter().enumerate();
     let full = panels.fold(empty, |figure, (i, signal)| {
         figure.panel(panel(signal, i == 0))
     });
     full.title("Signals of bead 7 and wall in one channel")
+        .caption(
+            "Dynamic force of bead 7 and of the wall, added into one channel, against the time \
+             since the striker's impact: the computed shots that the paper's Fig. 2 shows. Symbols \
+             mark the peaks between which times of flight are taken.",
+        )
 }
 
 fn panel(signal: &SignalShot, legend: bool) -> Chart {
@@ -44,11 +50,11 @@ fn panel(signal: &SignalShot, legend: bool) -> Chart {
         chart = chart.with(peak.marker(marker).colour(colour));
     }
     if let [(first, _), .., (last, _)] = signal.peaks[..] {
-        let between = last - first;
-        chart = chart.x_range(
-            (first - BEFORE * between) * US,
-            (last + AFTER * between) * US,
-        );
+        // From the impact on: before it, nothing moves.
+        chart = chart.x_range(0.0, (last + AFTER * (last - first)) * US);
     }
+    let highest = signal.channel_n.iter().copied().fold(0.0, f64::max);
+    let lowest = signal.channel_n.iter().copied().fold(0.0, f64::min);
+    chart = chart.y_range(lowest - FOOTROOM * highest, (1.0 + HEADROOM) * highest);
     chart.legend(if legend { Legend::Auto } else { Legend::Off })
 }

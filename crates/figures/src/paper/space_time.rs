@@ -6,7 +6,7 @@ use hertzchain_study::reproduce::Film;
 
 /// One map a shot, the wave running from below to the wall above and back.
 pub(super) fn figure(films: &[Film]) -> Figure {
-    let empty = Figure::double_column(72.0).columns(2).letters();
+    let empty = Figure::single_column(124.0).letters();
     // The striker is faster than any bead and would pale the wave.
     let largest = films
         .iter()
@@ -16,6 +16,11 @@ pub(super) fn figure(films: &[Film]) -> Figure {
         .iter()
         .fold(empty, |figure, film| figure.panel(panel(film, largest)))
         .title("Bead velocity over time and place")
+        .caption(
+            "Velocity of every bead against time, positive towards the wall above bead 40. The \
+             striker (row 0) is faster than any bead until it has hit; its colour is that of the \
+             end of the scale.",
+        )
 }
 
 fn panel(film: &Film, largest: f64) -> Chart {

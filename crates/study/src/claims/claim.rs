@@ -4,6 +4,18 @@ use super::predicates::{self, Predicate};
 use super::{Evidence, Finding};
 use serde::Deserialize;
 
+/// On which side of the threshold the deciding number must lie.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Needs {
+    /// The number exceeds the threshold.
+    Above,
+    /// The number is less than the threshold.
+    Below,
+    /// The number differs from the expected one by less than the threshold.
+    Within,
+}
+
 /// One statement of the paper that a model can be held to.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
@@ -25,17 +37,26 @@ pub struct Claim {
     /// Values that the paper prints.
     #[serde(default)]
     pub expected: Vec<f64>,
-    /// What the deciding number is compared with.
+    /// The side of the threshold that the claim needs.
+    pub needs: Needs,
+    /// What the deciding number is compared with, or its largest deviation from
+    /// the expected one.
     pub threshold: f64,
     /// A weaker threshold, at which the claim holds in part.
     pub partly: Option<f64>,
+    /// What the deciding number must not exceed.
+    pub at_most: Option<f64>,
+    /// Unit of the deciding number, the expected ones and all thresholds; empty
+    /// for plain numbers.
+    #[serde(default)]
+    pub unit: String,
     /// Only speeds from here in m/s.
     #[serde(default)]
     pub from_m_s: f64,
     /// Only speeds up to here in m/s.
     #[serde(default = "no_limit")]
     pub to_m_s: f64,
-    /// The deciding number, in words with its unit.
+    /// The deciding number, in words.
     pub value: String,
     /// Why this threshold.
     pub reason: String,

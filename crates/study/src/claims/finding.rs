@@ -54,11 +54,19 @@ pub struct Finding {
     pub value: f64,
     /// Absolute accuracy of the number.
     pub accuracy: f64,
+    /// What the paper has for this number, if it prints one.
+    pub expected: Option<f64>,
     /// Where and how much, in words.
     pub detail: String,
 }
 
 impl Finding {
+    /// By how much the number differs from what the paper has.
+    #[must_use]
+    pub fn deviation(&self) -> Option<f64> {
+        self.expected.map(|expected| self.value - expected)
+    }
+
     /// Of a claim for which numbers are missing.
     #[must_use]
     pub fn without_numbers(why: &str) -> Self {
@@ -66,6 +74,7 @@ impl Finding {
             verdict: Verdict::NotDecidable,
             value: f64::NAN,
             accuracy: f64::NAN,
+            expected: None,
             detail: why.to_owned(),
         }
     }

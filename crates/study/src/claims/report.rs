@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Judged, Verdict};
+use super::{Claim, Judged, Needs, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -22,12 +22,17 @@ fn row(judged: &Judged) -> Value {
         "cases": claim.cases,
         "branches": claim.branches,
         "expected": claim.expected,
+        "unit": claim.unit,
+        "needs": needs_name(claim.needs),
         "threshold": claim.threshold,
         "partly": claim.partly,
+        "at_most": claim.at_most,
         "reason": claim.reason,
         "value_is": claim.value,
         "value": number(judged.finding.value),
         "value_accuracy": number(judged.finding.accuracy),
+        "value_expected": judged.finding.expected,
+        "deviation": judged.finding.deviation().map_or(Value::Null, number),
         "detail": judged.finding.detail,
         "verdict_as_printed": judged.finding.verdict.name(),
         "verdict": judged.verdict.name(),
@@ -47,6 +52,14 @@ fn row(judged: &Judged) -> Value {
     row
 }
 
+const fn needs_name(needs: Needs) -> &'static str {
+    match needs {
+        Needs::Above => "above",
+        Needs::Below => "below",
+        Needs::Within => "within",
+    }
+}
+
 fn number(value: f64) -> Value {
     // JSON has no NaN.
     match value.is_finite() {
@@ -64,19 +77,16 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
         page.push_str(ROUNDING);
     }
     let _ = writeln!(page, "{}\n", totals(judged));
-    page.push_str("| claim | verdict | value | rounding allows |\n|---|---|---|---|\n");
+    page.push_str(
+        "| claim | verdict | computed | needed | rounding allows |\n|---|---|---|---|---|\n",
+    );
     for judged in judged {
-        let finding = &judged.finding;
-        let range = judged.rounded.as_ref().and_then(|rounded| rounded.range);
-        let range = range.map_or(String::new(), |(low, high)| {
-            format!("{} to {}", digits(low), digits(high))
-        });
-        let value = value_text(finding.value, finding.accuracy);
         let row = [
-            &judged.claim.statement,
-            judged.verdict.name(),
-            &value,
-            &range,
+            judged.claim.statement.clone(),
+            judged.verdict.name().to_owned(),
+            computed_text(judged),
+            needed(judged),
+            rounded_text(judged).unwrap_or_default(),
         ];
         let _ = writeln!(page, "| {} |", row.join(" | "));
     }
@@ -90,7 +100,8 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
 /// What was drawn, for the page.
 const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
     digit, steel's Poisson ratio 0.3 from 0.25 to 0.35; a claim that a draw decides otherwise \
-    is not decidable.\n\n";
+    is not decidable. Draws have fewer speeds than the tables; they are held against what the printed constants \
+    give at the same speeds.\n\n";
 
 /// How many claims have which verdict, in a sentence.
 fn totals(judged: &[Judged]) -> String {
@@ -103,43 +114,89 @@ fn section(page: &mut String, judged: &Judged) {
     let (claim, finding) = (&judged.claim, &judged.finding);
     let _ = writeln!(page, "\n### `{}`: {}\n", claim.id, judged.verdict);
     let _ = writeln!(page, "{} ({})\n", claim.statement, claim.paper);
-    let value = value_text(finding.value, finding.accuracy);
-    let _ = writeln!(page, "- Value: {value} ({}).", claim.value);
-    if !claim.expected.is_empty() {
-        let printed: Vec<String> = claim.expected.iter().map(|value| digits(*value)).collect();
-        let _ = writeln!(page, "- The paper has: {}.", printed.join(", "));
+    let _ = writeln!(
+        page,
+        "- Computed: {} ({}).",
+        computed_text(judged),
+        claim.value
+    );
+    if let (Some(expected), Some(deviation)) = (finding.expected, finding.deviation()) {
+        let expected = with_unit(expected, claim);
+        let sign = if deviation > 0.0 { "+" } else { "" };
+        let deviation = value_text(deviation, finding.accuracy);
+        let _ = writeln!(
+            page,
+            "- The paper: {expected}. Deviation: {sign}{}.",
+            of_unit(deviation, claim)
+        );
     }
-    let threshold = digits(claim.threshold);
-    let _ = writeln!(page, "- Threshold: {threshold}. {}", claim.reason);
+    let _ = writeln!(page, "- Needed: {}. {}", needed(judged), claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
     if let Some(rounded) = &judged.rounded {
-        let counts = Verdict::ALL
-            .iter()
-            .zip(rounded.verdicts)
-            .filter(|(_, count)| *count > 0);
+        let counts = Verdict::ALL.iter().zip(rounded.verdicts);
+        let counts = counts.filter(|(_, count)| *count > 0);
         let counts: Vec<String> = counts
             .map(|(verdict, count)| format!("{verdict} in {count}"))
             .collect();
-        let printed = finding.verdict;
-        let range = rounded.range.map_or(String::new(), |(low, high)| {
-            format!(
-                "; the value lies between {} and {}",
-                digits(low),
-                digits(high)
-            )
-        });
+        let range =
+            rounded_text(judged).map_or(String::new(), |range| format!("; computed: {range}"));
         let _ = writeln!(
             page,
-            "- Rounding of the printed constants, {} draws: {}{range}. The constants as printed give: {printed}.",
+            "- Rounding of the printed constants, {} draws: {}{range}. The constants as printed give: {}.",
             rounded.draws,
             counts.join(", "),
+            finding.verdict,
         );
     }
 }
 
-/// A value with as many digits as its accuracy allows, at most eight.
+/// What was computed, with its accuracy and unit.
 #[must_use]
-pub fn value_text(value: f64, accuracy: f64) -> String {
+pub fn computed_text(judged: &Judged) -> String {
+    let value = value_text(judged.finding.value, judged.finding.accuracy);
+    of_unit(value, &judged.claim)
+}
+
+/// What the claim needs, in the unit of what was computed.
+fn needed(judged: &Judged) -> String {
+    let claim = &judged.claim;
+    let threshold = with_unit(claim.threshold, claim);
+    let mut text = match (claim.needs, judged.finding.expected) {
+        (Needs::Above, _) => format!("above {threshold}"),
+        (Needs::Below, _) => format!("below {threshold}"),
+        (Needs::Within, None) => format!("within {threshold}"),
+        (Needs::Within, Some(expected)) => format!("{} ± {threshold}", digits(expected)),
+    };
+    if let Some(most) = claim.at_most {
+        let _ = write!(text, ", at most {}", with_unit(most, claim));
+    }
+    if let Some(partly) = claim.partly {
+        let _ = write!(text, ", in part above {}", with_unit(partly, claim));
+    }
+    text
+}
+
+/// What rounding allows, if anything was drawn.
+pub(crate) fn rounded_text(judged: &Judged) -> Option<String> {
+    let (low, high) = judged.rounded.as_ref()?.range?;
+    let high = with_unit(high, &judged.claim);
+    Some(format!("{} to {high}", digits(low)))
+}
+
+/// A number with the unit of a claim.
+pub(crate) fn with_unit(value: f64, claim: &Claim) -> String {
+    of_unit(digits(value), claim)
+}
+
+fn of_unit(number: String, claim: &Claim) -> String {
+    match claim.unit.is_empty() || number == "none" {
+        true => number,
+        false => format!("{number} {}", claim.unit),
+    }
+}
+
+/// A value with as many digits as its accuracy allows, at most eight.
+fn value_text(value: f64, accuracy: f64) -> String {
     match (value.is_finite(), accuracy.is_finite() && accuracy > 0.0) {
         (false, _) => "none".to_owned(),
         (true, false) => digits(value),

@@ -3,6 +3,7 @@
 
 mod chain;
 mod contact;
+mod dimer;
 mod rest;
 mod small_waves;
 mod theory;
@@ -10,6 +11,7 @@ mod theory;
 use crate::error::StudyError;
 use hertzchain_chain::{Chain, System};
 use hertzchain_experiment::{Experiment, Units};
+use theory::Waves;
 
 /// A value of one row.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,9 +116,7 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
     let system = System::new(chain)?;
     let mut groups: Vec<Group> = theory::collision(chain).into_iter().collect();
     groups.extend(theory::restitution(chain)?);
-    groups.extend(theory::solitary(chain));
-    groups.extend(theory::profile(chain));
-    groups.extend(theory::long_wave(chain));
+    groups.extend(large_waves(chain, &system));
     groups.extend(rest::linear_waves(chain, &system));
     groups.extend(small_waves::dispersion(chain, &system));
     groups.extend(small_waves::modes(chain, &system));
@@ -125,6 +125,21 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
         groups.iter_mut().for_each(drop_units);
     }
     Ok(groups)
+}
+
+/// Solitary waves, as far as theory knows them in this row.
+fn large_waves(chain: &Chain, system: &System) -> Vec<Group> {
+    let known = match theory::waves(chain, system) {
+        Waves::Touching => vec![
+            theory::solitary(chain),
+            theory::profile(chain),
+            theory::long_wave(chain),
+        ],
+        Waves::Loaded => vec![theory::loaded(chain, system)],
+        Waves::Dimer => vec![dimer::long_wave(chain)],
+        Waves::None(reason) => vec![Some(theory::no_waves(reason))],
+    };
+    known.into_iter().flatten().collect()
 }
 
 /// A dimensionless chain has numbers without units, in its descriptions of

@@ -58,7 +58,7 @@ pub(super) fn linear_waves(chain: &Chain, system: &System) -> Option<Group> {
             let speed = row.sound_speed_beads_s();
             group.number(format!("sound speed {at}"), speed, "beads/s");
             group.number(
-                format!("sound speed {at}"),
+                format!("sound speed {at}, along the row"),
                 speed * 2.0 * bead.radius_m,
                 "m/s",
             );

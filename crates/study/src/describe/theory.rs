@@ -5,7 +5,7 @@ use super::contact;
 use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::shot::shoot;
-use hertzchain_chain::theory::long_wave::{LongWave, LongWaveForm};
+use hertzchain_chain::theory::long_wave::{LongWave, LongWaveForm, preloaded_speed_beads_s};
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave};
 use hertzchain_chain::theory::two_body::{
     ContactEnd, ElasticCollision, ViscoelasticCollision, restitution_by_series,
@@ -138,24 +138,24 @@ fn with_wave<T>(chain: &Chain, call: impl FnOnce(&SolitaryWave<'_>, &Bead) -> T)
 }
 
 pub(super) fn solitary(chain: &Chain) -> Option<Group> {
-    let title = "Exact solitary wave of a long, unloaded row of beads like the middle one, with the striker's energy";
+    let title = "Exact solitary wave of a long, unloaded row of beads and contacts like the middle ones, with the striker's energy";
     let mut group = Group::new(title);
     with_wave(chain, |wave, bead| {
         let speed = wave.speed_beads_s();
         group.number("speed", speed, "beads/s");
-        group.number("speed", speed * 2.0 * bead.radius_m, "m/s");
+        group.number("speed along the row", speed * 2.0 * bead.radius_m, "m/s");
         group.number("largest bead speed", wave.peak_bead_speed_m_s(), "m/s");
         group.number("peak contact force", wave.peak_force_n(), "N");
         group.number("peak of a bead sensor", wave.peak_sensor_force_n(), "N");
         group.number("peak overlap", wave.peak_overlap_m(), "m");
         let width = wave.force_width_s();
         group.number(
-            "full width at half maximum of a contact's force",
+            "full width at half maximum of a contact's force, in time",
             width,
             "s",
         );
         group.number(
-            "full width at half maximum of a contact's force",
+            "full width at half maximum of a contact's force, in beads",
             width * speed,
             "beads",
         );
@@ -205,12 +205,83 @@ pub(super) fn long_wave(chain: &Chain) -> Option<Group> {
     Some(group)
 }
 
+/// What large pulses theory knows of in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waves {
+    /// Equal beads that just touch: the exact solitary wave and the long one.
+    Touching,
+    /// Equal beads under load: long waves on top of the static overlap.
+    Loaded,
+    /// Two kinds of beads by turns that just touch: long waves.
+    Dimer,
+    /// None, and why.
+    None(&'static str),
+}
+
+/// What theory knows of a chain's large pulses.
+pub(super) fn waves(chain: &Chain, system: &System) -> Waves {
+    let beads = &chain.beads;
+    let inner = 1..beads.len();
+    let overlap = |c: usize| system.static_contact(c).overlap_m;
+    let loaded = inner.clone().filter(|c| overlap(*c) > 0.0).count();
+    let equal = beads.windows(2).all(|pair| pair[0] == pair[1]);
+    let dimer = beads.len() >= 4 && beads.windows(3).all(|three| three[0] == three[2]);
+    if inner.clone().any(|c| overlap(c) < 0.0) {
+        return Waves::None("there are gaps between the beads, which a pulse has to close first");
+    }
+    match (equal, dimer, loaded) {
+        (true, _, 0) => Waves::Touching,
+        (true, _, all) if all == inner.len() => Waves::Loaded,
+        (false, true, 0) => Waves::Dimer,
+        (_, _, 0) => Waves::None("the beads are neither equal nor two kinds by turns"),
+        (true, _, _) => Waves::None("only some of the contacts are under load"),
+        (false, ..) => {
+            Waves::None("the beads are unlike and under load: only small waves are known")
+        }
+    }
+}
+
+/// A line in place of waves that theory does not know.
+pub(super) fn no_waves(reason: &str) -> Group {
+    let mut group = Group::new("Solitary waves");
+    group.text("no theory for this row", reason);
+    group
+}
+
+/// Peak forces, over the static force, at which a loaded row's speeds are given.
+const OVER_STATIC: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
+
+/// Long-wave solitary waves on the static load of the middle contact.
+pub(super) fn loaded(chain: &Chain, system: &System) -> Option<Group> {
+    let (stiffness, exponent, bead) = middle(chain)?;
+    let rest = system.static_contact((chain.beads.len() / 2).max(1));
+    let title =
+        "Solitary wave on the static load in the middle of the chain (long waves, Nesterenko)";
+    let mut group = Group::new(title);
+    for excess in OVER_STATIC {
+        let peak_m = ((1.0 + excess) * rest.force_n / stiffness).powf(exponent.recip());
+        let speed =
+            preloaded_speed_beads_s(exponent, stiffness, bead.mass_kg, rest.overlap_m, peak_m);
+        let name = format!("speed, dynamic peak force {excess} times the static one");
+        group.number(name, speed, "beads/s");
+    }
+    group.text(
+        "exact lattice wave",
+        "not computed: known here for rows without load",
+    );
+    Some(group)
+}
+
 /// Time of flight that theory expects of a row of equal beads without load;
 /// under load pulses run at the speed of sound or faster.
 pub(super) fn expected(experiment: &Experiment, chain: &Chain) -> Option<Group> {
     let equal = chain.beads.windows(2).all(|pair| pair[0] == pair[1]);
     let loaded = chain.push.force_n() > 0.0 || chain.incline_rad > 0.0;
-    if !equal || loaded || !experiment.has_wall() {
+    // The middle's wave is that of the whole way only where contacts are alike.
+    let way = experiment.sensor_bead()..chain.beads.len();
+    let mut contacts = way.map(|c| contact::elastic(chain, c));
+    let first = contacts.next()?;
+    if !equal || loaded || !experiment.has_wall() || contacts.any(|other| other != first) {
         return None;
     }
     let beads = (chain.beads.len() - experiment.sensor_bead()) as f64 + 0.5;

@@ -1,7 +1,7 @@
 //! A scan over readings as a table and a page.
 
 use super::scan::{Row, Scan};
-use crate::claims::{Judged, Verdict, value_text};
+use crate::claims::{Claim, Judged, Verdict, rounded_text, with_unit};
 use crate::reproduce::{SCAN_ACCURACY, SCAN_SPEEDS_M_S};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
@@ -143,13 +143,14 @@ fn closest(page: &mut String, scan: &Scan) {
 fn side_by_side(page: &mut String, scan: &Scan) {
     page.push_str("\n| claim | default | value | closest | value |\n|---|---|---|---|---|\n");
     let closest = scan.closest();
-    let cells = |row: &Row, i: usize| {
+    let cells = |row: &Row, i: usize, claim: &Claim| {
         let verdict = row.verdicts.get(i).map_or("", |v| v.name());
-        let value = row.values.get(i).copied().unwrap_or(f64::NAN);
-        format!("{verdict} | {}", value_text(value, 0.0))
+        let value = row.values.get(i).filter(|value| value.is_finite());
+        let value = value.map_or("none".to_owned(), |value| with_unit(*value, claim));
+        format!("{verdict} | {value}")
     };
     for (i, claim) in scan.claims.iter().enumerate() {
-        let (one, other) = (cells(&scan.default, i), cells(closest, i));
+        let (one, other) = (cells(&scan.default, i, claim), cells(closest, i, claim));
         let _ = writeln!(page, "| {} | {one} | {other} |", claim.id);
     }
 }
@@ -197,10 +198,7 @@ pub fn two_digits_markdown(one_digit: &[Judged], two_digits: &[Judged]) -> Strin
     );
     let pairs = two_digits.iter().zip(one_digit);
     for (two, one) in pairs.filter(|(two, one)| two.verdict != one.verdict) {
-        let range = one.rounded.as_ref().and_then(|rounded| rounded.range);
-        let range = range.map_or(String::new(), |(low, high)| {
-            format!("{} to {}", value_text(low, 0.0), value_text(high, 0.0))
-        });
+        let range = rounded_text(one).unwrap_or_default();
         let id = &one.claim.id;
         let _ = writeln!(
             page,

@@ -157,11 +157,6 @@ fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, Repr
 /// ten samples in the narrowest pulse of the paper's speeds.
 const SAMPLED_S: f64 = 5e-6;
 
-/// Checked shots are followed for this long at 1 m/s, in s; at other speeds as
-/// Hertz contacts scale. Nothing hits the striker after two thirds of it, which
-/// can be later than the returning pulse has passed.
-const FOLLOWED_S: f64 = 5e-3;
-
 fn point(
     (case, experiment): (&str, &Experiment),
     speed_m_s: f64,
@@ -176,10 +171,7 @@ fn point(
         Sensor::Position(1),
         Sensor::Position(beads),
     ];
-    let mut plan = plan.watching(sensors, Some(SAMPLED_S));
-    if how.checked {
-        plan.duration_s = Some(FOLLOWED_S * speed_m_s.powf(-0.2));
-    }
+    let plan = plan.watching(sensors, Some(SAMPLED_S));
     let compute = || {
         let shot = if how.checked {
             shoot_checked(&plan)
@@ -238,7 +230,7 @@ fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
             or_nan(passage.and_then(|p| p.reflected_width_s)),
         ],
         striker_separation_m_s: or_nan(rebound.and_then(|r| r.first).map(|(_, v)| v)),
-        striker_rebound_m_s: or_nan(rebound.map(|r| r.end_m_s)),
+        striker_rebound_m_s: or_nan(rebound.and_then(|r| r.end_m_s)),
         loosened_m: or_nan(loosened(shot)),
         accuracy_reached: shot.accuracy_reached.unwrap_or(shot.accuracy_asked),
     }

@@ -73,14 +73,11 @@ fn flight(style: Style, shot: &Shot) -> Rows {
             }
         };
         rows.push(("striker when it first separates".into(), first));
-        rows.push((
-            "striker at the end of the shot".into(),
-            format!(
-                "{} at {}",
-                brief.quantity(rebound.end_m_s, "m/s"),
-                brief.quantity(shot.duration_s, "s")
-            ),
-        ));
+        let end = rebound.end_m_s.map_or_else(
+            || "not followed to its end".to_owned(),
+            |velocity| brief.quantity(velocity, "m/s"),
+        );
+        rows.push(("striker at the end of the shot".into(), end));
     }
     if shot.flight.is_none() {
         let peaks = shot.sensor_maxima.iter().take(5);

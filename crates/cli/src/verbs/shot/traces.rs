@@ -4,9 +4,10 @@ use crate::arguments::Shot as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures;
+use crate::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
-use hertzchain_experiment::Experiment;
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_study::{Plan, Shot, shoot};
 use npyz::WriterBuilder;
@@ -68,13 +69,13 @@ pub fn write(
         sensors.extend(bodies.velocities());
         sensors.extend(bodies.forces());
     }
-    let trace = sampled(plan, shot, sensors)?;
+    let mut trace = sampled(plan, shot, sensors)?;
+    // Budgets stand at the ends of steps; the last step may reach beyond the shot.
+    trace.budgets.extend(shot.budget.clone());
     if arguments.out.is_some() {
-        folder.write(
-            "traces.csv",
-            csv(&trace, &shown, pictures::wall(experiment)).as_bytes(),
-        )?;
-        folder.write("energy.csv", energy_csv(&trace).as_bytes())?;
+        folder.write("traces.csv", csv(&trace, &shown, experiment).as_bytes())?;
+        let energy = energy_csv(&trace, experiment.units());
+        folder.write("energy.csv", energy.as_bytes())?;
         folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
         folder.figure(
             "energy",
@@ -83,7 +84,7 @@ pub fn write(
     }
     let columns = &trace.columns[shown.len()..];
     if arguments.npy {
-        npy(&mut folder, &trace, columns, &bodies)?;
+        npy(&mut folder, &trace, columns, &bodies, experiment.units())?;
     }
     if arguments.animate {
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
@@ -105,36 +106,33 @@ fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Fail
     trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
 }
 
-fn csv(trace: &Trace, sensors: &[Sensor], wall: Option<usize>) -> String {
+fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment) -> String {
+    let (units, wall) = (experiment.units(), pictures::wall(experiment));
     let column = |sensor: &Sensor| {
         let (name, unit) = pictures::name(*sensor, wall);
-        format!(
-            ",{}_{}",
-            name.replace(' ', "_"),
-            unit.replace('/', "_").to_lowercase()
-        )
+        format!(",{}{}", name.replace(' ', "_"), suffix(unit, units))
     };
     let names: String = sensors.iter().map(column).collect();
-    let mut text = format!("time_s{names}\n");
+    let mut text = format!("time{}{names}\n", suffix("s", units));
     for (row, time) in trace.time_s.iter().enumerate() {
-        text += &time.to_string();
+        text += &cell(*time);
         for column in trace.columns.iter().take(sensors.len()) {
-            text += &format!(",{}", column.get(row).copied().unwrap_or(f64::NAN));
+            text += &format!(",{}", cell(column.get(row).copied().unwrap_or(f64::NAN)));
         }
         text.push('\n');
     }
     text
 }
 
-fn energy_csv(trace: &Trace) -> String {
-    let laws = trace
-        .budgets
-        .first()
-        .map_or(&[][..], |budget| &budget.dissipated);
-    let laws: String = laws.iter().map(|line| format!(",{}_j", line.law)).collect();
-    let mut text = format!(
-        "time_s,start_j,driven_j,kinetic_j,elastic_j{laws},clipped_j,gravity_j,preload_j,stop_j,residual_j\n"
-    );
+fn energy_csv(trace: &Trace, units: Units) -> String {
+    let first = trace.budgets.first();
+    let laws = first.map_or(&[][..], |budget| &budget.dissipated);
+    let parts = ["start", "driven", "kinetic", "elastic"].into_iter();
+    let parts = parts.chain(laws.iter().map(|line| line.law));
+    let parts = parts.chain(["clipped", "gravity", "preload", "stop", "residual"]);
+    let unit = suffix("J", units);
+    let names: String = parts.map(|part| format!(",{part}{unit}")).collect();
+    let mut text = format!("time{}{names}\n", suffix("s", units));
     for b in &trace.budgets {
         let lost = b.dissipated.iter().map(|line| line.energy_j);
         let first = [b.time_s, b.start_j, b.driven_j, b.kinetic_j, b.elastic_j];
@@ -146,7 +144,7 @@ fn energy_csv(trace: &Trace) -> String {
             b.residual_j(),
         ];
         let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest))
-            .map(|value| value.to_string())
+            .map(cell)
             .collect();
         text += &format!("{}\n", cells.join(","));
     }
@@ -158,17 +156,17 @@ fn npy(
     trace: &Trace,
     columns: &[Vec<f64>],
     bodies: &Bodies,
+    units: Units,
 ) -> Result<(), Failure> {
+    let file = |name: &str, unit| format!("{name}{}.npy", suffix(unit, units));
     let count = bodies.count();
     let (positions, rest) = columns.split_at(count.min(columns.len()));
     let (velocities, forces) = rest.split_at(count.min(rest.len()));
-    folder.write(
-        "time_s.npy",
-        &array(std::slice::from_ref(&trace.time_s), false)?,
-    )?;
-    folder.write("position_m.npy", &array(positions, true)?)?;
-    folder.write("velocity_m_s.npy", &array(velocities, true)?)?;
-    folder.write("force_n.npy", &array(forces, true)?)
+    let times = std::slice::from_ref(&trace.time_s);
+    folder.write(&file("time", "s"), &array(times, false)?)?;
+    folder.write(&file("position", "m"), &array(positions, true)?)?;
+    folder.write(&file("velocity", "m/s"), &array(velocities, true)?)?;
+    folder.write(&file("force", "N"), &array(forces, true)?)
 }
 
 /// Columns as an array [body][sample], or one column as [sample].
@@ -211,12 +209,20 @@ fn animation(
     let forces = columns.get(2 * count..).unwrap_or_default();
     let page = Animation::new(&trace.time_s, &positions, forces, &radii)
         .title(experiment.title())
+        .first_contact(bodies.first)
         .mark(plan.sensor_bead - bodies.first, "sensor bead");
     let page = match plan.chain.start {
         Start::Striker { .. } => page.mark(0, "striker"),
         Start::Driven { .. } => page.mark(0, "driven end"),
         Start::Free => page,
     };
+    let page = match pictures::wall(experiment) {
+        Some(_) => page.mark(count - 1, "wall"),
+        None => page,
+    };
+    let clock = pictures::Clock::of(&trace.time_s, experiment.units());
+    let force = if clock.unit.is_empty() { "" } else { "N" };
+    let page = page.units((clock.scale, clock.unit), force);
     let wet = experiment.sections().iter().find(|section| section.wet);
     match wet {
         Some(section) => page.wet(

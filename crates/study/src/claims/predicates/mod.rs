@@ -2,6 +2,7 @@
 
 mod attenuation;
 mod constants;
+mod crossing;
 mod data;
 mod fits;
 mod monotony;
@@ -29,12 +30,13 @@ static PREDICATES: &[(&str, Predicate)] = &[
     ("peaks-rise", monotony::peaks_rise),
     ("power-law-r-squared", fits::r_squared),
     ("power-law-residuals", fits::residuals),
-    ("exponent-is", fits::exponent_is),
     ("exponents-differ", fits::exponents_differ),
     ("ratio-below", ratios::below),
     ("ratio-above", ratios::above),
-    ("ratio-crosses", ratios::crosses),
+    ("ratio-crosses-once", crossing::once_upward),
+    ("ratio-crosses-at", crossing::at_speed),
     ("ratio-mainly-rises", ratios::mainly_rises),
+    ("ratio-ends-higher", ratios::ends_higher),
     ("ratio-has-dips", ratios::has_dips),
     ("trends-alike", trends::alike),
     ("trend-against-viscosity", trends::against_viscosity),
@@ -127,6 +129,7 @@ impl Worst {
             verdict: tally.verdict(),
             value: self.value,
             accuracy: self.accuracy,
+            expected: None,
             detail,
         }
     }

@@ -3,9 +3,9 @@
 use super::{Worst, curves, missing, within};
 use crate::claims::{Branch, Claim, Evidence, Finding, Point, SPEED_SCATTER_M_S, Tally, Verdict};
 
-/// Incoming, wall and returning pulse follow each other without touching at
-/// half height: each ToF over the mean of the two pulses' widths exceeds the
-/// threshold.
+/// Incoming, wall and returning pulse follow each other, apart in time: each ToF
+/// exceeds the threshold times the mean full width at half maximum of its two
+/// pulses. A pulse out of order has a negative ToF.
 pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
@@ -22,7 +22,8 @@ pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
                 let value = tof / (0.5 * widths);
                 let accuracy = value * p.accuracy_reached;
                 tally.margin(value - claim.threshold, accuracy);
-                worst.see(value, value, accuracy, || place(&curve.case, p));
+                let margin = value - claim.threshold;
+                worst.see(margin, value, accuracy, || place(&curve.case, p));
             }
         }
     }
@@ -52,8 +53,8 @@ pub(super) fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding
     worst.finding(tally)
 }
 
-/// A second returning maximum of at least the threshold times the first: a
-/// pulse of its own. Above the weaker threshold it is a shoulder.
+/// A second returning maximum of at least the threshold times the first; in
+/// part above the weaker threshold.
 pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
@@ -65,17 +66,21 @@ pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
     let value = p.second_returning_peak_n / p.returning_peak_n;
     // Three samples tell a top to about a thousandth.
     let accuracy = 2e-3 * value + 2.0 * value * p.accuracy_reached;
-    let mut tally = Tally::default();
-    tally.margin(value - claim.threshold, accuracy);
-    let partly = value > claim.partly.unwrap_or(claim.threshold);
-    let verdict = match tally.verdict() {
-        Verdict::Fails if partly => Verdict::InPart,
-        verdict => verdict,
+    let above = |threshold: f64| {
+        let mut tally = Tally::default();
+        tally.margin(value - threshold, accuracy);
+        tally.verdict()
+    };
+    let verdict = match (above(claim.threshold), claim.partly.map(above)) {
+        (Verdict::Fails, Some(Verdict::Holds)) => Verdict::InPart,
+        (Verdict::Fails, Some(weaker)) => weaker,
+        (verdict, _) => verdict,
     };
     Finding {
         verdict,
         value,
         accuracy,
+        expected: None,
         detail: format!(
             "returning peaks of {:.3} N and {:.3} N at {} m/s",
             p.returning_peak_n, p.second_returning_peak_n, p.speed_m_s
@@ -131,12 +136,12 @@ pub(super) fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> Findin
 }
 
 /// The gaps between beads, less the overlaps, exceed the threshold when the
-/// returning pulse has passed, and stay below the weaker one.
+/// returning pulse has passed, and stay below the most that the claim allows.
 pub(super) fn gaps_open(claim: &Claim, evidence: &Evidence) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
-    let largest = claim.partly.unwrap_or(f64::INFINITY);
+    let largest = claim.at_most.unwrap_or(f64::INFINITY);
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for curve in curves {
         for p in within(claim, curve) {

@@ -1,0 +1,85 @@
+//! Cells and names in result files.
+
+use hertzchain_experiment::Units;
+use serde_json::{Map, Value};
+
+/// A number with the fewest digits that give it back exactly: tiny and huge
+/// ones with an exponent, nothing for what is not a number.
+pub fn cell(value: f64) -> String {
+    let size = value.abs();
+    match value.is_nan() {
+        true => String::new(),
+        false if value == 0.0 || (1e-3..1e6).contains(&size) => value.to_string(),
+        false => format!("{value:e}"),
+    }
+}
+
+/// The end of a column's name: its unit, none in a dimensionless chain.
+pub fn suffix(unit: &str, units: Units) -> String {
+    match units {
+        Units::Si => format!("_{}", unit.replace('/', "_").to_lowercase()),
+        Units::Dimensionless => String::new(),
+    }
+}
+
+/// Ends of names that are units, longer ones first.
+const UNITS: [&str; 6] = ["_per_s", "_m_s", "_s", "_m", "_n", "_j"];
+
+/// A name without its unit.
+pub fn without_unit(name: &str) -> &str {
+    let stripped = UNITS.iter().find_map(|unit| name.strip_suffix(unit));
+    stripped.unwrap_or(name)
+}
+
+/// Results with names as they suit the units: a dimensionless chain's have
+/// none. Names of laws stay as they are.
+pub fn named(results: Value, units: Units) -> Value {
+    match (results, units) {
+        (results, Units::Si) => results,
+        (Value::Array(items), units) => items.into_iter().map(|i| named(i, units)).collect(),
+        (Value::Object(fields), units) => {
+            let rename = |(name, value): (String, Value)| match name.as_str() {
+                "dissipated_j" => ("dissipated".to_owned(), value),
+                _ => (without_unit(&name).to_owned(), named(value, units)),
+            };
+            Value::Object(fields.into_iter().map(rename).collect::<Map<_, _>>())
+        }
+        (other, _) => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_short_and_give_the_number_back() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.25, "-0.25"),
+            (1.1e-4, "1.1e-4"),
+            (-3.2e-300, "-3.2e-300"),
+            (5e20, "5e20"),
+            (630.841591, "630.841591"),
+        ] {
+            assert_eq!(cell(value), text);
+            assert_eq!(text.parse::<f64>().unwrap(), value);
+        }
+        assert_eq!(cell(f64::NAN), "");
+        // The longest numbers have seventeen digits and their exponent.
+        assert!(cell(-std::f64::consts::PI * 1e-200).len() < 25);
+    }
+
+    #[test]
+    fn names_lose_their_units_and_laws_keep_their_names() {
+        let json = serde_json::json!({
+            "tof_incident_s": 1.0, "rebound": { "end_m_s": 2.0 }, "dissipated_j": { "law_s": 0.0 }, "steps": 3
+        });
+        let plain = named(json.clone(), Units::Dimensionless);
+        let expected = serde_json::json!({
+            "tof_incident": 1.0, "rebound": { "end": 2.0 }, "dissipated": { "law_s": 0.0 }, "steps": 3
+        });
+        assert_eq!(plain, expected);
+        assert_eq!(named(json.clone(), Units::Si), json);
+    }
+}

@@ -1,0 +1,182 @@
+//! What TOML's parser refuses, in the words of people who write experiments.
+
+use crate::duplicate;
+use crate::finding::Problem;
+use crate::units;
+use std::ops::Range;
+use toml::de::Error;
+
+/// Most problems that are told at once.
+const MOST: usize = 20;
+
+/// One problem a slip of the pen: what only follows from an earlier error is
+/// left out.
+pub(crate) fn problems(errors: &[Error], text: &str) -> Vec<Problem> {
+    let mut told = Told::default();
+    let mut problems = Vec::new();
+    for error in errors {
+        if problems.len() == MOST {
+            break;
+        }
+        let place = place(error, text);
+        let follows = told.covers(&place, error, text);
+        told.add(&place, error, text);
+        if !follows {
+            problems.push(problem(error, &place, text));
+        }
+        if leaves_open(error) {
+            break;
+        }
+    }
+    problems
+}
+
+/// The text in error; at the end of the file, what stands there last.
+fn place(error: &Error, text: &str) -> Range<usize> {
+    let end = text.trim_end().len();
+    let last = text.get(..end).and_then(|text| text.char_indices().last());
+    let last = last.map_or(0, |(at, _)| at);
+    match error.span() {
+        Some(span) if span.start < end => span.start..span.end.min(text.len()),
+        _ => last..end,
+    }
+}
+
+fn is_duplicate(error: &Error) -> bool {
+    error.message().starts_with("duplicate key")
+}
+
+/// Whether a list or a table in braces may go on to the end of the file.
+fn leaves_open(error: &Error) -> bool {
+    let inside = ["key-value pairs", "inline table", "array elements"];
+    inside.iter().any(|part| error.message().contains(part))
+}
+
+/// How far the text has been told about.
+#[derive(Default)]
+struct Told {
+    /// End of the last line with an error, and of what continues it.
+    line_end: usize,
+    /// End of the last table that stands twice.
+    table_end: usize,
+}
+
+impl Told {
+    /// Whether an error follows from one already told.
+    fn covers(&self, place: &Range<usize>, error: &Error, text: &str) -> bool {
+        let at = line(text, place.start);
+        let in_line = at.start < self.line_end;
+        let between = text.get(self.line_end..at.start).unwrap_or("?");
+        let next = self.line_end > 0 && between.lines().all(is_blank);
+        let in_table = is_duplicate(error) && place.start < self.table_end;
+        in_line || in_table || (next && !begins_anew(text.get(at).unwrap_or_default()))
+    }
+
+    fn add(&mut self, place: &Range<usize>, error: &Error, text: &str) {
+        let at = line(text, place.start);
+        self.line_end = at.end;
+        let header = text.get(at.clone()).unwrap_or_default().trim_start();
+        if is_duplicate(error) && header.starts_with('[') {
+            let rest = text.get(at.end..).unwrap_or_default();
+            let next = rest.find("\n[").unwrap_or(rest.len());
+            self.table_end = at.end + next;
+        }
+    }
+}
+
+/// The line around a byte, without its end.
+pub(crate) fn line(text: &str, at: usize) -> Range<usize> {
+    let before = text.get(..at).unwrap_or_default();
+    let after = text.get(at..).unwrap_or_default();
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let end = at + after.find('\n').unwrap_or(after.len());
+    start..end
+}
+
+fn is_blank(line: &str) -> bool {
+    let line = line.trim_start();
+    line.is_empty() || line.starts_with('#')
+}
+
+/// Whether a line starts a table or gives a key a value.
+pub(crate) fn begins_anew(line: &str) -> bool {
+    let key = line.split('=').next().unwrap_or_default().trim();
+    let word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
+    line.starts_with('[') || (line.contains('=') && !key.is_empty() && key.chars().all(word))
+}
+
+fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
+    if is_duplicate(error) {
+        return duplicate::problem(place, text);
+    }
+    let value = value(text, place.start);
+    let raw = text.get(value.clone()).unwrap_or_default();
+    if let Some(label) = unquoted(raw) {
+        return Problem::new(&value, "this value is not valid TOML", label);
+    }
+    let (place, label) = match empty(text, place.start) {
+        Some(place) => (place, "expected a value after `=`, in this line"),
+        None if error.message().starts_with("key with no value") => {
+            (place.clone(), "expected `key = value`")
+        }
+        None => (place.clone(), error.message()),
+    };
+    Problem::new(&place, "this is not valid TOML", label)
+}
+
+/// A `key =` without a value, in the line of an error or right before it.
+fn empty(text: &str, at: usize) -> Option<Range<usize>> {
+    let here = line(text, at);
+    let before = line(text, here.start.saturating_sub(1));
+    let lines = [here, before].into_iter();
+    let mut lines = lines.map(|l| (text.get(l.clone()).unwrap_or_default(), l));
+    let (_, place) = lines.find(|(written, _)| {
+        let code = written.split('#').next().unwrap_or_default();
+        code.trim_end().ends_with('=') && begins_anew(written)
+    })?;
+    Some(place)
+}
+
+/// The value written in the line around a byte, without a comment.
+fn value(text: &str, at: usize) -> Range<usize> {
+    let line = line(text, at);
+    let whole = text.get(line.clone()).unwrap_or_default();
+    let from = whole.find('=').map_or(whole.len(), |equals| equals + 1);
+    let rest = whole.get(from..).unwrap_or_default();
+    let rest = rest.split('#').next().unwrap_or_default();
+    let start = line.start + from + (rest.len() - rest.trim_start().len());
+    start..start + rest.trim().len()
+}
+
+/// What to write for a value that lacks its quotes.
+fn unquoted(raw: &str) -> Option<String> {
+    if raw.contains(['“', '”', '„', '«', '»', '‘', '’']) {
+        let inner = raw.trim_matches(|c: char| !c.is_alphanumeric());
+        return Some(format!("expected straight quotes: \"{inner}\""));
+    }
+    let word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | ' ');
+    match units::parse_quantity(raw) {
+        _ if raw.is_empty() => None,
+        Ok(number) if number.dimension == units::Dimension::NONE => None,
+        Ok(_) => Some(format!("expected quotes around a quantity: \"{raw}\"")),
+        Err(_) if decimal_comma(raw).is_some() => decimal_comma(raw),
+        Err(error) if raw.starts_with(|c: char| c.is_ascii_digit()) => Some(format!(
+            "expected a number, or a quantity in quotes; {error}"
+        )),
+        Err(_) if raw.starts_with(char::is_alphabetic) && raw.chars().all(word) => {
+            Some(format!("expected quotes around a text: \"{raw}\""))
+        }
+        Err(_) => None,
+    }
+}
+
+/// "6,35 mm" or 6,35 with a point, in quotes where a unit needs them.
+fn decimal_comma(raw: &str) -> Option<String> {
+    let better = units::with_decimal_point(raw)?;
+    let plain = better.parse::<f64>().is_ok();
+    let written = match plain {
+        true => better,
+        false => format!("\"{better}\""),
+    };
+    Some(format!("expected a decimal point: write {written}"))
+}

@@ -1,0 +1,126 @@
+//! Following pulses and the striker to the end of a shot.
+
+use crate::duration::{End, Looks, has_wall};
+use crate::plan::Plan;
+use hertzchain_chain::FarEnd;
+use hertzchain_chain::observe::{Apart, Passages};
+use hertzchain_chain::wave::{Flow, Observer, Piece};
+
+/// Pulses past the sensor bead and the wall, and the striker until it is away
+/// for good.
+#[derive(Clone, Debug)]
+pub(crate) struct Following {
+    passages: Passages,
+    /// The end at the reflected pulse, if this shot has it.
+    at_reflection: bool,
+    wall: bool,
+    striker: Option<Looks>,
+    looked: u64,
+    /// Maxima of the wall and the time of the largest when last looked.
+    wall_peak: (usize, f64),
+    last_word_m_s: Option<f64>,
+    /// By body after the striker: the speed that bead 1 has with the whole energy
+    /// of this one, over the speed of this one.
+    handed_on: Vec<f64>,
+}
+
+impl Following {
+    /// Of a plan's sensor bead, wall and striker.
+    pub(crate) fn new(plan: &Plan, end: &End) -> Self {
+        let wall = has_wall(&plan.chain.far);
+        Self {
+            passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall),
+            at_reflection: end.at_reflection,
+            wall,
+            handed_on: match end.striker {
+                Some(_) => handed_on(plan),
+                None => Vec::new(),
+            },
+            striker: end.striker,
+            looked: 0,
+            wall_peak: (0, 0.0),
+            last_word_m_s: None,
+        }
+    }
+
+    /// The pulses.
+    pub(crate) fn passages(&self) -> &Passages {
+        &self.passages
+    }
+
+    /// The striker's velocity in m/s when it was away for good, or was followed
+    /// for the longest time.
+    pub(crate) fn last_word_m_s(&self) -> Option<f64> {
+        self.last_word_m_s
+    }
+
+    /// Looks at the striker at every multiple of the interval within a piece.
+    fn look(&mut self, piece: &Piece<'_>, looks: Looks, returned: bool) {
+        let end_s = piece.time_s(1.0);
+        while self.last_word_m_s.is_none() {
+            let at_s = (self.looked + 1) as f64 * looks.interval_s;
+            if at_s > end_s {
+                break;
+            }
+            self.looked += 1;
+            let theta = ((at_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
+            if (returned || !self.wall) && is_away(piece, theta, &self.handed_on) {
+                self.last_word_m_s = Some(piece.body(0, theta).1);
+            }
+        }
+        let waited_s = looks.returns * self.wall_peak_s();
+        if returned && self.last_word_m_s.is_none() && waited_s <= end_s {
+            let theta = ((waited_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
+            self.last_word_m_s = Some(piece.body(0, theta).1);
+        }
+    }
+
+    /// Time of the wall's largest maximum in s.
+    fn wall_peak_s(&mut self) -> f64 {
+        let maxima = self.passages.wall().maxima();
+        if maxima.len() != self.wall_peak.0 {
+            let largest = maxima.iter().max_by(|a, b| a.value.total_cmp(&b.value));
+            self.wall_peak = (maxima.len(), largest.map_or(0.0, |peak| peak.time_s));
+        }
+        self.wall_peak.1
+    }
+}
+
+impl Observer for Following {
+    fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        let returned = self.passages.step(piece) == Flow::Finished;
+        if let (Some(looks), None) = (self.striker, self.last_word_m_s) {
+            self.look(piece, looks, returned);
+        }
+        let heard = self.striker.is_none() || self.last_word_m_s.is_some();
+        match self.at_reflection && returned && heard {
+            true => Flow::Finished,
+            false => Flow::Continue,
+        }
+    }
+}
+
+/// √(m/m₁) of all beads and of the stop.
+fn handed_on(plan: &Plan) -> Vec<f64> {
+    let beads = plan.chain.beads.iter().map(|bead| bead.mass_kg);
+    let stop = match plan.chain.far {
+        FarEnd::Stop { mass_kg, .. } | FarEnd::PlaneStop { mass_kg, .. } => Some(mass_kg),
+        _ => None,
+    };
+    let first = plan.chain.beads.first().map_or(1.0, |bead| bead.mass_kg);
+    let shares = beads.chain(stop).map(|mass| (mass / first).sqrt());
+    shares.collect()
+}
+
+/// Whether nothing can reach the striker any more: no contact is closed, and
+/// all bodies fly apart or the striker flies off faster than bead 1 would with
+/// the whole energy of any one body.
+fn is_away(piece: &Piece<'_>, theta: f64, handed_on: &[f64]) -> bool {
+    let system = piece.system();
+    let speed_m_s = -piece.body(0, theta).1;
+    let mut contacts = (0..system.contacts()).filter(|contact| system.has_contact(*contact));
+    let mut others = handed_on.iter().zip(1..);
+    contacts.all(|contact| piece.overlap(contact, theta).0 <= 0.0)
+        && (others.all(|(share, body)| speed_m_s > share * piece.body(body, theta).1.abs())
+            || Apart.step(piece) == Flow::Finished)
+}
