@@ -3,6 +3,7 @@
 
 mod common;
 use common::close;
+use hertzchain_chain::InstructionSet;
 use hertzchain_chain::Pair;
 use hertzchain_chain::laws::{Closed, Columns, LAWS, Law, Nature, Parameter, Source};
 use std::sync::Arc;
@@ -183,22 +184,20 @@ fn columns_give_the_same_bits_as_single_contacts() {
         let overlap: Vec<f64> = (0..9).map(|i| 1e-6 * f64::from(i)).collect();
         let root: Vec<f64> = overlap.iter().map(|d| d.sqrt()).collect();
         let rate: Vec<f64> = (0..9).map(|i| 0.1 * f64::from(i - 4)).collect();
-        let mut forces = vec![0.0; 9];
         let seen = hertzchain_chain::laws::Contacts {
             overlap: &overlap,
             root: &root,
             rate: &rate,
             largest: &overlap,
         };
-        law.add_forces(&k, 0, seen, &mut forces);
-        for i in 0..9 {
-            let single = law.force(&k, i, Closed::new(overlap[i], rate[i]));
-            assert_eq!(
-                forces[i].to_bits(),
-                (0.0 + single).to_bits(),
-                "{}",
-                row.info.name
-            );
+        for set in InstructionSet::available() {
+            let mut forces = [0.0_f64; 9];
+            law.add_forces(set, &k, 0, seen, &mut forces);
+            for i in 0..9 {
+                let single = 0.0 + law.force(&k, i, Closed::new(overlap[i], rate[i]));
+                let (bits, name) = (single.to_bits(), row.info.name);
+                assert_eq!(forces[i].to_bits(), bits, "{name} with {}", set.name());
+            }
         }
     }
 }

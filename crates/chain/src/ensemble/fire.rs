@@ -12,24 +12,38 @@ use crate::sensor::Sensor;
 use crate::system::System;
 use crate::wave::Work;
 
+/// One shot to be fired.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot<'a> {
+    /// The chain with whatever sets it in motion.
+    pub system: &'a System,
+    /// Step in contact times ([`crate::system::Scales::time_s`]).
+    pub step: f64,
+    /// Longest duration in s.
+    pub duration_s: f64,
+}
+
+impl Shot<'_> {
+    fn step_s(&self) -> f64 {
+        self.step * self.system.scales().time_s
+    }
+}
+
 /// How shots are fired.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Step in contact times of each shot ([`crate::system::Scales::time_s`]).
-    pub step: f64,
     /// What to watch; for an end other than [`End::Duration`] the sensor that
     /// times the pulse comes first and the wall second.
     pub sensors: Vec<Sensor>,
-    /// Longest duration of each shot in s, in the order of the shots.
-    pub durations_s: Vec<f64>,
     /// When a shot is over before that.
     pub end: End,
     /// Vector instructions.
     pub set: InstructionSet,
     /// Step also what nothing has reached.
     pub whole_chain: bool,
-    /// Take openings and closings between steps into account.
-    pub changes: bool,
+    /// Find openings between steps and integrate the forces that end there as
+    /// they are: for accuracies that equal steps alone do not give.
+    pub openings: bool,
 }
 
 /// Why a shot could not be fired.
@@ -96,21 +110,22 @@ const RESERVED: usize = 1 << 16;
 /// Fires shots: eight side by side where the chains have the same shape, one
 /// alone otherwise. Results are in order; a shot that fails stops no other.
 #[must_use]
-pub fn fire(systems: &[&System], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
+pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
     let schedule = Schedule::new();
-    let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; systems.len()];
+    let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; shots.len()];
     let mut ready = Vec::new();
-    for (shot, system) in systems.iter().enumerate() {
-        match check(system, settings, shot) {
+    for (shot, fired) in shots.iter().enumerate() {
+        match check(fired, settings) {
             Ok(()) => ready.push(shot),
             Err(error) => flown[shot] = Some(Err(error)),
         }
     }
     while let Some(&first) = ready.first() {
-        let alike = |shot: &&usize| systems[first].has_shape_of(systems[**shot]);
+        let alike = |shot: &&usize| shots[first].system.has_shape_of(shots[**shot].system);
         let block: Vec<usize> = ready.iter().filter(alike).take(LANES).copied().collect();
         ready.retain(|shot| !block.contains(shot));
-        let results = fire_block(systems, &block, settings, &schedule);
+        let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
+        let results = fire_block(&side_by_side, settings, &schedule);
         for (shot, result) in block.into_iter().zip(results) {
             flown[shot] = Some(result);
         }
@@ -118,16 +133,14 @@ pub fn fire(systems: &[&System], settings: &Settings) -> Vec<Result<Flown, Ensem
     flown.into_iter().flatten().collect()
 }
 
-fn check(system: &System, settings: &Settings, shot: usize) -> Result<(), EnsembleError> {
+fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), EnsembleError> {
     let setting = |what, value: f64| match value > 0.0 && value.is_finite() {
         true => Ok(()),
         false => Err(EnsembleError::Setting { what, value }),
     };
-    setting("step in contact times", settings.step)?;
-    setting(
-        "duration in s",
-        settings.durations_s.get(shot).copied().unwrap_or(f64::NAN),
-    )?;
+    setting("step in contact times", shot.step)?;
+    setting("duration in s", shot.duration_s)?;
+    let system = shot.system;
     if system.motion.is_some() {
         return Err(EnsembleError::Driven);
     }
@@ -154,23 +167,20 @@ enum State {
 
 /// Fires up to eight alike shots.
 fn fire_block(
-    systems: &[&System],
-    shots: &[usize],
+    shots: &[Shot<'_>],
     settings: &Settings,
     schedule: &Schedule,
 ) -> Vec<Result<Flown, EnsembleError>> {
     // One shot runs alone; several fill the lanes, the last ones idly.
     let lanes = if shots.len() == 1 { 1 } else { LANES };
-    let of = |lane: usize| shots[lane.min(shots.len() - 1)];
-    let fired: Vec<&System> = (0..lanes).map(|lane| systems[of(lane)]).collect();
-    let steps_s: Vec<f64> = fired
-        .iter()
-        .map(|s| settings.step * s.scales().time_s)
-        .collect();
-    let last = |lane: usize| last_step(settings.durations_s[of(lane)], steps_s[lane]);
-    let mut flying: Vec<Lane> = (0..shots.len())
-        .map(|lane| Lane::new(last(lane), fired[0].bodies()))
-        .collect();
+    let of = |lane: usize| &shots[lane.min(shots.len() - 1)];
+    let fired: Vec<&System> = (0..lanes).map(|lane| of(lane).system).collect();
+    let steps_s: Vec<f64> = (0..lanes).map(|lane| of(lane).step_s()).collect();
+    let begun = shots.iter().map(|shot| {
+        let last_step = last_step(shot.duration_s, shot.step_s());
+        Lane::new(last_step, shot.system.bodies())
+    });
+    let mut flying: Vec<Lane> = begun.collect();
     let most = flying.iter().map(|lane| lane.last_step).max().unwrap_or(0);
     let mut recorder = Recorder::new(&settings.sensors, lanes, most.min(RESERVED));
     let mut block = Block::new(
@@ -178,7 +188,7 @@ fn fire_block(
         &steps_s,
         schedule,
         settings.set,
-        (settings.whole_chain, settings.changes),
+        (settings.whole_chain, settings.openings),
     );
     fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);

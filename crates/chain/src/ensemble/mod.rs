@@ -25,7 +25,7 @@ mod touch;
 mod weights;
 mod window;
 
-pub use fire::{EnsembleError, Flown, Settings, fire};
+pub use fire::{EnsembleError, Flown, Settings, Shot, fire};
 pub use passing::End;
 
 /// Lanes of a block: shots that run side by side.
