@@ -27,6 +27,10 @@ reference:
     target/reference/bin/pip install --quiet -r bench/reference/requirements.txt
     cd bench/reference && ../../target/reference/bin/python run.py && ../../target/reference/bin/python check.py
 
+# The same shots by general integrators and LAMMPS, side by side (needs Python; about ten minutes)
+bench-peers *options:
+    bench/peers/run.sh {{options}}
+
 # Documentation of all crates
 doc:
     cargo doc --workspace --no-deps --open

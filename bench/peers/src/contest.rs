@@ -1,0 +1,120 @@
+//! Ours, theirs, ours, theirs: medians of both, errors of both.
+
+use crate::case::{Case, speeds_m_s};
+use crate::converged::errors;
+use crate::ours::ours;
+use crate::python::Worker;
+use crate::scan::{Point, count_for};
+use crate::tool::{Timed, Tool, measured};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
+    /// Laws.
+    pub case: Case,
+    /// Largest allowed relative error of both ToFs.
+    pub accuracy: f64,
+    /// How often each tool runs.
+    pub rounds: usize,
+    /// Seconds of shots per run.
+    pub seconds: f64,
+    /// Fewest shots of a tool that makes more than 500 a second.
+    pub fewest_fast: usize,
+}
+
+/// One tool's answer.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Method chosen.
+    pub method: &'static str,
+    /// Setting chosen; 0 for ours, which is asked for an accuracy.
+    pub setting: f64,
+    /// Largest errors of the incident and the reflected ToF.
+    pub errors: (f64, f64),
+    /// Shots in the ensemble.
+    pub shots: usize,
+    /// Median.
+    pub shots_per_s: f64,
+}
+
+impl Question {
+    fn count(&self, shots_per_s: f64, fewest: usize) -> usize {
+        let fewest = if shots_per_s > 500.0 {
+            self.fewest_fast.max(fewest)
+        } else {
+            fewest
+        };
+        count_for(shots_per_s, self.seconds, fewest, 1000)
+    }
+
+    /// Our shots: as many as fit into the time of a run.
+    fn our_speeds(&self) -> Vec<f64> {
+        let few = speeds_m_s(20);
+        let timed = measured(|| ours(self.case, &few, self.accuracy));
+        speeds_m_s(self.count(few.len() as f64 / timed.seconds, 20))
+    }
+
+    /// Runs ours and one peer alternately. The first candidate that is
+    /// accurate over the whole ensemble is taken.
+    pub fn ask(
+        &self,
+        tool: &Tool,
+        worker: &Worker,
+        candidates: &[Point],
+        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+    ) -> Option<(Answer, Answer)> {
+        let (point, speeds) = self.choose(tool, worker, candidates, converged)?;
+        let our_speeds = self.our_speeds();
+        let (mut our_runs, mut their_runs) = (Vec::new(), Vec::new());
+        for _ in 0..self.rounds {
+            our_runs.push(measured(|| ours(self.case, &our_speeds, self.accuracy)));
+            their_runs.push(tool.run(worker, point.method, self.case, point.setting, &speeds));
+        }
+        let of_us = answer(("", 0.0), &our_runs, &converged(&our_speeds));
+        let of_them = answer(
+            (point.method, point.setting),
+            &their_runs,
+            &converged(&speeds),
+        );
+        Some((of_us, of_them))
+    }
+
+    fn choose(
+        &self,
+        tool: &Tool,
+        worker: &Worker,
+        candidates: &[Point],
+        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+    ) -> Option<(Point, Vec<f64>)> {
+        let mut last = None;
+        for point in candidates {
+            let speeds = speeds_m_s(self.count(point.shots_per_s, tool.fewest()));
+            let timed = tool.run(worker, point.method, self.case, point.setting, &speeds);
+            let (incident, reflected) = errors(&timed.tofs_s, &converged(&speeds));
+            last = Some((*point, speeds));
+            if incident <= self.accuracy && reflected <= self.accuracy {
+                break;
+            }
+        }
+        last
+    }
+}
+
+fn answer(
+    (method, setting): (&'static str, f64),
+    runs: &[Timed],
+    converged: &[(f64, f64)],
+) -> Answer {
+    let mut seconds: Vec<f64> = runs.iter().map(|run| run.seconds).collect();
+    seconds.sort_by(f64::total_cmp);
+    let median = seconds[seconds.len() / 2];
+    Answer {
+        method,
+        setting,
+        errors: runs
+            .first()
+            .map_or((f64::NAN, f64::NAN), |run| errors(&run.tofs_s, converged)),
+        shots: converged.len(),
+        shots_per_s: converged.len() as f64 / median,
+    }
+}

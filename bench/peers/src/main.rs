@@ -1,0 +1,219 @@
+//! The same shots by hertzchain and by general tools, side by side, on one
+//! core. See README.md beside Cargo.toml.
+
+mod case;
+mod contest;
+mod converged;
+mod differential;
+mod diffsol_peer;
+mod motion;
+mod ode_solvers_peer;
+mod ours;
+mod picture;
+mod python;
+mod scan;
+mod table;
+mod tool;
+mod watch;
+
+use case::{Case, speeds_m_s};
+use contest::Question;
+use python::Worker;
+use scan::{Patience, Point, candidates, scan};
+use std::path::Path;
+use table::Row;
+use tool::{TOOLS, Tool, measured};
+
+/// The accuracies asked for, the measure first.
+const ACCURACIES: [f64; 3] = [1e-5, 1e-3, 1e-7];
+
+/// Our own line of the picture.
+const OUR_ACCURACIES: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+
+/// Beads of the long chains.
+const LONG: [usize; 4] = [40, 4_000, 100_000, 1_000_000];
+
+/// `hertzchain-peers PYTHON FOLDER [quick]`, FOLDER being bench/peers.
+fn main() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, python, folder, rest @ ..] = arguments.as_slice() else {
+        anyhow::bail!("usage: hertzchain-peers PYTHON FOLDER [quick]");
+    };
+    let folder = Path::new(folder);
+    let quick = rest.iter().any(|word| word == "quick");
+    let reference = std::fs::read_to_string(folder.join("../reference/numbers.json"))?;
+    converged::check(&reference)?;
+    let script = folder.join("python/worker.py");
+    let worker = Worker::start(python, &script.to_string_lossy())?;
+    let mut session = Session {
+        worker,
+        quick,
+        rows: Vec::new(),
+        lines: Vec::new(),
+    };
+    for case in Case::ALL {
+        session.run(case)?;
+    }
+    session.write(&folder.join("results"))
+}
+
+struct Session {
+    worker: Worker,
+    quick: bool,
+    rows: Vec<Row>,
+    lines: Vec<(String, Vec<Point>)>,
+}
+
+impl Session {
+    fn run(&mut self, case: Case) -> anyhow::Result<()> {
+        let all = speeds_m_s(1000);
+        let tight = converged::tofs_s(case, &all);
+        // Every ensemble is a part of the full one.
+        let converged = |speeds: &[f64]| {
+            let place = |v: &f64| all.iter().position(|w| w == v).unwrap_or(0);
+            speeds.iter().map(|v| tight[place(v)]).collect::<Vec<_>>()
+        };
+        println!("{}: converged values ready", case.name());
+        if case == Case::Dry {
+            self.our_line(&converged);
+        }
+        for tool in TOOLS.iter().filter(|tool| tool.can(case)) {
+            let points = scan(tool, &self.worker, case, &converged, self.patience(case));
+            self.contests(tool, case, &points, &converged)?;
+            if case == Case::Dry {
+                self.lines.push((tool.name.into(), points));
+            }
+        }
+        Ok(())
+    }
+
+    fn patience(&self, case: Case) -> Patience {
+        let seconds = if self.quick { 0.03 } else { 0.1 };
+        let most_s = if case == Case::Dry { 2.0 } else { 1.0 };
+        Patience { seconds, most_s }
+    }
+
+    fn question(&self, case: Case, accuracy: f64) -> Question {
+        let measure = case == Case::Dry && accuracy == 1e-5;
+        match (self.quick, measure) {
+            (true, _) => Question {
+                case,
+                accuracy,
+                rounds: 1,
+                seconds: 0.05,
+                fewest_fast: 20,
+            },
+            (_, true) => Question {
+                case,
+                accuracy,
+                rounds: 7,
+                seconds: 0.5,
+                fewest_fast: 1000,
+            },
+            _ => Question {
+                case,
+                accuracy,
+                rounds: 3,
+                seconds: 0.15,
+                fewest_fast: 100,
+            },
+        }
+    }
+
+    fn contests(
+        &mut self,
+        tool: &Tool,
+        case: Case,
+        points: &[Point],
+        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+    ) -> anyhow::Result<()> {
+        for accuracy in ACCURACIES {
+            let candidates = candidates(points, accuracy, tool.ladder.1);
+            let question = self.question(case, accuracy);
+            let answers = question.ask(tool, &self.worker, &candidates, converged);
+            let Some((of_us, of_them)) = answers else {
+                continue;
+            };
+            let ratio = of_us.shots_per_s / of_them.shots_per_s;
+            println!(
+                "{} {accuracy:e}: {} {:.1}/s ({} {:.2e}, error {:.1e} {:.1e}), ours {:.1}/s",
+                case.name(),
+                tool.name,
+                of_them.shots_per_s,
+                of_them.method,
+                of_them.setting,
+                of_them.errors.0,
+                of_them.errors.1,
+                of_us.shots_per_s,
+            );
+            let row = |name: &str, version, answer, ratio, setting: &str, instruction_set| Row {
+                tool: name.into(),
+                version,
+                case,
+                accuracy,
+                answer,
+                ratio,
+                setting: setting.into(),
+                instruction_set,
+            };
+            if !self.rows.iter().any(|r| r.is_ours(case, accuracy)) {
+                let set = ours::instruction_set();
+                let version = env!("CARGO_PKG_VERSION").into();
+                self.rows
+                    .push(row("hertzchain", version, of_us, 1.0, ours::METHOD, set));
+            }
+            let version = tool.version(&self.worker)?;
+            self.rows.push(row(
+                tool.name,
+                version,
+                of_them,
+                ratio,
+                tool.setting,
+                tool.runs_on(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Ours by accuracy asked, for the picture.
+    fn our_line(&mut self, converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>) {
+        let mut points = Vec::new();
+        for accuracy in OUR_ACCURACIES {
+            let speeds = speeds_m_s(if self.quick { 20 } else { 100 });
+            let timed = measured(|| ours::ours(Case::Dry, &speeds, accuracy));
+            let (incident, reflected) = converged::errors(&timed.tofs_s, &converged(&speeds));
+            let shots_per_s = speeds.len() as f64 / timed.seconds;
+            let error = incident.max(reflected);
+            points.push(Point {
+                method: "",
+                setting: accuracy,
+                error,
+                shots_per_s,
+            });
+        }
+        self.lines.push(("hertzchain".into(), points));
+    }
+
+    fn write(&self, results: &Path) -> anyhow::Result<()> {
+        std::fs::create_dir_all(results)?;
+        let long = if self.quick { &LONG[..2] } else { &LONG[..] };
+        let scale: Vec<_> = long
+            .iter()
+            .map(|beads| {
+                let lammps = self.worker.scale(*beads);
+                (*beads, ours::ns_per_bead_and_step(*beads), lammps.ok())
+            })
+            .collect();
+        let machine = format!(
+            "One pinned core, native builds use {}; medians of processor time. Settings are the \
+             cheapest tried that meet the accuracy for every speed.",
+            table::native()
+        );
+        std::fs::write(results.join("table.csv"), table::csv(&self.rows))?;
+        std::fs::write(
+            results.join("table.md"),
+            table::markdown(&self.rows, &scale, &machine),
+        )?;
+        picture::write(&self.lines, results)
+    }
+}

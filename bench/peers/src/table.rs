@@ -1,0 +1,152 @@
+//! The results as Markdown and CSV.
+
+use crate::case::Case;
+use crate::contest::Answer;
+use std::fmt::Write;
+
+/// One line of the table.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Tool.
+    pub tool: String,
+    /// Its version.
+    pub version: String,
+    /// Laws.
+    pub case: Case,
+    /// Accuracy asked for.
+    pub accuracy: f64,
+    /// What it gave.
+    pub answer: Answer,
+    /// What its setting is.
+    pub setting: String,
+    /// Our shots/s over its, in the same alternation.
+    pub ratio: f64,
+    /// What it runs on.
+    pub instruction_set: String,
+}
+
+impl Row {
+    fn met(&self) -> bool {
+        self.answer.errors.0 <= self.accuracy && self.answer.errors.1 <= self.accuracy
+    }
+
+    /// Whether this is our row for a question.
+    pub fn is_ours(&self, case: Case, accuracy: f64) -> bool {
+        self.answer.setting == 0.0 && self.case == case && self.accuracy == accuracy
+    }
+
+    /// `method, tolerance 3e-6`.
+    fn settings(&self) -> String {
+        match self.answer.setting {
+            0.0 => self.setting.clone(),
+            value => format!("{}, {} {value:.2e}", self.answer.method, self.setting),
+        }
+    }
+}
+
+/// The widest vector unit of this machine, which native builds use.
+pub fn native() -> String {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if std::is_x86_feature_detected!("avx512f") {
+            return "AVX-512".into();
+        }
+        if std::is_x86_feature_detected!("avx2") {
+            return "AVX2".into();
+        }
+    }
+    std::env::consts::ARCH.into()
+}
+
+/// All rows, one per tool, case and accuracy.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "tool,version,case,accuracy_asked,met,largest_error_incident,largest_error_reflected,\
+         shots,shots_per_s,ratio_ours_to_peer,setting,instruction_set\n",
+    );
+    for row in rows {
+        let Answer {
+            errors,
+            shots,
+            shots_per_s,
+            ..
+        } = &row.answer;
+        let _ = writeln!(
+            text,
+            "\"{}\",{},{},{:e},{},{:.2e},{:.2e},{shots},{shots_per_s:.1},{:.2},\"{}\",\"{}\"",
+            row.tool,
+            row.version,
+            row.case.name(),
+            row.accuracy,
+            row.met(),
+            errors.0,
+            errors.1,
+            row.ratio,
+            row.settings(),
+            row.instruction_set
+        );
+    }
+    text
+}
+
+/// One table per case and accuracy, the fastest first.
+pub fn markdown(
+    rows: &[Row],
+    scale: &[(usize, Option<f64>, Option<f64>)],
+    machine: &str,
+) -> String {
+    let mut text = format!("# Peers\n\n{machine}\n");
+    let mut questions: Vec<(Case, f64)> = Vec::new();
+    for row in rows {
+        if !questions.contains(&(row.case, row.accuracy)) {
+            questions.push((row.case, row.accuracy));
+        }
+    }
+    for (case, accuracy) in questions {
+        let _ = write!(
+            text,
+            "\n## {}, both ToFs within {accuracy:e}\n\n",
+            case.name()
+        );
+        text += "| tool | version | shots/s | ours / tool | error incident | error reflected | setting | shots | instructions |\n";
+        text += "|---|---|---:|---:|---:|---:|---|---:|---|\n";
+        let mut chosen: Vec<&Row> = rows
+            .iter()
+            .filter(|r| r.case == case && r.accuracy == accuracy)
+            .collect();
+        chosen.sort_by(|a, b| b.answer.shots_per_s.total_cmp(&a.answer.shots_per_s));
+        chosen.iter().for_each(|row| text += &line(row));
+    }
+    text + &scale_table(scale)
+}
+
+fn line(row: &Row) -> String {
+    let Answer {
+        errors,
+        shots,
+        shots_per_s,
+        ..
+    } = &row.answer;
+    let missed = if row.met() { "" } else { " **missed**" };
+    format!(
+        "| {} | {} | {shots_per_s:.1} | {:.1} | {:.1e} | {:.1e}{missed} | {} | {shots} | {} |\n",
+        row.tool,
+        row.version,
+        row.ratio,
+        errors.0,
+        errors.1,
+        row.settings(),
+        row.instruction_set
+    )
+}
+
+fn scale_table(scale: &[(usize, Option<f64>, Option<f64>)]) -> String {
+    let mut text =
+        String::from("\n## One chain, Hertz, all contacts closed: ns per bead and step\n\n");
+    text += "| beads | hertzchain | LAMMPS |\n|---:|---:|---:|\n";
+    let cell = |value: Option<f64>| value.map_or("–".into(), |ns| format!("{ns:.1}"));
+    for (beads, ours, lammps) in scale {
+        let _ = writeln!(text, "| {beads} | {} | {} |", cell(*ours), cell(*lammps));
+    }
+    text
+}
