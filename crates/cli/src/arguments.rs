@@ -11,12 +11,27 @@ use std::path::PathBuf;
 /// program computes what sensors in the row see and when, for the chains of
 /// the paper by Labbé, Vergara and Olivares and for your own.
 #[derive(Debug, Parser)]
-#[command(name = "hertzchain", version, arg_required_else_help = true)]
+#[command(
+    name = "hertzchain",
+    disable_version_flag = true,
+    arg_required_else_help = true
+)]
+#[command(after_help = ENVIRONMENT, subcommand_negates_reqs = true)]
 pub struct Program {
+    /// Print the version; with --verbose also the instruction sets
+    #[arg(long, short = 'V')]
+    pub version: bool,
+    /// Say more, with --version
+    #[arg(long, requires = "version")]
+    pub verbose: bool,
     /// What to do.
     #[command(subcommand)]
-    pub verb: Verb,
+    pub verb: Option<Verb>,
 }
+
+/// What the environment can change.
+const ENVIRONMENT: &str = "Environment:\n  HERTZCHAIN_INSTRUCTION_SET  vector instructions of ensembles, by name: \
+see `hertzchain --version --verbose`";
 
 /// What to do.
 #[derive(Debug, Subcommand)]
@@ -173,6 +188,9 @@ pub struct Sweep {
     /// Write the table (CSV) and a figure (SVG, PNG) into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Follow the striker until it is away for good and give its velocity; takes the slower loop
+    #[arg(long)]
+    pub rebound: bool,
     /// Threads; all cores when absent
     #[arg(long, value_name = "COUNT")]
     pub threads: Option<std::num::NonZeroUsize>,

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::given::Given;
 use hertzchain_experiment::{Experiment, OpenError, preset};
 use hertzchain_study as study;
-use hertzchain_study::Plan;
+use hertzchain_study::{InstructionSet, Plan};
 use std::path::Path;
 
 /// The preset that is used when no experiment is named.
@@ -50,6 +50,25 @@ pub fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The environment variable that chooses vector instructions.
+pub const INSTRUCTION_SET: &str = "HERTZCHAIN_INSTRUCTION_SET";
+
+/// Vector instructions: the best this machine has, or those asked for.
+pub fn instruction_set() -> Result<InstructionSet, Failure> {
+    let Some(name) = std::env::var_os(INSTRUCTION_SET).filter(|name| !name.is_empty()) else {
+        return Ok(InstructionSet::default());
+    };
+    let name = name.to_string_lossy();
+    InstructionSet::named(&name).ok_or_else(|| {
+        let sets = InstructionSet::available();
+        let names: Vec<&str> = sets.into_iter().map(InstructionSet::name).collect();
+        Failure::User(format!(
+            "{INSTRUCTION_SET} is `{name}`, which this machine does not have; expected one of {}",
+            names.join(", ")
+        ))
+    })
 }
 
 /// Puts what the command line says in place of what the experiment says.

@@ -18,7 +18,12 @@ use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run(Program::parse().verb) {
+    let program = Program::parse();
+    let done = match program.verb {
+        Some(verb) => run(verb),
+        None => verbs::version::run(program.verbose),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

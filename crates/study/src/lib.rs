@@ -21,6 +21,7 @@ pub mod reproduce;
 mod accuracy;
 mod describe;
 mod duration;
+mod ensemble;
 mod error;
 mod flight;
 mod following;
@@ -31,8 +32,10 @@ mod speeds;
 mod sweep;
 
 pub use describe::{Group, Row, Value, describe, describe_theory};
+pub use ensemble::shoot_all;
 pub use error::StudyError;
 pub use flight::Flight;
+pub use hertzchain_chain::InstructionSet;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};

@@ -1,9 +1,11 @@
 //! Many speeds, one chain.
 
+use crate::ensemble::shoot_all;
 use crate::error::StudyError;
 use crate::plan::Plan;
-use crate::shot::{Shot, shoot, shoot_checked};
-use hertzchain_experiment::{Experiment, Mistakes};
+use crate::shot::Shot;
+use hertzchain_chain::InstructionSet;
+use hertzchain_experiment::{Experiment, Mistakes, Warning};
 use hertzchain_signal::{FitError, PowerLaw, power_law};
 use rayon::prelude::*;
 
@@ -58,6 +60,8 @@ pub struct Settings<'a> {
     pub adjust: &'a (dyn Fn(&mut Plan) + Sync),
     /// Compute every shot twice to learn the accuracy reached.
     pub checked: bool,
+    /// Vector instructions of the ensemble loop.
+    pub set: InstructionSet,
     /// Called after every shot, from any thread.
     pub progress: &'a (dyn Fn() + Sync),
 }
@@ -67,6 +71,7 @@ impl Default for Settings<'_> {
         Self {
             adjust: &|_| {},
             checked: false,
+            set: InstructionSet::default(),
             progress: &|| {},
         }
     }
@@ -74,18 +79,25 @@ impl Default for Settings<'_> {
 
 /// Runs a shot at every speed, on all threads of the current rayon pool.
 ///
-/// Every shot is computed by itself, so the result has the same bits whatever
-/// the number of threads. A speed that fails does not stop the others.
+/// Plans that ask for times of flight alone (adjusted by
+/// [`Plan::for_flights`]) run in the ensemble loop. The result has the same
+/// bits whatever the number of threads. A speed that fails does not stop the
+/// others.
 #[must_use]
 pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_>) -> Sweep {
-    let point = |speed: &f64| {
-        let point = point(experiment, *speed, settings);
-        (settings.progress)();
-        point
+    let plan = |speed: &f64| {
+        let mut planned = Plan::from_experiment(experiment, Some(*speed));
+        if let Ok((plan, _)) = &mut planned {
+            (settings.adjust)(plan);
+        }
+        planned
     };
-    let points = speeds_m_s.par_iter().map(point).collect();
+    let planned: Vec<Planned> = speeds_m_s.par_iter().map(plan).collect();
+    let plans = planned.iter().filter_map(|plan| plan.as_ref().ok());
+    let plans: Vec<Plan> = plans.map(|(plan, _)| plan.clone()).collect();
+    let shots = shoot_all(&plans, settings.set, settings.checked, settings.progress);
     let mut sweep = Sweep {
-        points,
+        points: points(speeds_m_s, planned, shots),
         incident: Err(FitError::TooFew),
         reflected: Err(FitError::TooFew),
     };
@@ -97,25 +109,32 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
     sweep
 }
 
-fn point(experiment: &Experiment, speed_m_s: f64, settings: &Settings<'_>) -> Point {
-    let (shot, warnings) = match Plan::from_experiment(experiment, Some(speed_m_s)) {
-        Err(mistakes) => (Err(mistakes.into()), Vec::new()),
-        Ok((mut plan, warnings)) => {
-            (settings.adjust)(&mut plan);
-            let shot = if settings.checked {
-                shoot_checked(&plan)
-            } else {
-                shoot(&plan)
-            };
-            let lines = warnings.iter().map(|warning| warning.one_line()).collect();
-            (shot.map_err(PointError::from), lines)
-        }
+/// A speed's plan with what is odd about it, or why there is none.
+type Planned = Result<(Plan, Vec<Warning>), Mistakes>;
+
+/// Speeds with the shots of those that have a plan.
+fn points(
+    speeds_m_s: &[f64],
+    planned: Vec<Planned>,
+    shots: Vec<Result<Shot, StudyError>>,
+) -> Vec<Point> {
+    let mut shots = shots.into_iter();
+    let point = |(&speed_m_s, planned): (&f64, Planned)| {
+        let (shot, warnings) = match planned {
+            Err(mistakes) => (Some(Err(mistakes.into())), Vec::new()),
+            Ok((_, warnings)) => (
+                shots.next().map(|shot| shot.map_err(PointError::from)),
+                warnings,
+            ),
+        };
+        let warnings = warnings.iter().map(Warning::one_line).collect();
+        Some(Point {
+            speed_m_s,
+            shot: shot?,
+            warnings,
+        })
     };
-    Point {
-        speed_m_s,
-        shot,
-        warnings,
-    }
+    speeds_m_s.iter().zip(planned).filter_map(point).collect()
 }
 
 fn fit(points: impl Iterator<Item = (f64, f64)>) -> Result<PowerLaw, FitError> {

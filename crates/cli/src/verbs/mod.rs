@@ -10,3 +10,4 @@ pub mod schema;
 pub mod shot;
 pub mod sweep;
 pub mod theory;
+pub mod version;

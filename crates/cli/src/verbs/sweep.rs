@@ -27,8 +27,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let bar = bar(speeds.len() as u64);
     let settings = Settings {
-        adjust: &|plan| input::adjust(&arguments.how, plan),
+        adjust: &|plan| adjust(arguments, plan),
         checked: arguments.how.check,
+        set: input::instruction_set()?,
         progress: &|| bar.inc(1),
     };
     let swept = pool.install(|| sweep(&experiment, &speeds, &settings));
@@ -36,6 +37,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     show(arguments, &experiment, &plan, &swept)?;
     folder.map_or(Ok(()), |folder| write(folder, &experiment, &swept))?;
     judge(&swept)
+}
+
+/// Shots for times of flight alone, unless the striker is to be followed.
+fn adjust(arguments: &Arguments, plan: &mut Plan) {
+    input::adjust(&arguments.how, plan);
+    plan.rebound = arguments.rebound;
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.
@@ -133,6 +140,11 @@ const COLUMNS: [Column; 6] = [
     ("rebound", "m/s", 1.0, |point| ok(point)?.rebound?.end_m_s),
 ];
 
+/// Whether a column has anything to tell; only the rebound must be asked for.
+fn told(column: &Column, swept: &Sweep) -> bool {
+    column.0 != "rebound" || swept.points.iter().any(|point| (column.3)(point).is_some())
+}
+
 fn ok(point: &Point) -> Option<&Shot> {
     point.shot.as_ref().ok()
 }
@@ -154,8 +166,11 @@ fn rows(style: Style, swept: &Sweep) -> String {
         };
         (head, format::column(&values, digits))
     };
-    let (mut head, mut columns): (Vec<String>, Vec<Vec<String>>) =
-        COLUMNS.iter().map(column).unzip();
+    let (mut head, mut columns): (Vec<String>, Vec<Vec<String>>) = COLUMNS
+        .iter()
+        .filter(|column| told(column, swept))
+        .map(column)
+        .unzip();
     let reached = |point: &Point| ok(point)?.accuracy_reached;
     if swept.points.iter().any(|point| reached(point).is_some()) {
         let cell = |point| reached(point).map_or_else(String::new, |a| format!("{a:.0e}"));
