@@ -12,7 +12,7 @@ core=${PEERS_CORE:-$(($(nproc) - 1))}
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 RAYON_NUM_THREADS=1
 export PYTHONPYCACHEPREFIX=$build/pycache
 
-RUSTFLAGS='-C target-cpu=native' cargo build --release --locked
+RUSTFLAGS='-C target-cpu=native' cargo build --release
 
 if ! [ -e "$environment/complete" ]; then
   python3 -m venv --clear "$environment"

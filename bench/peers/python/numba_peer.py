@@ -7,97 +7,41 @@ import numpy as np
 from numba import njit
 
 import chain as p
-from chain import CONTACTS, FLUSH, SENSOR
-
-BODIES = CONTACTS
-FAST = dict(error_model="numpy", fastmath={"contract", "nsz"})
+from chain import CONTACTS, ROW, ROWS, SENSOR, STATE, V
 
 
 def version():
     return numba.__version__
 
 
-@njit(inline="always")
-def slopes(d, v, hi, dd, dv, force, k, a, b):
-    """Rates of overlaps and velocities of contacts and bodies below `hi`; those beyond are at rest."""
-    for c in range(hi):
-        dd[c] = v[c] - v[c + 1]
-    for c in range(hi):
-        force[c + 1] = p.contact(d[c], dd[c], k[c], a[c], b[c])
-    for c in range(hi):
-        dv[c] = force[c] - force[c + 1]
-
-
-@njit(**FAST)
-def rk4_step(y, z, hi, h, work, force, k, a, b):
-    """One classical step of the moving part, from y to z; the wall's velocity is the last cell."""
-    d, v, nd, nv = y[0], y[1], z[0], z[1]
-    sd, sv, rd, rv, td, tv = work[0], work[1], work[2], work[3], work[4], work[5]
-    slopes(d, v, hi, rd, rv, force, k, a, b)
-    half = 0.5 * h
-    for i in range(hi):
-        td[i], tv[i] = rd[i], rv[i]
-        sd[i], sv[i] = d[i] + half * rd[i], v[i] + half * rv[i]
-    slopes(sd, sv, hi, rd, rv, force, k, a, b)
-    for i in range(hi):
-        td[i] += 2.0 * rd[i]
-        tv[i] += 2.0 * rv[i]
-        sd[i], sv[i] = d[i] + half * rd[i], v[i] + half * rv[i]
-    slopes(sd, sv, hi, rd, rv, force, k, a, b)
-    for i in range(hi):
-        td[i] += 2.0 * rd[i]
-        tv[i] += 2.0 * rv[i]
-        sd[i], sv[i] = d[i] + h * rd[i], v[i] + h * rv[i]
-    slopes(sd, sv, hi, rd, rv, force, k, a, b)
-    sixth = h / 6.0
-    for i in range(hi):
-        nd[i] = d[i] + sixth * (td[i] + rd[i])
-        nv[i] = v[i] + sixth * (tv[i] + rv[i])
-
-
-@njit(**FAST)
-def farther(y, hi):
-    """One more than the last contact that may act in the next step: in one step of four stages the front, which falls
-    off faster than any power, gains at most four contacts above the flush."""
-    while hi < CONTACTS and (y[0][hi] > 1e-30 or hi < 8 or y[0][max(hi - 4, 0)] > 1e-30):
-        hi += 1
-    return hi
-
-
 @njit
-def signal(y, sensor, k, a, b):
-    first, last = (SENSOR - 1, SENSOR) if sensor == 0 else (CONTACTS - 1, CONTACTS - 1)
-    f, s = 0.0, 0.0
+def value(w, first, last):
+    """Mean force of contacts first..last of the state at Y."""
+    f = 0.0
     for c in range(first, last + 1):
-        d, rate = y[0][c], y[1][c] - y[1][c + 1]
-        f += p.contact(d, rate, k[c], a[c], b[c])
+        d, rate = w[p.Y + c], w[p.Y + V + c] - w[p.Y + V + c + 1]
+        f += p.contact(d, rate, w[p.K + c], w[p.A + c], w[p.B + c])
     return f / (last - first + 1)
 
 
 @njit
-def rk4_shot(k, a, b, h):
+def rk4_shot(w, h):
     """Fixed steps; forces of both sensors in short memories of five steps, peaks by the quartic through them."""
-    y, z = np.zeros((2, CONTACTS + 1)), np.zeros((2, CONTACTS + 1))
-    work, force = np.zeros((6, 2, CONTACTS + 1))[:, 0], np.zeros(CONTACTS + 1)
-    y[1][0] = 1.0
-    watch, past = p.new_watch(), np.zeros((2, 5))
-    hi, step = 8, 0
+    w[p.Y + V] = 1.0
+    watch, past, step = p.new_watch(), np.zeros((2, 5)), 0
     while True:
-        hi = farther(y, hi)
-        rk4_step(y, z, hi, h, work, force, k, a, b)
-        y, z = z, y
-        z[:, hi:] = y[:, hi:]
+        p.rk4(w, h)
         step += 1
         for sensor in range(2):
             f = past[sensor]
-            contact = SENSOR if sensor == 0 else CONTACTS - 1
-            if y[0][contact] <= 0.0 and y[0][contact - (sensor == 0)] <= 0.0 and f[4] == 0.0:
+            first, last = (SENSOR - 1, SENSOR) if sensor == 0 else (CONTACTS - 1, CONTACTS - 1)
+            if w[p.Y + first] <= 0.0 and w[p.Y + last] <= 0.0 and f[4] == 0.0:
                 continue
-            f[:4] = f[1:]
-            f[4] = signal(y, sensor, k, a, b)
+            f[0], f[1], f[2], f[3] = f[1], f[2], f[3], f[4]
+            f[4] = value(w, first, last)
             if f[2] > 0.0 and f[1] < f[2] >= f[3]:
-                t, value = p.quartic(h, f)
-                p.found(watch, sensor, (step - 2) * h + t, value)
+                t, top = p.quartic(h, f)
+                p.found(watch, sensor, (step - 2) * h + t, top)
         if p.over(watch, step * h):
             return watch
 
@@ -111,64 +55,77 @@ A61, A62, A63, A64, A65 = 9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 
 B1, B3, B4, B5, B6 = 35 / 384, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84
 E1, E3, E4, E5, E6, E7 = 71 / 57600, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40
 
+# Rows 4 to 12: the state, the trial state, slopes. Rows 0 to 3 are RK4's.
+Q, S, K1, K2, K3, K4, K5, K6, K7 = (ROWS + (4 + i) * ROW for i in range(9))
 
-@njit(**FAST)
-def pair_step(y, k1, h, s, k2, k3, k4, k5, k6, k7, force, k, a, b):
-    """One trial step: the new state in s, its slope in k7, the largest error returned."""
-    n = len(y)
-    for i in range(n):
-        s[i] = y[i] + h * (A21 * k1[i])
-    p.derivative(s, k2, force, k, a, b)
-    for i in range(n):
-        s[i] = y[i] + h * (A31 * k1[i] + A32 * k2[i])
-    p.derivative(s, k3, force, k, a, b)
-    for i in range(n):
-        s[i] = y[i] + h * (A41 * k1[i] + A42 * k2[i] + A43 * k3[i])
-    p.derivative(s, k4, force, k, a, b)
-    for i in range(n):
-        s[i] = y[i] + h * (A51 * k1[i] + A52 * k2[i] + A53 * k3[i] + A54 * k4[i])
-    p.derivative(s, k5, force, k, a, b)
-    for i in range(n):
-        s[i] = y[i] + h * (A61 * k1[i] + A62 * k2[i] + A63 * k3[i] + A64 * k4[i] + A65 * k5[i])
-    p.derivative(s, k6, force, k, a, b)
-    for i in range(n):
-        s[i] = y[i] + h * (B1 * k1[i] + B3 * k3[i] + B4 * k4[i] + B5 * k5[i] + B6 * k6[i])
-    p.derivative(s, k7, force, k, a, b)
-    error = 0.0
-    for i in range(n):
-        e = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
-        error += e * e
-    return math.sqrt(error / n)
+
+@njit(**p.FAST)
+def pair_step(w, h):
+    """One trial step from Q: the new state to S, its slope to K7; returns the error's root mean square."""
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (A21 * w[K1 + i])
+    p.slopes(w, S, K2)
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (A31 * w[K1 + i] + A32 * w[K2 + i])
+    p.slopes(w, S, K3)
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (A41 * w[K1 + i] + A42 * w[K2 + i] + A43 * w[K3 + i])
+    p.slopes(w, S, K4)
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (A51 * w[K1 + i] + A52 * w[K2 + i] + A53 * w[K3 + i] + A54 * w[K4 + i])
+    p.slopes(w, S, K5)
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (
+            A61 * w[K1 + i] + A62 * w[K2 + i] + A63 * w[K3 + i] + A64 * w[K4 + i] + A65 * w[K5 + i]
+        )
+    p.slopes(w, S, K6)
+    for i in range(STATE):
+        w[S + i] = w[Q + i] + h * (
+            B1 * w[K1 + i] + B3 * w[K3 + i] + B4 * w[K4 + i] + B5 * w[K5 + i] + B6 * w[K6 + i]
+        )
+    p.slopes(w, S, K7)
+    return h * math.sqrt(squares(w) / STATE)
+
+
+@njit(error_model="numpy", fastmath=True)
+def squares(w):
+    """Sum of squares of the error's slope."""
+    total = 0.0
+    for i in range(STATE):
+        e = E1 * w[K1 + i] + E3 * w[K3 + i] + E4 * w[K4 + i] + E5 * w[K5 + i] + E6 * w[K6 + i] + E7 * w[K7 + i]
+        total += e * e
+    return total
 
 
 @njit
-def pair_shot(k, a, b, tolerance):
+def pair_shot(w, k, a, b, tolerance):
     """Adaptive; the three steps that hold a peak are resolved once more by short RK4 steps."""
-    n = 2 * CONTACTS
-    w, force, watch = np.zeros((9, n)), np.zeros(CONTACTS + 1), p.new_watch()
-    y, s, k1, k7 = p.start(), w[0], w[1], w[2]
-    k2, k3, k4, k5, k6 = w[3], w[4], w[5], w[6], w[7]
-    p.derivative(y, k1, force, k, a, b)
+    watch = p.new_watch()
+    w[Q + V] = 1.0
+    p.slopes(w, Q, K1)
+    old, new = w[Q : Q + STATE], w[S : S + STATE]
     t, h, refused = 0.0, 1e-3, False
     while True:
-        ratio = pair_step(y, k1, h, s, k2, k3, k4, k5, k6, k7, force, k, a, b) / tolerance
+        ratio = pair_step(w, h) / tolerance
         factor = min(5.0, max(0.2, 0.9 * max(ratio, 1e-10) ** -0.2))
         if ratio <= 1.0:
-            done = p.watch_step(watch, t, y, t + h, s, 8, k, a, b)
-            t += h
-            y, s, k1, k7 = s, y, k7, k1
-            if done:
+            if p.watch_step(watch, t, old, t + h, new, 8, w, k, a, b):
                 return watch
+            t += h
+            for i in range(STATE):
+                w[Q + i] = w[S + i]
+                w[K1 + i] = w[K7 + i]
             factor = min(factor, 1.0) if refused else factor
         refused = ratio > 1.0
         h *= factor
 
 
 def run(method, case, setting, speeds):
-    """`setting` is the step in units of the contact's own time scale for RK4, the tolerance for the pair."""
-    one = rk4_shot if method == "rk4" else pair_shot
+    """`setting` is the step in units of the shot's own time scale for RK4, the tolerance for the pair."""
     out = []
     for v in speeds:
         *laws, time = p.shot(case, v)
-        out.append(p.tofs(one(*laws, setting), time))
+        w = p.work(*laws, 13)
+        watch = rk4_shot(w, setting) if method == "rk4" else pair_shot(w, *laws, setting)
+        out.append(p.tofs(watch, time))
     return out

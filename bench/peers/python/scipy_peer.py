@@ -17,16 +17,15 @@ def version():
 
 def numpy_derivative(k, a, b):
     """The right-hand side in NumPy: every array preallocated, ufuncs write in place."""
-    n, flush = p.CONTACTS, p.FLUSH
+    n, first, size, flush = p.CONTACTS, p.V, p.STATE, p.FLUSH
     rate, d, root, force, cube = (np.empty(n) for _ in range(5))
     force_behind = np.zeros(n + 1)
     has_damping, has_cubic = a.any(), b.any()
 
-    def of(t, y, out=None):
-        out = np.empty(2 * n)
-        v = y[n:]
-        np.subtract(v[:-1], v[1:], out=rate[:-1])
-        rate[-1] = v[-1]
+    def of(t, y):
+        out = np.zeros(size)
+        v = y[first:]
+        np.subtract(v[:-1], v[1:], out=rate)
         np.maximum(y[:n], 0.0, out=d)
         np.sqrt(d, out=root)
         np.multiply(k, d, out=force)
@@ -42,18 +41,18 @@ def numpy_derivative(k, a, b):
             np.multiply(cube, closed, out=cube)
             np.add(force_behind[1:], cube, out=force_behind[1:])
         out[:n] = rate
-        np.subtract(force_behind[:-1], force_behind[1:], out=out[n:])
+        np.subtract(force_behind[:-1], force_behind[1:], out=out[first:-1])
         return out
 
     return of
 
 
 def numba_derivative(k, a, b):
-    force, n = np.zeros(p.CONTACTS + 1), 2 * p.CONTACTS
+    w, size = p.work(k, a, b, 2), p.STATE
 
     def of(t, y):
-        out = np.empty(n)
-        p.derivative(y, out, force, k, a, b)
+        out = np.empty(size)
+        p.derivative(w, y, out)
         return out
 
     return of
@@ -105,6 +104,7 @@ def shot(method, case, tolerance, speed):
     name, _, side = method.partition("/")
     *laws, time = p.shot(case, speed)
     fun = (numba_derivative if side == "numba" else numpy_derivative)(*laws)
+    laws = (p.work(*laws, 4), *laws)
     if name in CLASSES:
         watch = by_class(CLASSES[name], fun, tolerance, laws)
     elif name == "ode-lsoda":

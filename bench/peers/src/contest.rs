@@ -1,7 +1,7 @@
 //! Ours, theirs, ours, theirs: medians of both, errors of both.
 
 use crate::case::{Case, speeds_m_s};
-use crate::converged::errors;
+use crate::converged::{Converged, errors};
 use crate::ours::ours;
 use crate::python::Worker;
 use crate::scan::{Point, count_for};
@@ -61,7 +61,7 @@ impl Question {
         tool: &Tool,
         worker: &Worker,
         candidates: &[Point],
-        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+        converged: &Converged,
     ) -> Option<(Answer, Answer)> {
         let (point, speeds) = self.choose(tool, worker, candidates, converged)?;
         let our_speeds = self.our_speeds();
@@ -70,11 +70,11 @@ impl Question {
             our_runs.push(measured(|| ours(self.case, &our_speeds, self.accuracy)));
             their_runs.push(tool.run(worker, point.method, self.case, point.setting, &speeds));
         }
-        let of_us = answer(("", 0.0), &our_runs, &converged(&our_speeds));
+        let of_us = answer(("", 0.0), &our_runs, &converged.tofs_s(&our_speeds));
         let of_them = answer(
             (point.method, point.setting),
             &their_runs,
-            &converged(&speeds),
+            &converged.tofs_s(&speeds),
         );
         Some((of_us, of_them))
     }
@@ -84,13 +84,13 @@ impl Question {
         tool: &Tool,
         worker: &Worker,
         candidates: &[Point],
-        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+        converged: &Converged,
     ) -> Option<(Point, Vec<f64>)> {
         let mut last = None;
         for point in candidates {
             let speeds = speeds_m_s(self.count(point.shots_per_s, tool.fewest()));
             let timed = tool.run(worker, point.method, self.case, point.setting, &speeds);
-            let (incident, reflected) = errors(&timed.tofs_s, &converged(&speeds));
+            let (incident, reflected) = errors(&timed.tofs_s, &converged.tofs_s(&speeds));
             last = Some((*point, speeds));
             if incident <= self.accuracy && reflected <= self.accuracy {
                 break;

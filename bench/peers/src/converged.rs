@@ -3,16 +3,34 @@
 use crate::case::{Case, speeds_m_s};
 use crate::ours::{End, shot};
 use anyhow::{Context, ensure};
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 /// Tolerance of the converged runs.
 const TIGHT: f64 = 1e-12;
 
-/// Converged ToFs of the paper's laws at some speeds.
-pub fn tofs_s(case: Case, speeds_m_s: &[f64]) -> Vec<(f64, f64)> {
-    speeds_m_s
-        .iter()
-        .map(|speed| shot(case, *speed, TIGHT, End::WhenPassed))
-        .collect()
+/// Converged ToFs of one case, computed when first asked for.
+pub struct Converged {
+    case: Case,
+    known: RefCell<HashMap<u64, (f64, f64)>>,
+}
+
+impl Converged {
+    /// Nothing known yet.
+    pub fn new(case: Case) -> Self {
+        let known = RefCell::default();
+        Self { case, known }
+    }
+
+    /// At some speeds: incident and reflected in s.
+    pub fn tofs_s(&self, speeds_m_s: &[f64]) -> Vec<(f64, f64)> {
+        let mut known = self.known.borrow_mut();
+        let mut one = |speed: &f64| {
+            let tight = || shot(self.case, *speed, TIGHT, End::WhenPassed);
+            *known.entry(speed.to_bits()).or_insert_with(tight)
+        };
+        speeds_m_s.iter().map(&mut one).collect()
+    }
 }
 
 /// Largest relative errors of the incident and the reflected ToF; NaN if one is missing.

@@ -18,6 +18,7 @@ mod watch;
 
 use case::{Case, speeds_m_s};
 use contest::Question;
+use converged::Converged;
 use python::Worker;
 use scan::{Patience, Point, candidates, scan};
 use std::path::Path;
@@ -66,19 +67,18 @@ struct Session {
 
 impl Session {
     fn run(&mut self, case: Case) -> anyhow::Result<()> {
-        let all = speeds_m_s(1000);
-        let tight = converged::tofs_s(case, &all);
-        // Every ensemble is a part of the full one.
-        let converged = |speeds: &[f64]| {
-            let place = |v: &f64| all.iter().position(|w| w == v).unwrap_or(0);
-            speeds.iter().map(|v| tight[place(v)]).collect::<Vec<_>>()
-        };
-        println!("{}: converged values ready", case.name());
+        let converged = Converged::new(case);
         if case == Case::Dry {
             self.our_line(&converged);
         }
         for tool in TOOLS.iter().filter(|tool| tool.can(case)) {
-            let points = scan(tool, &self.worker, case, &converged, self.patience(case));
+            let points = scan(
+                tool,
+                &self.worker,
+                case,
+                &converged,
+                self.patience(tool, case),
+            );
             self.contests(tool, case, &points, &converged)?;
             if case == Case::Dry {
                 self.lines.push((tool.name.into(), points));
@@ -87,9 +87,11 @@ impl Session {
         Ok(())
     }
 
-    fn patience(&self, case: Case) -> Patience {
-        let seconds = if self.quick { 0.03 } else { 0.1 };
+    fn patience(&self, tool: &Tool, case: Case) -> Patience {
+        let seconds = if self.quick { 0.02 } else { 0.06 };
         let most_s = if case == Case::Dry { 2.0 } else { 1.0 };
+        // A box of LAMMPS takes as long as many shots of others.
+        let most_s = if tool.shares_steps() { 2.5 } else { most_s };
         Patience { seconds, most_s }
     }
 
@@ -115,7 +117,7 @@ impl Session {
                 accuracy,
                 rounds: 3,
                 seconds: 0.15,
-                fewest_fast: 100,
+                fewest_fast: 200,
             },
         }
     }
@@ -125,7 +127,7 @@ impl Session {
         tool: &Tool,
         case: Case,
         points: &[Point],
-        converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+        converged: &Converged,
     ) -> anyhow::Result<()> {
         for accuracy in ACCURACIES {
             let candidates = candidates(points, accuracy, tool.ladder.1);
@@ -176,12 +178,13 @@ impl Session {
     }
 
     /// Ours by accuracy asked, for the picture.
-    fn our_line(&mut self, converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>) {
+    fn our_line(&mut self, converged: &Converged) {
         let mut points = Vec::new();
         for accuracy in OUR_ACCURACIES {
             let speeds = speeds_m_s(if self.quick { 20 } else { 100 });
             let timed = measured(|| ours::ours(Case::Dry, &speeds, accuracy));
-            let (incident, reflected) = converged::errors(&timed.tofs_s, &converged(&speeds));
+            let (incident, reflected) =
+                converged::errors(&timed.tofs_s, &converged.tofs_s(&speeds));
             let shots_per_s = speeds.len() as f64 / timed.seconds;
             let error = incident.max(reflected);
             points.push(Point {

@@ -1,7 +1,7 @@
 //! Every peer's settings tried from coarse to fine, for each case.
 
 use crate::case::{Case, speeds_m_s};
-use crate::converged::errors;
+use crate::converged::{Converged, errors};
 use crate::python::Worker;
 use crate::tool::Tool;
 
@@ -36,7 +36,7 @@ pub fn scan(
     tool: &Tool,
     worker: &Worker,
     case: Case,
-    converged: &dyn Fn(&[f64]) -> Vec<(f64, f64)>,
+    converged: &Converged,
     patience: Patience,
 ) -> Vec<Point> {
     let mut points = Vec::new();
@@ -46,7 +46,7 @@ pub fn scan(
         for _ in 0..count {
             let speeds = speeds_m_s(shots);
             let timed = tool.run(worker, method, case, setting, &speeds);
-            let (incident, reflected) = errors(&timed.tofs_s, &converged(&speeds));
+            let (incident, reflected) = errors(&timed.tofs_s, &converged.tofs_s(&speeds));
             let error = incident.max(reflected);
             let shots_per_s = speeds.len() as f64 / timed.seconds;
             if !incident.is_nan() && !reflected.is_nan() && shots_per_s.is_finite() {
@@ -67,9 +67,16 @@ pub fn scan(
     points
 }
 
+/// Sizes of ensembles: few, so that ensembles share speeds.
+const SIZES: [usize; 8] = [1000, 500, 200, 100, 50, 20, 10, 4];
+
 /// Shots that take about `seconds`.
 pub fn count_for(shots_per_s: f64, seconds: f64, fewest: usize, most: usize) -> usize {
-    ((shots_per_s * seconds) as usize).clamp(fewest, most)
+    let wanted = ((shots_per_s * seconds) as usize).clamp(fewest, most);
+    SIZES
+        .into_iter()
+        .find(|size| *size <= wanted)
+        .unwrap_or(fewest)
 }
 
 /// Settings worth a closer look for an accuracy, the cheapest first: those

@@ -156,13 +156,14 @@ impl Tool {
             || matches!(case, Case::Hertz | Case::HertzViscoelastic)
     }
 
-    /// Smallest sensible number of shots: LAMMPS shares its steps among chains in one box.
+    /// Whether all shots of a run share one loop: LAMMPS's chains in one box.
+    pub fn shares_steps(&self) -> bool {
+        self.package == Package::Python("lammps")
+    }
+
+    /// Smallest sensible number of shots.
     pub fn fewest(&self) -> usize {
-        if self.package == Package::Python("lammps") {
-            20
-        } else {
-            4
-        }
+        if self.shares_steps() { 20 } else { 4 }
     }
 
     /// Its version.

@@ -216,8 +216,8 @@ fn signals(
 ) -> Vec<Vec<Signal>> {
     let mut signals = vec![Vec::with_capacity(settings.sensors.len()); lanes.len()];
     for (index, &sensor) in settings.sensors.iter().enumerate() {
-        let (first, samples) = recorder.by_lane(index);
-        for (at, (signals, samples)) in signals.iter_mut().zip(samples).enumerate() {
+        let samples = recorder.by_lane(index);
+        for (at, (signals, (first, samples))) in signals.iter_mut().zip(samples).enumerate() {
             let silent = match sensor {
                 Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
                 _ => systems[at].scales().silent_force_n,

@@ -89,9 +89,9 @@ impl Passing {
         }
     }
 
-    /// Steps from the incident peak to the wall's.
+    /// Steps from the incident peak to the wall's; 0 before the wall has seen any.
     fn way(&self) -> f64 {
-        (self.wall.step - self.incident.step) as f64
+        self.wall.step.saturating_sub(self.incident.step) as f64
     }
 
     /// Whether the shot is over.

@@ -50,7 +50,9 @@ pub(super) fn signal(
 
 /// Quartics through five samples each, where steps are equal and anything is seen.
 fn stretches(values: &[f64], first: usize, clock: Clock<'_>, floor: f64) -> Vec<Stretch> {
-    let growing = clock.schedule.first_full_step().saturating_sub(first);
+    // At steps that do not depend on the first sample.
+    let full_from = clock.schedule.first_full_step().next_multiple_of(4);
+    let growing = first.next_multiple_of(4).max(full_from) - first;
     let full = values.get(growing..).unwrap_or_default();
     let seen = |five: &[f64]| five.iter().any(|value| value.abs() > floor);
     let fives = full.windows(5).step_by(4).enumerate();

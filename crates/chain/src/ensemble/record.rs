@@ -5,6 +5,9 @@ use super::column::WIDTH;
 use crate::sensor::Sensor;
 use std::ops::Range;
 
+/// Zeros before the first sample, for maxima near it.
+const BEFORE: usize = 4;
+
 /// Rows of one sensor, from the first that is not 0 in every lane.
 #[derive(Clone, Debug)]
 struct Rows {
@@ -73,17 +76,31 @@ impl Recorder {
     }
 
     /// Step of a sensor's first sample and its samples, lane by lane.
-    pub fn by_lane(&self, sensor: usize) -> (usize, Vec<Vec<f64>>) {
+    pub fn by_lane(&self, sensor: usize) -> Vec<(usize, Vec<f64>)> {
         let rows = &self.rows[sensor];
-        let count = rows.values.len() / self.lanes;
-        let mut lanes = vec![Vec::with_capacity(count); self.lanes];
-        for row in rows.values.chunks_exact(self.lanes) {
-            for (lane, value) in lanes.iter_mut().zip(row) {
-                lane.push(*value);
-            }
-        }
-        (rows.first, lanes)
+        let lane = |lane: usize| {
+            own(
+                rows.first,
+                rows.values.iter().skip(lane).step_by(self.lanes),
+            )
+        };
+        (0..self.lanes).map(lane).collect()
     }
+}
+
+/// A lane's samples from a step that does not depend on when the other lanes
+/// have seen something: a multiple of four, and some zeros before the first
+/// that is not 0. The start of a shot is no sample.
+fn own<'a>(
+    first: usize,
+    values: impl ExactSizeIterator<Item = &'a f64> + Clone,
+) -> (usize, Vec<f64>) {
+    let silent = values.clone().take_while(|value| **value == 0.0).count();
+    let begins = (first + silent).saturating_sub(BEFORE) / 4 * 4;
+    let begins = begins.max(1);
+    let mut samples = vec![0.0; first.saturating_sub(begins)];
+    samples.extend(values.skip(begins.saturating_sub(first)));
+    (begins, samples)
 }
 
 /// Samples of one sensor in one lane.

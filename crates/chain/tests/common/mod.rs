@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+pub mod ensemble;
+
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Passage, Passages};
 use hertzchain_chain::wave::{DormandPrince, Limits, Method, Outcome, run};

@@ -1,0 +1,283 @@
+//! A shot of the ensemble loop knows nothing of its lane and its neighbours.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+mod common;
+use common::ensemble::*;
+use common::*;
+use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Settings, Shot, fire};
+use hertzchain_chain::laws::{DampingLinear, DampingPower, ElasticPlasticThornton, Law, law};
+use hertzchain_chain::*;
+use std::sync::Arc;
+
+const DURATION_S: f64 = 2e-3;
+
+fn dry() -> Vec<Arc<dyn Law>> {
+    vec![hertz(), viscoelastic(), cubic()]
+}
+
+#[track_caller]
+fn same(one: &Flown, two: &Flown, which: impl Fn() -> String) {
+    if let Some(difference) = difference(one, two) {
+        panic!("{}: {difference}", which());
+    }
+}
+
+/// Alike rows at different speeds.
+fn rows(count: usize, chain: impl Fn(f64) -> Chain) -> Vec<System> {
+    let speed = |i: usize| 0.1 + 0.07 * i as f64;
+    (0..count)
+        .map(|i| System::new(&chain(speed(i))).unwrap())
+        .collect()
+}
+
+/// Chains that take every way through the loop.
+fn kinds() -> Vec<(&'static str, fn(f64) -> Chain)> {
+    vec![
+        ("fused laws", |v| row(12, v, dry())),
+        ("unfused laws", |v| row(11, v, law_by_law())),
+        ("laws with memory", |v| row(10, v, with_memory())),
+        ("sections that end within eight bodies", |v| Chain {
+            sections: sections(13),
+            ..row(13, v, vec![])
+        }),
+        ("clipped tension and a gap", |v| Chain {
+            tension: Tension::Clipped,
+            gaps: vec![Gap {
+                contact: 5,
+                gap_m: 1e-7,
+            }],
+            ..row(12, v, dry())
+        }),
+        ("preload", |v| Chain {
+            push: Push::Constant { force_n: 2.0 },
+            ..row(40, v, dry())
+        }),
+        ("a spring", |v| Chain {
+            push: Push::Spring {
+                force_n: 2.0,
+                stiffness_n_m: 1e5,
+            },
+            ..row(20, v, dry())
+        }),
+        ("an incline", |v| Chain {
+            incline_rad: 0.3,
+            ..row(12, v, dry())
+        }),
+        ("a stop", |v| Chain {
+            far: FarEnd::Stop {
+                radius_m: BALL.radius_m,
+                material: STEEL,
+                mass_kg: 0.5,
+            },
+            ..row(12, v, dry())
+        }),
+    ]
+}
+
+fn law_by_law() -> Vec<Arc<dyn Law>> {
+    let power = law(DampingPower {
+        coefficient: 1.0,
+        rate_exponent: 1.3,
+        overlap_exponent: 0.2,
+    });
+    vec![hertz(), power]
+}
+
+fn with_memory() -> Vec<Arc<dyn Law>> {
+    vec![law(ElasticPlasticThornton {
+        yield_pressure_pa: 1e9,
+    })]
+}
+
+/// Three sections, none of which ends where eight bodies do.
+fn sections(beads: usize) -> Vec<Section> {
+    let section = |contacts, laws| Section {
+        contacts,
+        laws,
+        material: None,
+    };
+    vec![
+        section(0..=2, dry()),
+        section(3..=9, vec![hertz(), viscoelastic()]),
+        section(10..=beads, law_by_law()),
+    ]
+}
+
+fn settings_for(systems: &[System], openings: bool) -> Settings {
+    Settings {
+        openings,
+        ..settings(systems[0].beads())
+    }
+}
+
+#[test]
+fn every_number_of_shots_gives_the_bits_of_each_shot_alone() {
+    let systems = rows(17, |v| row(12, v, dry()));
+    let settings = settings_for(&systems, true);
+    let alone: Vec<_> = systems
+        .iter()
+        .map(|system| fire_one(system, (0.1, DURATION_S), &settings))
+        .collect();
+    for count in 1..=systems.len() {
+        let flown = fire_all(&systems[..count], (0.1, DURATION_S), &settings);
+        for (i, (flown, alone)) in flown.into_iter().zip(&alone).enumerate() {
+            same(&flown.unwrap(), alone, || format!("shot {i} of {count}"));
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_chain_gives_the_same_bits_alone_and_side_by_side_in_any_order() {
+    for (kind, chain) in kinds() {
+        let systems = rows(8, chain);
+        for set in InstructionSet::available() {
+            for openings in [false, true] {
+                let settings = Settings {
+                    set,
+                    ..settings_for(&systems, openings)
+                };
+                let alone: Vec<_> = systems
+                    .iter()
+                    .map(|system| fire_one(system, (0.1, DURATION_S), &settings))
+                    .collect();
+                for turned in [0, 3, 5] {
+                    let mut order: Vec<usize> = (0..8).collect();
+                    order.rotate_left(turned);
+                    order.swap(1, 6);
+                    let turned: Vec<System> = order.iter().map(|&i| systems[i].clone()).collect();
+                    let flown = fire_all(&turned, (0.1, DURATION_S), &settings);
+                    for (flown, &i) in flown.into_iter().zip(&order) {
+                        let name = set.name();
+                        same(&flown.unwrap(), &alone[i], || {
+                            format!("{kind}: shot {i}, {name}, openings {openings}")
+                        });
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn shots_of_other_shapes_in_between_change_no_bits() {
+    let (one, two) = (
+        rows(5, |v| row(12, v, dry())),
+        rows(5, |v| row(9, v, vec![hertz()])),
+    );
+    let settings = settings(9);
+    let mixed: Vec<System> = one
+        .iter()
+        .zip(&two)
+        .flat_map(|(a, b)| [a.clone(), b.clone()])
+        .collect();
+    for (system, flown) in mixed
+        .iter()
+        .zip(fire_all(&mixed, (0.1, DURATION_S), &settings))
+    {
+        let alone = fire_one(system, (0.1, DURATION_S), &settings);
+        same(&flown.unwrap(), &alone, || {
+            format!("{} beads", system.beads())
+        });
+    }
+}
+
+#[test]
+fn lanes_with_their_own_steps_and_durations_give_the_bits_of_each_shot_alone() {
+    let systems = rows(8, |v| row(12, v, dry()));
+    let shots: Vec<Shot<'_>> = systems
+        .iter()
+        .enumerate()
+        .map(|(i, system)| Shot {
+            system,
+            step: 0.06 + 0.015 * i as f64,
+            duration_s: if i % 3 == 0 { 1e-4 } else { DURATION_S },
+        })
+        .collect();
+    for end in [End::Duration, End::Passed, End::Reflected] {
+        let settings = Settings {
+            end,
+            ..settings_for(&systems, true)
+        };
+        for (shot, flown) in shots.iter().zip(fire(&shots, &settings)) {
+            let alone = fire(std::slice::from_ref(shot), &settings).remove(0);
+            same(&flown.unwrap(), &alone.unwrap(), || format!("{end:?}"));
+        }
+    }
+}
+
+fn dashpot(coefficient_n_s_m: f64) -> Chain {
+    let dashpot = law(DampingLinear { coefficient_n_s_m });
+    row(12, 0.5, vec![hertz(), dashpot])
+}
+
+/// A dashpot so stiff that equal steps of a contact time diverge.
+const TOO_STIFF: f64 = 1e5;
+
+#[test]
+fn a_shot_that_diverges_is_reported_alone_and_its_neighbours_keep_their_bits() {
+    let settings = Settings {
+        openings: true,
+        ..settings(12)
+    };
+    let system = |stiff: bool| {
+        let coefficient = if stiff { TOO_STIFF } else { 2.0 };
+        System::new(&dashpot(coefficient)).unwrap()
+    };
+    let sound = fire_one(&system(false), (0.1, DURATION_S), &settings);
+    for bad in 0..8 {
+        let systems: Vec<System> = (0..8).map(|lane| system(lane == bad)).collect();
+        let flown = fire_all(&systems, (0.1, DURATION_S), &settings);
+        for (lane, flown) in flown.into_iter().enumerate() {
+            match flown {
+                Ok(flown) => same(&flown, &sound, || format!("lane {lane} beside {bad}")),
+                Err(EnsembleError::NotFinite { .. }) => assert_eq!(lane, bad),
+                Err(error) => unreachable!("{error}"),
+            }
+        }
+    }
+    let alone = fire_all(&[system(true)], (0.1, DURATION_S), &settings);
+    assert!(matches!(alone[0], Err(EnsembleError::NotFinite { .. })));
+}
+
+#[test]
+fn a_shot_that_cannot_be_fired_is_refused_alone() {
+    let systems = rows(9, |v| row(12, v, dry()));
+    let settings = settings_for(&systems, false);
+    let shots: Vec<Shot<'_>> = systems
+        .iter()
+        .enumerate()
+        .map(|(i, system)| Shot {
+            system,
+            step: if i == 2 { f64::NAN } else { 0.1 },
+            duration_s: if i == 5 { -1.0 } else { DURATION_S },
+        })
+        .collect();
+    for (i, (shot, flown)) in shots.iter().zip(fire(&shots, &settings)).enumerate() {
+        match (i, flown) {
+            (2 | 5, Err(EnsembleError::Setting { .. })) => {}
+            (_, flown) => {
+                let alone = fire_one(shot.system, (0.1, DURATION_S), &settings);
+                same(&flown.unwrap(), &alone, || format!("shot {i}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sensor_that_only_some_chains_have_is_refused_only_there() {
+    let systems = [
+        System::new(&row(12, 0.5, dry())).unwrap(),
+        System::new(&row(6, 0.5, dry())).unwrap(),
+    ];
+    let flown = fire_all(&systems, (0.1, 1e-4), &settings(12));
+    assert!(flown[0].is_ok());
+    let missing = Sensor::Bead(7);
+    assert_eq!(
+        flown[1].as_ref().err(),
+        Some(&EnsembleError::Sensor { sensor: missing })
+    );
+}
