@@ -40,8 +40,6 @@ pub(super) struct Block<'a> {
     edges: Vec<(usize, Edge, usize)>,
     /// Steps made.
     pub steps: usize,
-    /// Bodies summed over steps, of all lanes.
-    pub bodies_passed: u64,
 }
 
 impl<'a> Block<'a> {
@@ -93,7 +91,6 @@ impl<'a> Block<'a> {
             set,
             schedule,
             steps: 0,
-            bodies_passed: 0,
         };
         block.forces();
         block.look_at_changes(false);
@@ -114,7 +111,6 @@ impl<'a> Block<'a> {
         self.forces();
         self.look_at_changes(true);
         self.steps += 1;
-        self.bodies_passed += (self.window.chunks * WIDTH) as u64;
     }
 
     /// Forces of all contacts that move.

@@ -199,11 +199,7 @@ fn fire_block(
         };
         lane.flown(std::mem::take(&mut signals[at]), clock)
     };
-    let mut results: Vec<_> = flying.into_iter().enumerate().map(result).collect();
-    for flown in results.iter_mut().flatten() {
-        flown.work.bodies_passed = block.bodies_passed / lanes as u64;
-    }
-    results
+    flying.into_iter().enumerate().map(result).collect()
 }
 
 /// What the sensors showed, lane by lane.
@@ -331,6 +327,7 @@ impl Lane {
             let (time_s, step_s) = (clock.time_s(step), clock.step_s);
             return Err(EnsembleError::NotFinite { time_s, step_s });
         }
+        let bodies = self.velocity_m_s.len() as u64;
         Ok(Flown {
             signals,
             time_s: clock.time_s(step),
@@ -341,6 +338,7 @@ impl Lane {
             work: Work {
                 force_passes: step as u64 + 1,
                 steps: step as u64,
+                bodies_passed: (step as u64 + 1) * bodies,
                 ..Work::default()
             },
         })

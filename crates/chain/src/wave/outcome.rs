@@ -29,7 +29,7 @@ pub struct Work {
     pub rejected: u64,
     /// Steps redone to end at an opening or closing.
     pub located: u64,
-    /// Bodies summed over force passes.
+    /// Bodies summed over force passes; in an ensemble all of the chain's.
     pub bodies_passed: u64,
 }
 
