@@ -1,5 +1,6 @@
 //! Eight shots side by side, or one alone: all that changes from step to step.
 
+use super::aligned::Aligned;
 use super::bodies::{Motion, Scaled};
 use super::changes::{Changes, Opening};
 use super::column::{Column, WIDTH, chunks};
@@ -30,10 +31,10 @@ pub(super) struct Block<'a> {
     motion: Motion,
     offset_m: Column,
     /// Minus the static forces; `None` where there are none.
-    at_rest: Option<Vec<f64>>,
+    at_rest: Option<Aligned>,
     sections: Vec<Box<dyn Sweep>>,
     /// Dynamic force of contact c at (c + 1) · lanes; 0 before the first.
-    force_n: Vec<f64>,
+    force_n: Aligned,
     window: Window,
     changes: Option<Changes>,
     /// Edges that still disturb steps: where, the edge, steps since.
@@ -55,7 +56,7 @@ impl<'a> Block<'a> {
         let (bodies, contacts) = (first.bodies(), first.contacts());
         let flat = (chunks(bodies, lanes) + 1) * WIDTH;
         let scatter = |of: &dyn Fn(usize, usize) -> f64, count: usize| {
-            let mut values = vec![0.0; flat];
+            let mut values = Aligned::of(0.0, flat);
             for j in 0..count {
                 for lane in 0..lanes {
                     values[j * lanes + lane] = of(j, lane);
@@ -83,7 +84,7 @@ impl<'a> Block<'a> {
             sections: (0..first.sections.len())
                 .map(|i| section(systems, i))
                 .collect(),
-            force_n: vec![0.0; flat + WIDTH],
+            force_n: Aligned::of(0.0, flat + WIDTH),
             step_s,
             offset_m,
             systems,
@@ -244,35 +245,29 @@ impl<'a> Block<'a> {
     }
 
     /// What a sensor shows now in every lane.
-    #[inline]
-    pub fn signals(&self, sensor: Sensor, row: &mut [f64]) {
-        let lanes = row.len();
-        let of = |values: &'_ [f64], at: usize, row: &mut [f64]| {
-            row.copy_from_slice(&values[at * lanes..][..lanes]);
+    #[inline(always)]
+    pub fn signals<const LANES: usize>(&self, sensor: Sensor) -> [f64; LANES] {
+        let row = |values: &[f64], at: usize| -> [f64; LANES] {
+            let row = values[at * LANES..].first_chunk();
+            row.copied().unwrap_or([f64::NAN; LANES])
         };
-        let wall = self.systems[0].contacts();
-        match sensor {
-            Sensor::Bead(n) => self.bead(n, row),
-            Sensor::Contact(c) => of(&self.force_n, c + 1, row),
-            Sensor::Position(i) => of(&self.motion.x, i, row),
-            Sensor::Velocity(i) => of(&self.motion.v, i, row),
-            Sensor::BeadPlusWall(n) => {
-                self.bead(n, row);
-                for (value, wall) in row.iter_mut().zip(&self.force_n[wall * lanes..]) {
-                    *value += wall;
-                }
-            }
-        }
-    }
-
-    /// Mean force of a bead's two contacts.
-    fn bead(&self, n: usize, row: &mut [f64]) {
-        let lanes = row.len();
+        let force = |contact: usize| row(&self.force_n, contact + 1);
         // In a ring the contact before bead 1 is the last, whose force is also
         // kept in the place of contact 0.
-        let (left, right) = (&self.force_n[n * lanes..], &self.force_n[(n + 1) * lanes..]);
-        for (value, (left, right)) in row.iter_mut().zip(left.iter().zip(right)) {
-            *value = 0.5 * (left + right);
+        let bead = |n: usize| {
+            let (left, right) = (force(n - 1), force(n));
+            std::array::from_fn(|lane| 0.5 * (left[lane] + right[lane]))
+        };
+        match sensor {
+            Sensor::Bead(n) => bead(n),
+            Sensor::Contact(c) => force(c),
+            Sensor::Position(i) => row(&self.motion.x, i),
+            Sensor::Velocity(i) => row(&self.motion.v, i),
+            Sensor::BeadPlusWall(n) => {
+                let (bead, wall): ([f64; LANES], _) =
+                    (bead(n), force(self.systems[0].contacts() - 1));
+                std::array::from_fn(|lane| bead[lane] + wall[lane])
+            }
         }
     }
 

@@ -1,24 +1,25 @@
 //! The sweep over bodies: from contact forces to the next step's positions
 //! and velocities.
 
+use super::aligned::Aligned;
 use super::column::{Column, WIDTH};
 use super::weights::{EARLIER, USED, Weights};
 use crate::instruction_set::InstructionSet;
 use fearless_simd::{dispatch, f64x8, prelude::*};
 
 /// Motion of all bodies of all lanes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Motion {
     /// Predicted positions and velocities, with a chunk to spare.
-    pub x: Vec<f64>,
-    pub v: Vec<f64>,
+    pub x: Aligned,
+    pub v: Aligned,
     /// Accelerations of the last steps: the newest at `newest`, older ones
     /// after it, round the ring.
-    accelerations: [Vec<f64>; USED],
+    accelerations: [Aligned; USED],
     newest: usize,
     pub inverse_mass: Column,
     /// Accelerations by what is not a contact, if anything is.
-    pub external: Option<Vec<f64>>,
+    pub external: Option<Aligned>,
 }
 
 /// Weights times powers of each lane's step.
@@ -43,8 +44,8 @@ impl Scaled {
 
 impl Motion {
     /// From positions and velocities, with nothing accelerated yet.
-    pub fn new(x: Vec<f64>, v: Vec<f64>, inverse_mass: Column, external: bool) -> Self {
-        let zeros = || vec![0.0; x.len()];
+    pub fn new(x: Aligned, v: Aligned, inverse_mass: Column, external: bool) -> Self {
+        let zeros = || Aligned::of(0.0, x.len());
         Self {
             accelerations: std::array::from_fn(|_| zeros()),
             newest: 0,
@@ -61,7 +62,7 @@ impl Motion {
     }
 
     /// The newest accelerations.
-    pub fn newest_mut(&mut self) -> &mut Vec<f64> {
+    pub fn newest_mut(&mut self) -> &mut [f64] {
         &mut self.accelerations[self.newest]
     }
 
@@ -110,8 +111,9 @@ fn sweep<S: Simd>(
     let v = motion.v[..count * WIDTH].as_chunks_mut().0;
     let now = now[..count * WIDTH].as_chunks_mut().0;
     let external = motion.external.as_ref().map(|a| chunks_of(a, count));
+    let inverse_mass = motion.inverse_mass.reader();
     for i in 0..count {
-        let mut a = (load(&left[i]) - load(&right[i])) * load(motion.inverse_mass.at(i));
+        let mut a = (load(&left[i]) - load(&right[i])) * load(inverse_mass.at(i));
         if let Some(external) = external {
             a += load(&external[i]);
         }

@@ -45,6 +45,7 @@ impl Changes {
     ) {
         let left = x[..moving * WIDTH].as_chunks::<WIDTH>().0;
         let right = x[lanes..][..moving * WIDTH].as_chunks::<WIDTH>().0;
+        let offset_m = offset_m.reader();
         for i in 0..moving {
             let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
             let depth = load(offset_m.at(i)) - (load(&right[i]) - load(&left[i]));

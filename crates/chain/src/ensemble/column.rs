@@ -4,6 +4,8 @@
 //! chunk is one body (or contact) of every lane; with one lane it is eight
 //! neighbours. Either way the right neighbour is `lanes` further on.
 
+use super::aligned::Aligned;
+
 /// Numbers in a chunk.
 pub(super) const WIDTH: usize = 8;
 
@@ -14,38 +16,59 @@ pub(super) fn chunks(count: usize, lanes: usize) -> usize {
 
 /// A constant quantity: one chunk for all if all are equal, since what need
 /// not be read leaves the nearest cache to what changes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Column {
-    chunks: Vec<[f64; WIDTH]>,
+    values: Aligned,
     stride: usize,
 }
 
 impl Column {
     /// From values of element `j` of lane `l`; `rest` where there is none.
     pub fn new(count: usize, lanes: usize, rest: f64, value: impl Fn(usize, usize) -> f64) -> Self {
-        let mut chunks = vec![[rest; WIDTH]; chunks(count, lanes)];
+        let mut values = Aligned::of(rest, chunks(count, lanes) * WIDTH);
         for j in 0..count {
             for lane in 0..lanes {
-                let at = j * lanes + lane;
-                chunks[at / WIDTH][at % WIDTH] = value(j, lane);
+                values[j * lanes + lane] = value(j, lane);
             }
         }
-        Self { chunks, stride: 1 }
+        Self { values, stride: 1 }
     }
 
     /// The same, kept as one chunk if all are equal.
     pub fn shared(mut self) -> Self {
-        let same = self.chunks.windows(2).all(|pair| pair[0] == pair[1]);
-        if same && !self.chunks.is_empty() {
-            self.chunks.truncate(1);
+        let chunks = self.chunks();
+        if chunks.windows(2).all(|pair| pair[0] == pair[1]) && !chunks.is_empty() {
             self.stride = 0;
         }
         self
     }
 
+    #[inline(always)]
+    fn chunks(&self) -> &[[f64; WIDTH]] {
+        self.values.as_chunks().0
+    }
+
+    /// A reader of chunks.
+    #[inline(always)]
+    pub fn reader(&self) -> Reader<'_> {
+        Reader {
+            chunks: self.chunks(),
+            stride: self.stride,
+        }
+    }
+}
+
+/// Reads the chunks of a column.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a> {
+    chunks: &'a [[f64; WIDTH]],
+    stride: usize,
+}
+
+impl<'a> Reader<'a> {
     /// Chunk `i`.
     #[inline(always)]
-    pub fn at(&self, i: usize) -> &[f64; WIDTH] {
+    pub fn at(self, i: usize) -> &'a [f64; WIDTH] {
         &self.chunks[i * self.stride]
     }
 }

@@ -111,7 +111,7 @@ const RESERVED: usize = 1 << 16;
 /// alone otherwise. Results are in order; a shot that fails stops no other.
 #[must_use]
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
-    let schedule = Schedule::new();
+    let schedule = Schedule::shared();
     let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; shots.len()];
     let mut ready = Vec::new();
     for (shot, fired) in shots.iter().enumerate() {
@@ -125,7 +125,7 @@ pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, Ensemb
         let block: Vec<usize> = ready.iter().filter(alike).take(LANES).copied().collect();
         ready.retain(|shot| !block.contains(shot));
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
-        let results = fire_block(&side_by_side, settings, &schedule);
+        let results = fire_block(&side_by_side, settings, schedule);
         for (shot, result) in block.into_iter().zip(results) {
             flown[shot] = Some(result);
         }
@@ -210,23 +210,28 @@ fn signals(
     settings: &Settings,
     schedule: &Schedule,
 ) -> Vec<Vec<Signal>> {
-    let mut signals = vec![Vec::with_capacity(settings.sensors.len()); lanes.len()];
-    for (index, &sensor) in settings.sensors.iter().enumerate() {
-        let samples = recorder.by_lane(index);
-        for (at, (signals, (first, samples))) in signals.iter_mut().zip(samples).enumerate() {
+    let of_lane = |(at, lane): (usize, &Lane)| {
+        let sensors = settings.sensors.iter().enumerate();
+        let signal = |(index, &sensor): (usize, &Sensor)| {
             let silent = match sensor {
                 Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
                 _ => systems[at].scales().silent_force_n,
             };
-            let step_s = steps_s[at];
-            let seen = (lanes[at].ended() + 1)
-                .saturating_sub(first)
-                .min(samples.len());
-            let clock = Clock { schedule, step_s };
-            signals.push(signal(sensor, &samples[..seen], first, clock, silent));
-        }
-    }
-    signals
+            let clock = Clock {
+                schedule,
+                step_s: steps_s[at],
+            };
+            signal(
+                sensor,
+                recorder.samples(index, at),
+                lane.ended(),
+                clock,
+                silent,
+            )
+        };
+        sensors.map(signal).collect()
+    };
+    lanes.iter().enumerate().map(of_lane).collect()
 }
 
 /// Steps until a duration is over, at the next look.

@@ -9,6 +9,7 @@
 //!
 //! Its accuracy is a property of the step: see `docs/numerics.md`.
 
+mod aligned;
 mod block;
 mod bodies;
 mod changes;

@@ -1,5 +1,6 @@
 //! From samples to a signal with its maxima.
 
+use super::record::Samples;
 use super::weights::Schedule;
 use crate::observe::{Maximum, Signal, Stretch};
 use crate::sensor::Sensor;
@@ -25,61 +26,89 @@ impl Clock<'_> {
     }
 }
 
-/// The signal of a sensor from its samples, the first of which is that of
-/// step `first`; what is not above `silent` is none.
+/// The signal of a sensor from its samples up to a step; what is not above
+/// `silent` is none.
 pub(super) fn signal(
     sensor: Sensor,
-    values: &[f64],
-    first: usize,
+    samples: Samples<'_>,
+    last_step: usize,
     clock: Clock<'_>,
     silent: f64,
 ) -> Signal {
+    let seen = (last_step + 1).saturating_sub(samples.first());
+    let trace = Trace {
+        samples,
+        count: seen.min(samples.count()),
+        clock,
+    };
     let mut largest = 0.0_f64;
-    let mut maxima = Vec::new();
-    for (i, around) in values.windows(3).enumerate() {
-        let value = around[1];
-        largest = largest.max(value.abs());
-        let highest = value >= around[0] && value > around[2];
-        if highest && value > silent.max(KEPT * largest) && values.len() >= POINTS {
-            maxima.push(maximum(values, i + 1, first, clock));
+    let mut maxima = Vec::with_capacity(8);
+    let (mut before, mut value) = (f64::INFINITY, f64::INFINITY);
+    for i in 0..trace.count {
+        let after = samples.at(i);
+        if value >= before && value > after && value > silent.max(KEPT * largest) {
+            maxima.extend((i > 1).then(|| trace.maximum(i - 1)));
         }
+        largest = largest.max(after.abs());
+        (before, value) = (value, after);
     }
-    let floor = silent.max(KEPT * largest);
-    Signal::assembled(sensor, stretches(values, first, clock, floor), maxima)
+    let stretches = trace.stretches(silent.max(KEPT * largest));
+    Signal::assembled(sensor, stretches, maxima)
 }
 
-/// Quartics through five samples each, where steps are equal and anything is seen.
-fn stretches(values: &[f64], first: usize, clock: Clock<'_>, floor: f64) -> Vec<Stretch> {
-    // At steps that do not depend on the first sample.
-    let full_from = clock.schedule.first_full_step().next_multiple_of(4);
-    let growing = first.next_multiple_of(4).max(full_from) - first;
-    let full = values.get(growing..).unwrap_or_default();
-    let seen = |five: &[f64]| five.iter().any(|value| value.abs() > floor);
-    let fives = full.windows(5).step_by(4).enumerate();
-    fives
-        .filter(|(_, five)| seen(five))
-        .map(|(i, five)| Stretch {
-            start_s: clock.time_s(first + growing + 4 * i),
-            length_s: 4.0 * clock.step_s,
-            values: std::array::from_fn(|k| five[k]),
-        })
-        .collect()
+/// The samples of a lane with their times.
+#[derive(Clone, Copy)]
+struct Trace<'a> {
+    samples: Samples<'a>,
+    count: usize,
+    clock: Clock<'a>,
 }
 
-/// The maximum near the highest of neighbouring samples: of the polynomial of
-/// degree six through seven samples, between the neighbours.
-fn maximum(values: &[f64], at: usize, first: usize, clock: Clock<'_>) -> Maximum {
-    let from = at.saturating_sub(REACH).min(values.len() - POINTS);
-    let middle = clock.schedule.time(first + at);
-    let nodes: [f64; POINTS] =
-        std::array::from_fn(|i| clock.schedule.time(first + from + i) - middle);
-    let polynomial = through(nodes, std::array::from_fn(|i| values[from + i]));
-    let at = at - from;
-    let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
-    let (value, ..) = derivatives(&polynomial, at);
-    Maximum {
-        time_s: clock.step_s * (middle + at),
-        value,
+impl Trace<'_> {
+    /// Quartics through five samples each, where steps are equal and anything
+    /// is seen.
+    fn stretches(self, floor: f64) -> Vec<Stretch> {
+        let first = self.samples.first();
+        let growing = self.clock.schedule.first_full_step().saturating_sub(first);
+        let mut stretches = Vec::with_capacity(self.count / 4);
+        for start in (growing..self.count.saturating_sub(4)).step_by(4) {
+            let values: [f64; 5] = std::array::from_fn(|k| self.samples.at(start + k));
+            if values.iter().any(|value| value.abs() > floor) {
+                stretches.push(Stretch {
+                    start_s: self.clock.time_s(first + start),
+                    length_s: 4.0 * self.clock.step_s,
+                    values,
+                });
+            }
+        }
+        stretches
+    }
+
+    /// The maximum near the highest of neighbouring samples: of the polynomial
+    /// of degree six through seven samples, between the neighbours. Too few
+    /// samples are their own maximum.
+    fn maximum(self, at: usize) -> Maximum {
+        let first = self.samples.first();
+        if self.count < POINTS {
+            return Maximum {
+                time_s: self.clock.time_s(first + at),
+                value: self.samples.at(at),
+            };
+        }
+        let from = at.saturating_sub(REACH).min(self.count - POINTS);
+        let schedule = self.clock.schedule;
+        let middle = schedule.time(first + at);
+        let nodes: [f64; POINTS] =
+            std::array::from_fn(|i| schedule.time(first + from + i) - middle);
+        let values = std::array::from_fn(|i| self.samples.at(from + i));
+        let polynomial = through(nodes, values);
+        let at = at - from;
+        let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
+        let (value, ..) = derivatives(&polynomial, at);
+        Maximum {
+            time_s: self.clock.step_s * (middle + at),
+            value,
+        }
     }
 }
 

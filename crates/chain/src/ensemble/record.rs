@@ -43,19 +43,26 @@ impl Recorder {
     /// Adds what all sensors show now.
     #[inline]
     pub fn add(&mut self, block: &Block<'_>) {
+        match self.lanes {
+            WIDTH => self.add_row::<WIDTH>(block),
+            _ => self.add_row::<1>(block),
+        }
+    }
+
+    #[inline(always)]
+    fn add_row<const LANES: usize>(&mut self, block: &Block<'_>) {
         for (sensor, rows) in self.sensors.iter().zip(&mut self.rows) {
-            let mut row = [0.0; WIDTH];
-            block.signals(*sensor, &mut row[..self.lanes]);
+            let row: [f64; LANES] = block.signals(*sensor);
             if rows.values.is_empty() {
-                if row == [0.0; WIDTH] {
+                if row == [0.0; LANES] {
                     continue;
                 }
                 rows.first = block.steps;
             }
             for (crest, value) in rows.crest.iter_mut().zip(row) {
-                *crest = crest.max(value);
+                *crest = if value > *crest { value } else { *crest };
             }
-            rows.values.extend_from_slice(&row[..self.lanes]);
+            rows.values.extend_from_slice(&row);
         }
     }
 
@@ -74,33 +81,6 @@ impl Recorder {
             rows.crest = [0.0; WIDTH];
         }
     }
-
-    /// Step of a sensor's first sample and its samples, lane by lane.
-    pub fn by_lane(&self, sensor: usize) -> Vec<(usize, Vec<f64>)> {
-        let rows = &self.rows[sensor];
-        let lane = |lane: usize| {
-            own(
-                rows.first,
-                rows.values.iter().skip(lane).step_by(self.lanes),
-            )
-        };
-        (0..self.lanes).map(lane).collect()
-    }
-}
-
-/// A lane's samples from a step that does not depend on when the other lanes
-/// have seen something: a multiple of four, and some zeros before the first
-/// that is not 0. The start of a shot is no sample.
-fn own<'a>(
-    first: usize,
-    values: impl ExactSizeIterator<Item = &'a f64> + Clone,
-) -> (usize, Vec<f64>) {
-    let silent = values.clone().take_while(|value| **value == 0.0).count();
-    let begins = (first + silent).saturating_sub(BEFORE) / 4 * 4;
-    let begins = begins.max(1);
-    let mut samples = vec![0.0; first.saturating_sub(begins)];
-    samples.extend(values.skip(begins.saturating_sub(first)));
-    (begins, samples)
 }
 
 /// Samples of one sensor in one lane.
@@ -122,6 +102,22 @@ impl<'a> Samples<'a> {
         let before_end = self.lanes - self.lane;
         let at = self.rows.values.len().checked_sub(before_end);
         at.map_or(0.0, |at| self.rows.values[at])
+    }
+
+    /// Step of the first sample.
+    pub fn first(self) -> usize {
+        self.rows.first
+    }
+
+    /// Number of samples.
+    pub fn count(self) -> usize {
+        self.rows.values.len() / self.lanes
+    }
+
+    /// Sample `i` from the first.
+    #[inline]
+    pub fn at(self, i: usize) -> f64 {
+        self.rows.values[i * self.lanes + self.lane]
     }
 
     /// The samples of some steps, as far as there are any.

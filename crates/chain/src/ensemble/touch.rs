@@ -1,6 +1,6 @@
 //! Overlaps, their roots and their rates, chunk by chunk.
 
-use super::column::{Column, WIDTH};
+use super::column::{Column, Reader, WIDTH};
 use super::root::roots;
 use crate::system::FLUSH;
 use fearless_simd::{f64x8, prelude::*};
@@ -17,7 +17,7 @@ pub(super) struct Touch {
 
 /// Positions and velocities of the bodies left and right of each contact.
 pub(super) struct Sides<'a> {
-    pub offset_m: &'a Column,
+    offset_m: Reader<'a>,
     x: [&'a [[f64; WIDTH]]; 2],
     v: [&'a [[f64; WIDTH]]; 2],
 }
@@ -35,7 +35,7 @@ impl<'a> Sides<'a> {
             [values[..count * WIDTH].as_chunks().0, right.as_chunks().0]
         };
         Self {
-            offset_m,
+            offset_m: offset_m.reader(),
             x: pair(x),
             v: pair(v),
         }

@@ -7,6 +7,8 @@
 //! velocities (the predictor–corrector pairs of Adams and Störmer–Cowell
 //! [HairerNorsettWanner1993, III.1 and III.10], one evaluation a step).
 
+use std::sync::LazyLock;
+
 /// Accelerations of earlier steps that a step uses.
 pub(super) const EARLIER: usize = 6;
 
@@ -46,6 +48,12 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
+    /// The schedule, made once.
+    pub fn shared() -> &'static Self {
+        static SCHEDULE: LazyLock<Schedule> = LazyLock::new(Schedule::new);
+        &SCHEDULE
+    }
+
     pub fn new() -> Self {
         let lengths = step_lengths();
         let mut times = vec![0.0];
