@@ -97,7 +97,6 @@ fn errors(case: &str, chain: &Chain, step: f64, openings: bool) -> [f64; 2] {
 fn long_steps_give_times_of_flight_within_1_5e_5_of_an_independent_integration() {
     for (case, chain) in cases() {
         let errors = errors(case, &chain, 0.14, false);
-        println!("{case} {errors:?}");
         // The step's own error: 1e-5 over the paper's speeds.
         assert!(
             errors[0] < 1.5e-5 && errors[1] < 1.5e-5,
@@ -110,7 +109,6 @@ fn long_steps_give_times_of_flight_within_1_5e_5_of_an_independent_integration()
 fn short_steps_that_follow_openings_are_within_2e_7_of_an_independent_integration() {
     for (case, chain) in cases() {
         let errors = errors(case, &chain, 0.04, true);
-        println!("{case} {errors:?}");
         // The step's own error, 7e-8 over the paper's speeds; 1e-8 of it the reference's.
         assert!(errors[0] < 2e-7 && errors[1] < 2e-7, "{case}: {errors:?}");
     }
