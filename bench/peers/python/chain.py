@@ -21,7 +21,8 @@ V = CONTACTS + 1  # where velocities start
 STATE = 2 * V
 FAST = dict(error_model="numpy", fastmath={"contract", "nsz"})
 FLUSH = 1e-60  # overlaps below are none: far below anything printed, far above denormal numbers
-PASSED_AFTER = 1.2  # a shot ends this many incident ToFs after the wall's peak
+FALLEN = 0.05  # a shot ends when the bead's signal has fallen below this fraction of the reflected peak,
+SOONEST, LATEST = 0.8, 3.0  # which comes between these many incident ToFs after the wall's
 LONGEST = 400.0  # in units of the shot; one that has not ended by then has gone wrong
 
 
@@ -219,11 +220,14 @@ def note(watch, slot, t, value):
 
 
 @njit
-def over(watch, t):
-    """Whether the reflected pulse has passed the sensor bead."""
+def over(watch, t, bead):
+    """Whether the reflected pulse has passed: it was seen, and the bead, whose signal is given, is quiet again."""
     if math.isnan(watch[WALL]):
         return t > LONGEST
-    return t > watch[WALL] + PASSED_AFTER * (watch[WALL] - watch[INCIDENT])
+    flight = watch[WALL] - watch[INCIDENT]
+    if watch[REFLECTED] > watch[WALL] + SOONEST * flight and bead < FALLEN * watch[REFLECTED + 1]:
+        return True
+    return t > watch[WALL] + LATEST * flight
 
 
 @njit
@@ -247,7 +251,9 @@ def watch_step(watch, t0, y0, t1, y1, parts, w, k, a, b):
                 t, value = resolved_peak(y0, t1 - t0, first, last, parts, w, k, a, b)
                 found(watch, sensor, t0 + t, value)
         watch[BEFORE + sensor] = now
-    return over(watch, t1)
+    if math.isnan(watch[REFLECTED]):
+        return over(watch, t1, 0.0)
+    return over(watch, t1, signal(y1, SENSOR - 1, SENSOR, k, a, b)[0])
 
 
 def tofs(watch, time):

@@ -94,7 +94,7 @@ def sample(overlap, rate, k, a, past, watches, count, interval):
             if f[2] > 0.0 and f[1] < f[2] >= f[3]:
                 t, top = p.quartic(interval, f)
                 p.found(watches[i], sensor, (count - 2) * interval + t, top)
-        done &= p.over(watches[i], count * interval)
+        done &= p.over(watches[i], count * interval, past[i, 0, 4])
     return done
 
 

@@ -42,7 +42,7 @@ def rk4_shot(w, h):
             if f[2] > 0.0 and f[1] < f[2] >= f[3]:
                 t, top = p.quartic(h, f)
                 p.found(watch, sensor, (step - 2) * h + t, top)
-        if p.over(watch, step * h):
+        if p.over(watch, step * h, past[0, 4]):
             return watch
 
 

@@ -1,9 +1,9 @@
 //! hertzchain itself: the one place to change when its fastest way changes.
 
 use crate::case::{BEADS, Case, SENSOR};
-use crate::watch::PASSED_AFTER;
+use crate::watch::{FALLEN, SOONEST};
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
-use hertzchain_chain::observe::Passages;
+use hertzchain_chain::observe::{Maximum, Passages};
 use hertzchain_chain::wave::{DormandPrince, Flow, Limits, Observer, Piece, run};
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Push, Section, Start, System, Tension};
 use std::sync::Arc;
@@ -71,22 +71,31 @@ struct Passed {
 impl Observer for Passed {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         let flow = self.passages.step(piece);
-        let walls = self.passages.wall().maxima();
-        if walls.is_empty() || self.end == End::WholeWindow {
-            return flow;
-        }
-        let wall = walls
-            .iter()
-            .fold(walls[0], |a, b| if b.value > a.value { *b } else { a });
-        let mut before = self.passages.sensor().maxima().iter();
-        let first = before
-            .find(|peak| peak.value > 0.0)
-            .map_or(0.0, |peak| peak.time_s);
-        let until = wall.time_s + PASSED_AFTER * (wall.time_s - first);
-        match piece.time_s(1.0) > until {
+        match self.end == End::WhenPassed && self.has_passed(piece) {
             true => Flow::Finished,
             false => flow,
         }
+    }
+}
+
+impl Passed {
+    fn has_passed(&self, piece: &Piece<'_>) -> bool {
+        let largest = |peaks: &mut dyn Iterator<Item = Maximum>| {
+            peaks.reduce(|a, b| if b.value > a.value { b } else { a })
+        };
+        let at_bead = || self.passages.sensor().maxima().iter().copied();
+        let mut at_wall = self.passages.wall().maxima().iter().copied();
+        let Some(wall) = largest(&mut at_wall) else {
+            return false;
+        };
+        let mut before = at_bead().filter(|peak| peak.time_s < wall.time_s);
+        let mut after = at_bead().filter(|peak| peak.time_s > wall.time_s);
+        let (Some(incident), Some(reflected)) = (largest(&mut before), largest(&mut after)) else {
+            return false;
+        };
+        let soonest_s = wall.time_s + SOONEST * (wall.time_s - incident.time_s);
+        let now = 0.5 * (piece.force(SENSOR - 1, 1.0) + piece.force(SENSOR, 1.0));
+        reflected.time_s > soonest_s && now < FALLEN * reflected.value
     }
 }
 

@@ -3,9 +3,16 @@
 use crate::case::Shot;
 use crate::motion::{Sensor, State, derivative, signal};
 
-/// A shot ends this many incident times of flight after the wall's peak, by
-/// when the reflected pulse has passed the sensor bead.
-pub const PASSED_AFTER: f64 = 1.2;
+/// A shot ends when the sensor bead's signal has fallen below this fraction of
+/// the reflected peak.
+pub const FALLEN: f64 = 0.05;
+
+/// The reflected peak comes no sooner after the wall's than this many
+/// incident times of flight.
+pub const SOONEST: f64 = 0.8;
+
+/// And no later than this many.
+pub const LATEST: f64 = 3.0;
 
 /// A shot that has not ended by then (in its own unit of time) has gone wrong.
 pub const LONGEST: f64 = 400.0;
@@ -113,7 +120,7 @@ impl Watch {
         if let Some(peak) = self.wall.step(shot, times, y_end, &mut at) {
             self.at_wall(peak);
         }
-        self.over(times.1)
+        self.over(shot, times.1, y_end)
     }
 
     fn at_bead(&mut self, peak: Peak) {
@@ -133,11 +140,17 @@ impl Watch {
         }
     }
 
-    fn over(&self, time: f64) -> bool {
-        match (self.incident, self.wall_peak) {
-            (Some(incident), Some(wall)) => time > wall.0 + PASSED_AFTER * (wall.0 - incident.0),
-            _ => time > LONGEST,
-        }
+    /// Whether the reflected pulse has passed: it was seen, and the bead is quiet again.
+    fn over(&self, shot: &Shot, time: f64, y_end: &State) -> bool {
+        let (Some(incident), Some(wall)) = (self.incident, self.wall_peak) else {
+            return time > LONGEST;
+        };
+        let flight = wall.0 - incident.0;
+        let passed = |peak: Peak| {
+            peak.0 > wall.0 + SOONEST * flight
+                && signal(shot, y_end, Sensor::Bead).0 < FALLEN * peak.1
+        };
+        self.reflected.is_some_and(passed) || time > wall.0 + LATEST * flight
     }
 
     /// Incident and reflected time of flight in s; NaN where a pulse is missing.

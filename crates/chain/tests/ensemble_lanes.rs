@@ -56,6 +56,11 @@ fn kinds() -> Vec<(&'static str, fn(f64) -> Chain)> {
             push: Push::Constant { force_n: 2.0 },
             ..row(40, v, dry())
         }),
+        ("preload on unlike beads", |v| Chain {
+            push: Push::Constant { force_n: 3.0 },
+            beads: (0..60).map(|i| shrunk(0.99_f64.powi(i))).collect(),
+            ..row(60, 4.0 * v * v, dry())
+        }),
         ("a spring", |v| Chain {
             push: Push::Spring {
                 force_n: 2.0,
@@ -76,6 +81,15 @@ fn kinds() -> Vec<(&'static str, fn(f64) -> Chain)> {
             ..row(12, v, dry())
         }),
     ]
+}
+
+/// A ball of another radius.
+fn shrunk(factor: f64) -> Bead {
+    Bead {
+        radius_m: factor * BALL.radius_m,
+        mass_kg: factor.powi(3) * BALL.mass_kg,
+        ..BALL
+    }
 }
 
 fn law_by_law() -> Vec<Arc<dyn Law>> {

@@ -66,7 +66,8 @@ impl<'a> Block<'a> {
         };
         let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
         let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
-        let at_rest = scatter(&|c, lane| -systems[lane].static_force_n[c], contacts);
+        let loads = scatter(&|c, lane| systems[lane].static_force_n[c], contacts);
+        let loaded = loads.iter().any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
         let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {
             let offset = systems[lane].offset_m.get(c).copied();
@@ -80,7 +81,7 @@ impl<'a> Block<'a> {
             window: Window::new(systems, (&x, &v), whole_chain),
             motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
             weights: Scaled::new(schedule.row(0), &step_s),
-            at_rest: at_rest.iter().any(|&force| force != 0.0).then_some(at_rest),
+            at_rest: loaded.then_some(vec![0.0; flat]),
             sections: (0..first.sections.len())
                 .map(|i| section(systems, i))
                 .collect(),
@@ -93,9 +94,29 @@ impl<'a> Block<'a> {
             schedule,
             steps: 0,
         };
+        block.rest();
         block.forces();
         block.look_at_changes(false);
         block
+    }
+
+    /// Takes the static forces from the laws as this loop computes them: what
+    /// rests then feels no force to the last bit, however many chunks move.
+    fn rest(&mut self) {
+        if self.at_rest.is_none() {
+            return;
+        }
+        let still = || vec![0.0; self.motion.x.len()];
+        let (no_x, no_v, whole) = (still(), still(), self.window.whole());
+        let x = std::mem::replace(&mut self.motion.x, no_x);
+        let v = std::mem::replace(&mut self.motion.v, no_v);
+        let window = std::mem::replace(&mut self.window, whole);
+        self.forces();
+        let force = &mut self.force_n[self.lanes..];
+        for (at_rest, force) in self.at_rest.iter_mut().flatten().zip(force) {
+            *at_rest = -std::mem::take(force);
+        }
+        (self.motion.x, self.motion.v, self.window) = (x, v, window);
     }
 
     /// One step of all lanes; the forces are then those of the new positions.

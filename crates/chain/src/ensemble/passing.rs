@@ -24,6 +24,11 @@ const FALLEN: f64 = 0.05;
 /// A pulse takes at least this share of its way to the wall to come back.
 const SOONEST: f64 = 0.8;
 
+/// A pulse that loses as much on its way back as on its way to the wall, where
+/// it doubles, returns with wall²/(4 incident). What is below this share of
+/// wall²/incident is a ripple, and the pulse may be yet to come.
+const RETURNED: f64 = 0.1;
+
 /// The reflected pulse comes within this many times the way to the wall.
 const LATEST: f64 = 3.0;
 
@@ -101,7 +106,9 @@ impl Passing {
         }
         let too_late = self.wall.step as f64 + LATEST * self.way();
         let back = self.returned;
+        let returned = RETURNED * self.wall.value * self.wall.value;
         let passed = back.value > silent_n
+            && back.value * self.incident.value > returned
             && self.now < FALLEN * back.value
             && self.seen > back.step + MARGIN;
         self.seen as f64 > too_late + MARGIN as f64 || (end == End::Passed && passed)

@@ -1,0 +1,94 @@
+//! What shots of the ensemble loop cost, and that what rests costs nothing.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+mod common;
+use common::ensemble::*;
+use common::*;
+use hertzchain_chain::ensemble::{End, Flown, Settings};
+use hertzchain_chain::laws::Law;
+use hertzchain_chain::*;
+use std::sync::Arc;
+
+fn dry() -> Vec<Arc<dyn Law>> {
+    vec![hertz(), viscoelastic(), cubic()]
+}
+
+#[test]
+fn the_dry_shot_costs_this_many_force_passes() {
+    let system = System::new(&row(40, 0.5, dry())).unwrap();
+    for set in InstructionSet::available() {
+        for (step, openings, passes) in
+            [(0.16, false, 785), (0.05, false, 2417), (0.05, true, 2417)]
+        {
+            let settings = Settings {
+                set,
+                openings,
+                ..settings(40)
+            };
+            let flown = fire_one(&system, (step, 1e-2), &settings);
+            assert!(flown.finished);
+            // One pass a step, and the first forces.
+            assert_eq!(flown.work.force_passes, passes, "step {step}");
+            assert_eq!(flown.work.steps + 1, passes, "step {step}");
+        }
+    }
+}
+
+/// Chains at different speeds, until a time at which the wave has gone half way.
+fn pair(lanes: usize, chain: impl Fn(f64) -> Chain, openings: bool) -> [Vec<Flown>; 2] {
+    let speed = |lane: usize| 0.3 + 0.1 * lane as f64;
+    let systems: Vec<System> = (0..lanes)
+        .map(|lane| System::new(&chain(speed(lane))).unwrap())
+        .collect();
+    [false, true].map(|whole_chain| {
+        let settings = Settings {
+            whole_chain,
+            openings,
+            end: End::Duration,
+            ..settings(200)
+        };
+        let flown = fire_all(&systems, (0.1, 2e-3), &settings);
+        flown.into_iter().map(Result::unwrap).collect()
+    })
+}
+
+#[test]
+fn without_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
+    for lanes in [1, 8] {
+        for openings in [false, true] {
+            let [part, whole] = pair(lanes, |v| row(200, v, dry()), openings);
+            for (part, whole) in part.iter().zip(&whole) {
+                if let Some(difference) = difference(part, whole) {
+                    panic!("{lanes} lanes: {difference}");
+                }
+                assert!(part.work.bodies_passed * 10 < whole.work.bodies_passed * 7);
+            }
+        }
+    }
+}
+
+/// What rests feels no force to the last bit, so that here, too, the bits are
+/// those of the whole chain.
+#[test]
+fn under_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
+    let push = Push::Constant { force_n: 5.0 };
+    let chain = |speed| Chain {
+        push,
+        ..row(200, speed, dry())
+    };
+    for lanes in [1, 8] {
+        for openings in [false, true] {
+            let [part, whole] = pair(lanes, chain, openings);
+            for (part, whole) in part.iter().zip(&whole) {
+                if let Some(difference) = difference(part, whole) {
+                    panic!("{lanes} lanes: {difference}");
+                }
+                assert!(part.work.bodies_passed * 2 < whole.work.bodies_passed);
+            }
+        }
+    }
+}
