@@ -81,7 +81,7 @@ impl<'a> Block<'a> {
             window: Window::new(systems, (&x, &v), whole_chain),
             motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
             weights: Scaled::new(schedule.row(0), &step_s),
-            at_rest: loaded.then_some(vec![0.0; flat]),
+            at_rest: loaded.then(|| Aligned::of(0.0, flat)),
             sections: (0..first.sections.len())
                 .map(|i| section(systems, i))
                 .collect(),
@@ -106,14 +106,19 @@ impl<'a> Block<'a> {
         if self.at_rest.is_none() {
             return;
         }
-        let still = || vec![0.0; self.motion.x.len()];
+        let still = || Aligned::of(0.0, self.motion.x.len());
         let (no_x, no_v, whole) = (still(), still(), self.window.whole());
         let x = std::mem::replace(&mut self.motion.x, no_x);
         let v = std::mem::replace(&mut self.motion.v, no_v);
         let window = std::mem::replace(&mut self.window, whole);
         self.forces();
         let force = &mut self.force_n[self.lanes..];
-        for (at_rest, force) in self.at_rest.iter_mut().flatten().zip(force) {
+        for (at_rest, force) in self
+            .at_rest
+            .iter_mut()
+            .flat_map(|at_rest| at_rest.iter_mut())
+            .zip(force)
+        {
             *at_rest = -std::mem::take(force);
         }
         (self.motion.x, self.motion.v, self.window) = (x, v, window);

@@ -14,12 +14,10 @@ pub(super) fn chunks(count: usize, lanes: usize) -> usize {
     (count * lanes).div_ceil(WIDTH)
 }
 
-/// A constant quantity: one chunk for all if all are equal, since what need
-/// not be read leaves the nearest cache to what changes.
+/// A constant quantity.
 #[derive(Debug)]
 pub(super) struct Column {
     values: Aligned,
-    stride: usize,
 }
 
 impl Column {
@@ -31,44 +29,18 @@ impl Column {
                 values[j * lanes + lane] = value(j, lane);
             }
         }
-        Self { values, stride: 1 }
+        Self { values }
     }
 
-    /// The same, kept as one chunk if all are equal.
-    pub fn shared(mut self) -> Self {
-        let chunks = self.chunks();
-        if chunks.windows(2).all(|pair| pair[0] == pair[1]) && !chunks.is_empty() {
-            self.stride = 0;
-        }
-        self
-    }
-
+    /// All numbers.
     #[inline(always)]
-    fn chunks(&self) -> &[[f64; WIDTH]] {
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// All chunks.
+    #[inline(always)]
+    pub fn chunks(&self) -> &[[f64; WIDTH]] {
         self.values.as_chunks().0
-    }
-
-    /// A reader of chunks.
-    #[inline(always)]
-    pub fn reader(&self) -> Reader<'_> {
-        Reader {
-            chunks: self.chunks(),
-            stride: self.stride,
-        }
-    }
-}
-
-/// Reads the chunks of a column.
-#[derive(Clone, Copy)]
-pub(super) struct Reader<'a> {
-    chunks: &'a [[f64; WIDTH]],
-    stride: usize,
-}
-
-impl<'a> Reader<'a> {
-    /// Chunk `i`.
-    #[inline(always)]
-    pub fn at(self, i: usize) -> &'a [f64; WIDTH] {
-        &self.chunks[i * self.stride]
     }
 }

@@ -100,7 +100,7 @@ impl<T: Sum> Fused<T> {
         let force = force[..chunks.end * WIDTH].as_chunks_mut::<WIDTH>().0;
         // Places beyond the sum's own coefficients are never read.
         let last = T::COEFFICIENTS - 1;
-        let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].reader());
+        let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].chunks());
         for i in chunks {
             let Touch {
                 overlap,
@@ -110,7 +110,7 @@ impl<T: Sum> Fused<T> {
             } = sides.touch(simd, i);
             // Copies, so that the compiler sees that nothing overlaps.
             let k: [[f64; WIDTH]; MOST] = std::array::from_fn(|j| match j < T::COEFFICIENTS {
-                true => *columns[j].at(i - self.first),
+                true => columns[j][i - self.first],
                 false => [0.0; WIDTH],
             });
             let sum: [f64; WIDTH] = std::array::from_fn(|lane| {
@@ -122,12 +122,14 @@ impl<T: Sum> Fused<T> {
                 };
                 T::force(&k, lane, contact)
             });
-            let mut sum: f64x8<S> = sum.simd_into(simd);
-            if !place.fresh {
-                let before: f64x8<S> = force[i].simd_into(simd);
-                sum += before;
-            }
-            force[i] = sum.into();
+            let sum: f64x8<S> = sum.simd_into(simd);
+            // Added even to nothing: with the addition left out the compiler
+            // scrambles the lanes of the sum.
+            let before: f64x8<S> = match place.fresh {
+                true => f64x8::splat(simd, 0.0),
+                false => force[i].simd_into(simd),
+            };
+            force[i] = (before + sum).into();
         }
     }
 }

@@ -68,15 +68,15 @@ impl Passing {
     pub fn look(&mut self, sensor: Samples<'_>, wall: Samples<'_>, step: usize) {
         let unseen = self.seen + 1..step + 1;
         if wall.crest() > self.wall.value {
-            for (at, value) in wall.of(unseen.clone()) {
-                self.wall.look(value, at);
+            for at in unseen.clone() {
+                self.wall.look(wall.at(at), at);
             }
             self.returned = Peak::default();
         }
         if sensor.crest() > self.incident.value.min(self.returned.value) {
             self.look_at_sensor(sensor, unseen);
         }
-        self.now = sensor.latest();
+        self.now = sensor.at(step);
         self.seen = step;
     }
 
@@ -84,7 +84,8 @@ impl Passing {
     /// in, long after it that of the pulse coming back.
     fn look_at_sensor(&mut self, sensor: Samples<'_>, unseen: Range<usize>) {
         let back = self.wall.step as f64 + SOONEST * self.way();
-        for (at, value) in sensor.of(unseen) {
+        for at in unseen {
+            let value = sensor.at(at);
             if at < self.wall.step || self.wall.value == 0.0 {
                 self.incident.look(value, at);
             }

@@ -3,15 +3,11 @@
 use super::block::Block;
 use super::column::WIDTH;
 use crate::sensor::Sensor;
-use std::ops::Range;
 
-/// Zeros before the first sample, for maxima near it.
-const BEFORE: usize = 4;
-
-/// Rows of one sensor, from the first that is not 0 in every lane.
+/// What one sensor showed, from step 1 on: groups of eight steps, lane by
+/// lane, so that a lane's samples lie together.
 #[derive(Clone, Debug)]
 struct Rows {
-    first: usize,
     values: Vec<f64>,
     /// Largest of each lane since the last look.
     crest: [f64; WIDTH],
@@ -23,20 +19,44 @@ pub(super) struct Recorder {
     lanes: usize,
     sensors: Vec<Sensor>,
     rows: Vec<Rows>,
+    /// Steps recorded.
+    steps: usize,
+}
+
+/// Steps of a group.
+const GROUP: usize = 8;
+
+/// Where a lane's sample of a step is.
+#[inline(always)]
+fn place(step: usize, lane: usize, lanes: usize) -> usize {
+    let at = step - 1;
+    (at / GROUP * lanes + lane) * GROUP + at % GROUP
+}
+
+impl Rows {
+    #[inline(always)]
+    fn put<const LANES: usize>(&mut self, step: usize, row: &[f64; LANES]) {
+        if (step - 1).is_multiple_of(GROUP) {
+            self.values.resize(self.values.len() + GROUP * LANES, 0.0);
+        }
+        for (lane, value) in row.iter().enumerate() {
+            self.values[place(step, lane, LANES)] = *value;
+        }
+    }
 }
 
 impl Recorder {
     /// With room for `steps` samples, so that the loop allocates nothing.
     pub fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
         let rows = |_: &Sensor| Rows {
-            first: 0,
-            values: Vec::with_capacity((steps + 1) * lanes),
+            values: Vec::with_capacity((steps + 1).next_multiple_of(GROUP) * lanes),
             crest: [0.0; WIDTH],
         };
         Self {
             lanes,
             rows: sensors.iter().map(rows).collect(),
             sensors: sensors.to_vec(),
+            steps: 0,
         }
     }
 
@@ -51,18 +71,13 @@ impl Recorder {
 
     #[inline(always)]
     fn add_row<const LANES: usize>(&mut self, block: &Block<'_>) {
+        self.steps += 1;
         for (sensor, rows) in self.sensors.iter().zip(&mut self.rows) {
             let row: [f64; LANES] = block.signals(*sensor);
-            if rows.values.is_empty() {
-                if row == [0.0; LANES] {
-                    continue;
-                }
-                rows.first = block.steps;
-            }
             for (crest, value) in rows.crest.iter_mut().zip(row) {
                 *crest = if value > *crest { value } else { *crest };
             }
-            rows.values.extend_from_slice(&row);
+            rows.put::<LANES>(self.steps, &row);
         }
     }
 
@@ -70,6 +85,7 @@ impl Recorder {
     pub fn samples(&self, sensor: usize, lane: usize) -> Samples<'_> {
         Samples {
             rows: &self.rows[sensor],
+            steps: self.steps,
             lanes: self.lanes,
             lane,
         }
@@ -83,51 +99,29 @@ impl Recorder {
     }
 }
 
-/// Samples of one sensor in one lane.
+/// Samples of one sensor in one lane, from step 1 on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<'a> {
     rows: &'a Rows,
+    steps: usize,
     lanes: usize,
     lane: usize,
 }
 
-impl<'a> Samples<'a> {
+impl Samples<'_> {
     /// The largest since the last look.
     pub fn crest(self) -> f64 {
         self.rows.crest[self.lane]
     }
 
-    /// The latest, 0 before the first.
-    pub fn latest(self) -> f64 {
-        let before_end = self.lanes - self.lane;
-        let at = self.rows.values.len().checked_sub(before_end);
-        at.map_or(0.0, |at| self.rows.values[at])
+    /// The latest step; 0 before the first sample.
+    pub fn latest(self) -> usize {
+        self.steps
     }
 
-    /// Step of the first sample.
-    pub fn first(self) -> usize {
-        self.rows.first
-    }
-
-    /// Number of samples.
-    pub fn count(self) -> usize {
-        self.rows.values.len() / self.lanes
-    }
-
-    /// Sample `i` from the first.
+    /// The sample of a step from 1 to the latest.
     #[inline]
-    pub fn at(self, i: usize) -> f64 {
-        self.rows.values[i * self.lanes + self.lane]
-    }
-
-    /// The samples of some steps, as far as there are any.
-    pub fn of(self, steps: Range<usize>) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let first = self.rows.first;
-        let from = steps.start.max(first);
-        let row = (from - first) * self.lanes + self.lane;
-        let values = self.rows.values.get(row..).unwrap_or_default();
-        let count = steps.end.saturating_sub(from);
-        let values = values.iter().step_by(self.lanes).take(count);
-        values.enumerate().map(move |(i, &value)| (from + i, value))
+    pub fn at(self, step: usize) -> f64 {
+        self.rows.values[place(step, self.lane, self.lanes)]
     }
 }

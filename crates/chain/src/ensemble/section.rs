@@ -67,7 +67,7 @@ fn coefficients(sections: &[&SectionColumns]) -> Vec<Column> {
     let terms = sections[0].gated.iter().enumerate();
     terms
         .flat_map(|(term, columns)| (0..columns.columns.width()).map(move |j| (term, j)))
-        .map(|(term, j)| column(term, j).shared())
+        .map(|(term, j)| column(term, j))
         .collect()
 }
 
