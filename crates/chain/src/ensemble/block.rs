@@ -7,7 +7,7 @@ use super::column::{Column, WIDTH, chunks};
 use super::edge::{Edge, Leading};
 use super::section::{Place, Sweep, section};
 use super::weights::{Schedule, USED};
-use super::window::Window;
+use super::window::{Places, Window};
 use crate::instruction_set::InstructionSet;
 use crate::laws::Closed;
 use crate::sensor::Sensor;
@@ -18,6 +18,18 @@ const SLIGHT: f64 = 1e-10;
 
 /// Most edges that disturb steps at a time without memory being asked for.
 const RESERVED: usize = 1024;
+
+/// Where the bodies of a block are; of fields, so that others can change.
+macro_rules! places {
+    ($block:expr) => {
+        Places {
+            offset_m: $block.offset_m.chunks(),
+            x: &$block.motion.x,
+            v: &$block.motion.v,
+            lanes: $block.lanes,
+        }
+    };
+}
 
 /// State of a block of shots.
 pub(super) struct Block<'a> {
@@ -130,32 +142,37 @@ impl<'a> Block<'a> {
         if self.steps <= self.schedule.last_row() {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
         }
-        let moving = (self.window.chunks, self.lanes);
-        self.motion
-            .step(self.set, moving, &self.force_n, &self.weights);
+        self.motion.step(
+            self.set,
+            &self.window,
+            self.lanes,
+            &self.force_n,
+            &self.weights,
+        );
         self.close_ring();
-        self.window.follow(&self.motion.v);
+        self.window.follow(places!(self));
         self.forces();
         self.look_at_changes(true);
         self.steps += 1;
     }
 
-    /// Forces of all contacts that move.
+    /// Forces of all contacts that are awake.
     fn forces(&mut self) {
         let lanes = self.lanes;
-        let moving = self.window.chunks;
-        let force = &mut self.force_n[lanes..][..moving * WIDTH];
+        let awake = self.window.contacts.clone();
+        let force = &mut self.force_n[lanes..][..awake.end * WIDTH];
+        let flat = awake.start * WIDTH..awake.end * WIDTH;
         // With eight lanes and no load each chunk belongs to one section.
         let fresh = lanes == WIDTH && self.at_rest.is_none();
         match &self.at_rest {
-            Some(at_rest) => force.copy_from_slice(&at_rest[..moving * WIDTH]),
-            None if !fresh => force.fill(0.0),
+            Some(at_rest) => force[flat.clone()].copy_from_slice(&at_rest[flat]),
+            None if !fresh => force[flat].fill(0.0),
             None => {}
         }
         let place = Place {
             offset_m: &self.offset_m,
             lanes,
-            moving,
+            awake,
             fresh,
             x: &self.motion.x,
             v: &self.motion.v,
@@ -169,13 +186,24 @@ impl<'a> Block<'a> {
         }
     }
 
+    /// Lets sleep what stays as it is for a number of steps.
+    pub fn look(&mut self, steps: usize) {
+        let ahead_s = self.step_s.map(|h| (steps + 1) as f64 * h);
+        self.window.look(places!(self), &ahead_s);
+    }
+
     /// Finds openings and closings within the last step.
     fn look_at_changes(&mut self, follow: bool) {
         let Some(mut changes) = self.changes.take() else {
             return;
         };
-        let moving = (self.window.chunks, self.lanes);
-        let changed = changes.look(self.set, moving, &self.offset_m, &self.motion.x);
+        let awake = self.window.contacts.clone();
+        let changed = changes.look(
+            self.set,
+            (awake, self.lanes),
+            &self.offset_m,
+            &self.motion.x,
+        );
         if follow && self.steps > self.schedule.last_row() {
             let mut edges = std::mem::take(&mut self.edges);
             edges.extend(
@@ -281,8 +309,11 @@ impl<'a> Block<'a> {
         // In a ring the contact before bead 1 is the last, whose force is also
         // kept in the place of contact 0.
         let bead = |n: usize| {
-            let (left, right) = (force(n - 1), force(n));
-            std::array::from_fn(|lane| 0.5 * (left[lane] + right[lane]))
+            let mut mean: [f64; LANES] = force(n - 1);
+            for (left, right) in mean.iter_mut().zip(force(n)) {
+                *left = 0.5 * (*left + right);
+            }
+            mean
         };
         match sensor {
             Sensor::Bead(n) => bead(n),
@@ -290,9 +321,12 @@ impl<'a> Block<'a> {
             Sensor::Position(i) => row(&self.motion.x, i),
             Sensor::Velocity(i) => row(&self.motion.v, i),
             Sensor::BeadPlusWall(n) => {
-                let (bead, wall): ([f64; LANES], _) =
-                    (bead(n), force(self.systems[0].contacts() - 1));
-                std::array::from_fn(|lane| bead[lane] + wall[lane])
+                let mut both = bead(n);
+                let wall: [f64; LANES] = force(self.systems[0].contacts() - 1);
+                for (both, wall) in both.iter_mut().zip(wall) {
+                    *both += wall;
+                }
+                both
             }
         }
     }

@@ -4,8 +4,10 @@
 use super::aligned::Aligned;
 use super::column::{Column, WIDTH};
 use super::weights::{EARLIER, USED, Weights};
+use super::window::Window;
 use crate::instruction_set::InstructionSet;
 use fearless_simd::{dispatch, f64x8, prelude::*};
+use std::ops::Range;
 
 /// Motion of all bodies of all lanes.
 #[derive(Debug)]
@@ -66,12 +68,13 @@ impl Motion {
         &mut self.accelerations[self.newest]
     }
 
-    /// One step of the first `chunks` chunks: `force` holds the dynamic force
+    /// One step of what the wave has reached: `force` holds the dynamic force
     /// on each body from the left, and `lanes` further on from the right.
     pub fn step(
         &mut self,
         set: InstructionSet,
-        (chunks, lanes): (usize, usize),
+        window: &Window,
+        lanes: usize,
         force: &[f64],
         scaled: &Scaled,
     ) {
@@ -79,7 +82,12 @@ impl Motion {
         let mut now = std::mem::take(&mut self.accelerations[self.newest]);
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
-            || sweep(simd, self, &mut now, (chunks, lanes), force, scaled)
+            || {
+                let (awake, all) = (window.bodies.clone(), window.chunks);
+                fly(simd, self, 0..awake.start, scaled);
+                sweep(simd, self, &mut now, (awake.clone(), lanes), force, scaled);
+                fly(simd, self, awake.end..all, scaled);
+            }
         ));
         self.accelerations[self.newest] = now;
     }
@@ -90,15 +98,29 @@ fn chunks_of(values: &[f64], count: usize) -> &[[f64; WIDTH]] {
     values[..count * WIDTH].as_chunks().0
 }
 
+/// Bodies that no force has moved of late: what [`sweep`] does to them, but for
+/// adding zeros.
+#[inline(always)]
+fn fly<S: Simd>(simd: S, motion: &mut Motion, asleep: Range<usize>, scaled: &Scaled) {
+    let drift: f64x8<S> = scaled.drift.simd_into(simd);
+    let v = chunks_of(&motion.v, asleep.end);
+    let x = motion.x[..asleep.end * WIDTH].as_chunks_mut::<WIDTH>().0;
+    for i in asleep {
+        let (x0, v0): (f64x8<S>, f64x8<S>) = (x[i].simd_into(simd), v[i].simd_into(simd));
+        x[i] = drift.mul_add(v0, x0).into();
+    }
+}
+
 #[inline(always)]
 fn sweep<S: Simd>(
     simd: S,
     motion: &mut Motion,
     now: &mut [f64],
-    (count, lanes): (usize, usize),
+    (awake, lanes): (Range<usize>, usize),
     force: &[f64],
     scaled: &Scaled,
 ) {
+    let count = awake.end;
     let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
     let drift = load(&scaled.drift);
     let velocity: [f64x8<S>; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
@@ -112,7 +134,7 @@ fn sweep<S: Simd>(
     let now = now[..count * WIDTH].as_chunks_mut().0;
     let external = motion.external.as_ref().map(|a| chunks_of(a, count));
     let inverse_mass = motion.inverse_mass.chunks();
-    for i in 0..count {
+    for i in awake {
         let mut a = (load(&left[i]) - load(&right[i])) * load(&inverse_mass[i]);
         if let Some(external) = external {
             a += load(&external[i]);

@@ -3,6 +3,7 @@
 use super::column::{Column, WIDTH};
 use crate::instruction_set::InstructionSet;
 use fearless_simd::{dispatch, f64x8, prelude::*};
+use std::ops::Range;
 
 /// Which contacts are open, and those that have changed.
 #[derive(Clone, Debug)]
@@ -23,14 +24,14 @@ impl Changes {
     pub fn look(
         &mut self,
         set: InstructionSet,
-        (moving, lanes): (usize, usize),
+        (awake, lanes): (Range<usize>, usize),
         offset_m: &Column,
         x: &[f64],
     ) -> &[usize] {
         self.changed.clear();
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
-            || self.compare(simd, (moving, lanes), offset_m, x)
+            || self.compare(simd, (awake, lanes), offset_m, x)
         ));
         &self.changed
     }
@@ -39,14 +40,14 @@ impl Changes {
     fn compare<S: Simd>(
         &mut self,
         simd: S,
-        (moving, lanes): (usize, usize),
+        (awake, lanes): (Range<usize>, usize),
         offset_m: &Column,
         x: &[f64],
     ) {
-        let left = x[..moving * WIDTH].as_chunks::<WIDTH>().0;
-        let right = x[lanes..][..moving * WIDTH].as_chunks::<WIDTH>().0;
+        let left = x[..awake.end * WIDTH].as_chunks::<WIDTH>().0;
+        let right = x[lanes..][..awake.end * WIDTH].as_chunks::<WIDTH>().0;
         let offset_m = offset_m.chunks();
-        for i in 0..moving {
+        for i in awake {
             let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
             let depth = load(&offset_m[i]) - (load(&right[i]) - load(&left[i]));
             let depth: [f64; WIDTH] = depth.into();

@@ -266,6 +266,7 @@ fn fly(
             }
         }
         recorder.looked();
+        block.look(LOOK_EVERY);
     }
 }
 

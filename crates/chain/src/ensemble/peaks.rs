@@ -42,14 +42,19 @@ pub(super) fn signal(
     };
     let mut largest = 0.0_f64;
     let mut maxima = Vec::with_capacity(8);
-    let (mut before, mut value) = (f64::INFINITY, f64::INFINITY);
-    for step in 1..=trace.last {
-        let after = samples.at(step);
-        if value >= before && value > after && value > silent.max(KEPT * largest) {
-            maxima.extend((step > 2).then(|| trace.maximum(step - 1)));
+    let (mut before, mut value, mut step) = (f64::INFINITY, f64::INFINITY, 0);
+    for group in samples.groups() {
+        for &after in group.iter().take(trace.last - step) {
+            step += 1;
+            if value >= before && value > after && value > silent.max(KEPT * largest) && step > 2 {
+                maxima.push(trace.maximum(step - 1));
+            }
+            // No `max`: its care for NaN would make each sample wait for the last.
+            if after.abs() > largest {
+                largest = after.abs();
+            }
+            (before, value) = (value, after);
         }
-        largest = largest.max(after.abs());
-        (before, value) = (value, after);
     }
     let stretches = trace.stretches(silent.max(KEPT * largest));
     Signal::assembled(sensor, stretches, maxima)
@@ -70,8 +75,13 @@ impl Trace<'_> {
         let first = self.clock.schedule.first_full_step();
         let mut stretches = Vec::with_capacity(self.last / 4);
         for start in (first..self.last.saturating_sub(3)).step_by(4) {
-            let values: [f64; 5] = std::array::from_fn(|k| self.samples.at(start + k));
-            if values.iter().any(|value| value.abs() > floor) {
+            let mut values = [0.0; 5];
+            let mut seen = false;
+            for (k, value) in values.iter_mut().enumerate() {
+                *value = self.samples.at(start + k);
+                seen |= value.abs() > floor;
+            }
+            if seen {
                 stretches.push(Stretch {
                     start_s: self.clock.time_s(start),
                     length_s: 4.0 * self.clock.step_s,

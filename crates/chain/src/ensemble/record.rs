@@ -108,7 +108,7 @@ pub(super) struct Samples<'a> {
     lane: usize,
 }
 
-impl Samples<'_> {
+impl<'a> Samples<'a> {
     /// The largest since the last look.
     pub fn crest(self) -> f64 {
         self.rows.crest[self.lane]
@@ -117,6 +117,14 @@ impl Samples<'_> {
     /// The latest step; 0 before the first sample.
     pub fn latest(self) -> usize {
         self.steps
+    }
+
+    /// All samples in groups of consecutive steps from step 1 on; the last
+    /// group is filled up with zeros.
+    pub fn groups(self) -> impl Iterator<Item = &'a [f64]> {
+        let groups = self.rows.values.chunks_exact(GROUP * self.lanes);
+        let first = self.lane * GROUP;
+        groups.map(move |group| &group[first..first + GROUP])
     }
 
     /// The sample of a step from 1 to the latest.

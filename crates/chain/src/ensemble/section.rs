@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub(super) struct Place<'a> {
     pub offset_m: &'a Column,
     pub lanes: usize,
-    /// Chunks that move.
-    pub moving: usize,
+    /// Chunks whose forces are to be computed.
+    pub awake: Range<usize>,
     /// Forces are to be set, not added to.
     pub fresh: bool,
     pub x: &'a [f64],
@@ -24,10 +24,11 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// The moving chunks among some contacts.
+    /// The chunks that are awake among some contacts.
     pub fn chunks(&self, contacts: &Range<usize>) -> Range<usize> {
-        let end = chunks(contacts.end, self.lanes).min(self.moving);
-        (contacts.start * self.lanes / WIDTH).min(end)..end
+        let end = chunks(contacts.end, self.lanes).min(self.awake.end);
+        let start = (contacts.start * self.lanes / WIDTH).max(self.awake.start);
+        start.min(end)..end
     }
 }
 
@@ -153,7 +154,7 @@ impl Sweep for Unfused {
             || self.touch(simd, place, part.clone())
         ));
         // The section's own contacts among those of its chunks.
-        let flat = self.contacts.start * place.lanes
+        let flat = (self.contacts.start * place.lanes).max(part.start * WIDTH)
             ..(part.end * WIDTH).min(self.contacts.end * place.lanes);
         let here = flat.start - self.first * WIDTH..flat.end - self.first * WIDTH;
         let sum = &mut self.sum[here.clone()];
