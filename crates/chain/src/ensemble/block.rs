@@ -23,7 +23,7 @@ const RESERVED: usize = 1024;
 macro_rules! places {
     ($block:expr) => {
         Places {
-            offset_m: $block.offset_m.chunks(),
+            offset_m: $block.offset_m.reader(),
             x: &$block.motion.x,
             v: &$block.motion.v,
             lanes: $block.lanes,

@@ -133,9 +133,9 @@ fn sweep<S: Simd>(
     let v = motion.v[..count * WIDTH].as_chunks_mut().0;
     let now = now[..count * WIDTH].as_chunks_mut().0;
     let external = motion.external.as_ref().map(|a| chunks_of(a, count));
-    let inverse_mass = motion.inverse_mass.chunks();
+    let inverse_mass = motion.inverse_mass.reader();
     for i in awake {
-        let mut a = (load(&left[i]) - load(&right[i])) * load(&inverse_mass[i]);
+        let mut a = (load(&left[i]) - load(&right[i])) * load(inverse_mass.at(i));
         if let Some(external) = external {
             a += load(&external[i]);
         }

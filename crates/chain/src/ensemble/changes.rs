@@ -46,10 +46,10 @@ impl Changes {
     ) {
         let left = x[..awake.end * WIDTH].as_chunks::<WIDTH>().0;
         let right = x[lanes..][..awake.end * WIDTH].as_chunks::<WIDTH>().0;
-        let offset_m = offset_m.chunks();
+        let offset_m = offset_m.reader();
         for i in awake {
             let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
-            let depth = load(&offset_m[i]) - (load(&right[i]) - load(&left[i]));
+            let depth = load(offset_m.at(i)) - (load(&right[i]) - load(&left[i]));
             let depth: [f64; WIDTH] = depth.into();
             let open = depth.map(|depth| depth < 0.0);
             if open != self.open[i] {

@@ -14,14 +14,16 @@ pub(super) fn chunks(count: usize, lanes: usize) -> usize {
     (count * lanes).div_ceil(WIDTH)
 }
 
-/// A constant quantity.
+/// A constant quantity: one chunk for all if all are equal, so that the nearest
+/// cache holds what changes.
 #[derive(Debug)]
 pub(super) struct Column {
     values: Aligned,
+    stride: usize,
 }
 
 impl Column {
-    /// From values of element `j` of lane `l`; `rest` where there is none.
+    /// From values of element `j` of lane `l`; `rest` fills the last chunk up.
     pub fn new(count: usize, lanes: usize, rest: f64, value: impl Fn(usize, usize) -> f64) -> Self {
         let mut values = Aligned::of(rest, chunks(count, lanes) * WIDTH);
         for j in 0..count {
@@ -29,18 +31,35 @@ impl Column {
                 values[j * lanes + lane] = value(j, lane);
             }
         }
-        Self { values }
+        let all = values.as_chunks::<WIDTH>().0;
+        let equal = all.windows(2).all(|pair| pair[0] == pair[1]);
+        Self {
+            stride: usize::from(!equal),
+            values,
+        }
     }
 
-    /// All numbers.
+    /// A reader of chunks.
     #[inline(always)]
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    pub fn reader(&self) -> Reader<'_> {
+        Reader {
+            chunks: self.values.as_chunks().0,
+            stride: self.stride,
+        }
     }
+}
 
-    /// All chunks.
+/// Reads the chunks of a column.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a> {
+    chunks: &'a [[f64; WIDTH]],
+    stride: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// Chunk `i`.
     #[inline(always)]
-    pub fn chunks(&self) -> &[[f64; WIDTH]] {
-        self.values.as_chunks().0
+    pub fn at(self, i: usize) -> &'a [f64; WIDTH] {
+        &self.chunks[i * self.stride]
     }
 }

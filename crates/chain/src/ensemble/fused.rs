@@ -100,7 +100,7 @@ impl<T: Sum> Fused<T> {
         let force = force[..chunks.end * WIDTH].as_chunks_mut::<WIDTH>().0;
         // Places beyond the sum's own coefficients are never read.
         let last = T::COEFFICIENTS - 1;
-        let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].chunks());
+        let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].reader());
         for i in chunks {
             let Touch {
                 overlap,
@@ -110,7 +110,7 @@ impl<T: Sum> Fused<T> {
             } = sides.touch(simd, i);
             // Copies, so that the compiler sees that nothing overlaps.
             let k: [[f64; WIDTH]; MOST] = std::array::from_fn(|j| match j < T::COEFFICIENTS {
-                true => columns[j][i - self.first],
+                true => *columns[j].at(i - self.first),
                 false => [0.0; WIDTH],
             });
             let sum: [f64; WIDTH] = std::array::from_fn(|lane| {

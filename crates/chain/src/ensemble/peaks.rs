@@ -44,17 +44,22 @@ pub(super) fn signal(
     let mut maxima = Vec::with_capacity(8);
     let (mut before, mut value, mut step) = (f64::INFINITY, f64::INFINITY, 0);
     for group in samples.groups() {
-        for &after in group.iter().take(trace.last - step) {
+        let group = &group[..group.len().min(trace.last - step)];
+        let least = silent.max(KEPT * largest);
+        for &after in group {
             step += 1;
-            if value >= before && value > after && value > silent.max(KEPT * largest) && step > 2 {
+            if value >= before && value > after && value > least && step > 2 {
                 maxima.push(trace.maximum(step - 1));
-            }
-            // No `max`: its care for NaN would make each sample wait for the last.
-            if after.abs() > largest {
-                largest = after.abs();
             }
             (before, value) = (value, after);
         }
+        // No `max`: its care for NaN would make each sample wait for the last.
+        largest = group
+            .iter()
+            .fold(largest, |most, value| match value.abs() > most {
+                true => value.abs(),
+                false => most,
+            });
     }
     let stretches = trace.stretches(silent.max(KEPT * largest));
     Signal::assembled(sensor, stretches, maxima)

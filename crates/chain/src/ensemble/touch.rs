@@ -1,6 +1,6 @@
 //! Overlaps, their roots and their rates, chunk by chunk.
 
-use super::column::{Column, WIDTH};
+use super::column::{Column, Reader, WIDTH};
 use super::root::roots;
 use crate::system::FLUSH;
 use fearless_simd::{f64x8, prelude::*};
@@ -17,7 +17,7 @@ pub(super) struct Touch {
 
 /// Positions and velocities of the bodies left and right of each contact.
 pub(super) struct Sides<'a> {
-    offset_m: &'a [[f64; WIDTH]],
+    offset_m: Reader<'a>,
     x: [&'a [[f64; WIDTH]]; 2],
     v: [&'a [[f64; WIDTH]]; 2],
 }
@@ -35,7 +35,7 @@ impl<'a> Sides<'a> {
             [values[..count * WIDTH].as_chunks().0, right.as_chunks().0]
         };
         Self {
-            offset_m: offset_m.chunks(),
+            offset_m: offset_m.reader(),
             x: pair(x),
             v: pair(v),
         }
@@ -46,7 +46,7 @@ impl<'a> Sides<'a> {
     pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch {
         let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
         let zero = f64x8::splat(simd, 0.0);
-        let depth = load(&self.offset_m[i]) - (load(&self.x[1][i]) - load(&self.x[0][i]));
+        let depth = load(self.offset_m.at(i)) - (load(&self.x[1][i]) - load(&self.x[0][i]));
         let rate = load(&self.v[0][i]) - load(&self.v[1][i]);
         let deep = depth.simd_gt(f64x8::splat(simd, FLUSH));
         let overlap = deep.select(depth, zero);

@@ -4,14 +4,14 @@
 //! stay open until the next look give no force, and bodies between such
 //! contacts fly on. Leaving out what they would add changes no bit.
 
-use super::column::{WIDTH, chunks};
+use super::column::{Reader, WIDTH, chunks};
 use crate::system::System;
 use std::ops::Range;
 
 /// Positions, velocities and how contacts hang on them.
 #[derive(Clone, Copy)]
 pub(super) struct Places<'a> {
-    pub offset_m: &'a [[f64; WIDTH]],
+    pub offset_m: Reader<'a>,
     pub x: &'a [f64],
     pub v: &'a [f64],
     pub lanes: usize,
@@ -29,9 +29,10 @@ impl Places<'_> {
         let (left, right) = (chunk * WIDTH, chunk * WIDTH + self.lanes);
         let (x, beyond) = (side(self.x, left), side(self.x, right));
         let (v, ahead) = (side(self.v, left), side(self.v, right));
+        let offset_m = self.offset_m.at(chunk);
         let mut open = true;
         for i in 0..WIDTH {
-            let now = self.offset_m[chunk][i] - (beyond[i] - x[i]);
+            let now = offset_m[i] - (beyond[i] - x[i]);
             let then = now + (v[i] - ahead[i]) * ahead_s[i];
             open &= now < 0.0 && then < 0.0;
         }
@@ -50,6 +51,8 @@ pub(super) struct Window {
     /// method; those outside fly on.
     pub bodies: Range<usize>,
     all: usize,
+    /// Chunks that hold contacts.
+    with_contacts: usize,
     /// Nothing but contacts moves bodies.
     may_sleep: bool,
 }
@@ -58,6 +61,7 @@ impl Window {
     pub fn new(systems: &[&System], (x, v): (&[f64], &[f64]), whole_chain: bool) -> Self {
         let lanes = systems.len();
         let all = chunks(systems[0].bodies(), lanes);
+        let with_contacts = chunks(systems[0].contacts(), lanes);
         let moves = |at: &usize| x[*at] != 0.0 || v[*at] != 0.0;
         let last = (0..all * WIDTH).rev().find(moves).unwrap_or(0);
         let pulled = systems.iter().any(|s| s.slope_m_s2 != 0.0 || s.periodic);
@@ -67,7 +71,8 @@ impl Window {
         };
         Self {
             chunks: reached,
-            contacts: 0..reached,
+            contacts: 0..reached.min(with_contacts),
+            with_contacts,
             bodies: 0..reached,
             all,
             may_sleep: !whole_chain && systems.iter().all(|system| system.flies_free()),
@@ -87,17 +92,24 @@ impl Window {
         while self.contacts.start > 0 && !places.stays_open(self.contacts.start - 1, &now) {
             self.contacts.start -= 1;
         }
-        while self.contacts.end < self.chunks && !places.stays_open(self.contacts.end, &now) {
+        while self.contacts.end < self.reached_contacts()
+            && !places.stays_open(self.contacts.end, &now)
+        {
             self.contacts.end += 1;
         }
         self.wake_bodies();
     }
 
+    /// Chunks of contacts that the wave has reached.
+    fn reached_contacts(&self) -> usize {
+        self.chunks.min(self.with_contacts)
+    }
+
     fn grow(&mut self) {
-        let awake = self.contacts.end == self.chunks;
+        let awake = self.contacts.end == self.reached_contacts();
         self.chunks += 1;
         if awake {
-            self.contacts.end = self.chunks;
+            self.contacts.end = self.reached_contacts();
         }
     }
 
@@ -116,10 +128,13 @@ impl Window {
         }
         let slept = self.contacts.clone();
         let awake = |chunk: &usize| !places.stays_open(*chunk, ahead_s);
-        let first = (0..self.chunks).find(awake).unwrap_or(0);
-        let last = (first..self.chunks).rev().find(awake).unwrap_or(first);
+        let first = (0..self.reached_contacts()).find(awake).unwrap_or(0);
+        let last = (first..self.reached_contacts())
+            .rev()
+            .find(awake)
+            .unwrap_or(first);
         // Ahead of the wave contacts touch: nothing there is open.
-        self.contacts = first..last + 1;
+        self.contacts = first..(last + 1).min(self.reached_contacts());
         self.bodies = slept.start..(slept.end + 1).min(self.chunks);
         self.wake_bodies();
     }
@@ -128,7 +143,7 @@ impl Window {
     pub fn whole(&self) -> Self {
         Self {
             chunks: self.all,
-            contacts: 0..self.all,
+            contacts: 0..self.with_contacts,
             bodies: 0..self.all,
             ..self.clone()
         }
