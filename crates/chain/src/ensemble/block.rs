@@ -17,7 +17,7 @@ use crate::system::System;
 const SLIGHT: f64 = 1e-10;
 
 /// Steps before an opening at which a force that pulls does so.
-const SOON: f64 = 1e-3;
+const SOON: f64 = 0.1;
 
 /// Most edges that disturb steps at a time without memory being asked for.
 const RESERVED: usize = 1024;
