@@ -7,7 +7,7 @@ from scipy.integrate import DOP853, LSODA, RK45, ode
 import chain as p
 
 CLASSES = {"DOP853": DOP853, "RK45": RK45, "LSODA": LSODA}
-COMPILED = {"ode-dop853": "dop853", "ode-dopri5": "dopri5", "ode-lsoda": "lsoda"}
+COMPILED = {"ode-dop853": "dop853", "ode-dopri5": "dopri5"}
 PARTS = 24  # RK4 steps into which the three steps that hold a peak are split
 
 
@@ -87,19 +87,6 @@ def by_compiled(name, fun, tolerance, laws):
     return watch
 
 
-def by_lsoda(fun, tolerance, laws):
-    """ODEPACK's LSODA, told to stop after each step."""
-    watch, y0, t0 = p.new_watch(), p.start(), 0.0
-    solver = ode(fun).set_integrator("lsoda", rtol=1e-14, atol=tolerance, nsteps=1_000_000, first_step=1e-3)
-    solver.set_initial_value(y0, 0.0)
-    while t0 < p.LONGEST:
-        y = solver.integrate(p.LONGEST, step=True)
-        if p.watch_step(watch, t0, y0, solver.t, y, PARTS, *laws):
-            break
-        t0, y0 = solver.t, y.copy()
-    return watch
-
-
 def shot(method, case, tolerance, speed):
     name, _, side = method.partition("/")
     *laws, time = p.shot(case, speed)
@@ -107,8 +94,6 @@ def shot(method, case, tolerance, speed):
     laws = (p.work(*laws, 4), *laws)
     if name in CLASSES:
         watch = by_class(CLASSES[name], fun, tolerance, laws)
-    elif name == "ode-lsoda":
-        watch = by_lsoda(fun, tolerance, laws)
     else:
         watch = by_compiled(COMPILED[name], fun, tolerance, laws)
     return p.tofs(watch, time)

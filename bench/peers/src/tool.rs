@@ -112,23 +112,13 @@ pub const TOOLS: [Tool; 8] = [
     tool(
         "SciPy + numba",
         Package::Python("scipy"),
-        &[
-            "ode-dopri5/numba",
-            "ode-dop853/numba",
-            "LSODA/numba",
-            "DOP853/numba",
-        ],
+        &["ode-dopri5/numba", "ode-dop853/numba", "LSODA/numba"],
         JIT,
     ),
     tool(
         "SciPy + NumPy",
         Package::Python("scipy"),
-        &[
-            "ode-dopri5/numpy",
-            "ode-dop853/numpy",
-            "LSODA/numpy",
-            "DOP853/numpy",
-        ],
+        &["ode-dopri5/numpy", "ode-dop853/numpy", "LSODA/numpy"],
         WHEEL,
     ),
     Tool {

@@ -75,7 +75,7 @@ fn sensors_allocate_before_and_after_the_steps_but_not_within() {
         // vectors that double: 8 times the steps are 3 doublings of each, one
         // more where they begin just above a power of two.
         let doublings = 2 * (3 + 1) * (2 * lanes as u64);
-        let more = many.count_total - few.count_total;
+        let more = many.count_total.saturating_sub(few.count_total);
         assert!(more <= doublings, "{more} > {doublings} for {lanes} lanes");
     }
 }

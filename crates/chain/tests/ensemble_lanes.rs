@@ -34,8 +34,11 @@ fn rows(count: usize, chain: impl Fn(f64) -> Chain) -> Vec<System> {
         .collect()
 }
 
+/// A kind of chain and its chain for a speed.
+type Kind = (&'static str, fn(f64) -> Chain);
+
 /// Chains that take every way through the loop.
-fn kinds() -> Vec<(&'static str, fn(f64) -> Chain)> {
+fn kinds() -> Vec<Kind> {
     vec![
         ("fused laws", |v| row(12, v, dry())),
         ("unfused laws", |v| row(11, v, law_by_law())),

@@ -8,6 +8,7 @@ use super::edge::{Edge, Leading};
 use super::section::{Place, Sweep, section};
 use super::weights::{Schedule, USED};
 use super::window::{Places, Window};
+use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
 use crate::laws::Closed;
 use crate::sensor::Sensor;
@@ -15,6 +16,9 @@ use crate::system::System;
 
 /// Edges below this fraction of the shot's speed are left as they are.
 const SLIGHT: f64 = 1e-10;
+
+/// Steps before an opening at which a force that pulls does so.
+const SOON: f64 = 0.1;
 
 /// Most edges that disturb steps at a time without memory being asked for.
 const RESERVED: usize = 1024;
@@ -149,6 +153,7 @@ impl<'a> Block<'a> {
             &self.force_n,
             &self.weights,
         );
+        self.mend_edges();
         self.close_ring();
         self.window.follow(places!(self));
         self.forces();
@@ -205,14 +210,13 @@ impl<'a> Block<'a> {
             &self.motion.x,
         );
         if follow && self.steps > self.schedule.last_row() {
-            let mut edges = std::mem::take(&mut self.edges);
-            edges.extend(
-                changed
-                    .iter()
-                    .filter_map(|&at| Some((at, self.edge(at)?, 0))),
-            );
-            self.edges = edges;
-            self.mend_edges();
+            for &at in changed {
+                if let Some(edge) = self.edge(at) {
+                    self.mend(at, &edge, 0);
+                    self.edges.push((at, edge, 1));
+                }
+            }
+            self.close_ring();
         }
         self.changes = Some(changes);
     }
@@ -226,44 +230,63 @@ impl<'a> Block<'a> {
         if !system.has_contact(contact) {
             return None;
         }
-        let (x, v, f, h) = (
-            &self.motion.x,
-            &self.motion.v,
-            &self.force_n,
-            self.step_s[lane],
-        );
-        let masses = [contact, contact + 1].map(|body| system.inverse_mass[body]);
-        let [before, own, after] = [at, at + lanes, at + 2 * lanes].map(|i| f[i]);
+        let (x, v, h) = (&self.motion.x, &self.motion.v, self.step_s[lane]);
+        let bodies = self.sides(contact);
+        let [left, right] = bodies.map(|body| {
+            let (before, after) = (body * lanes + lane, (body + 1) * lanes + lane);
+            (self.force_n[before] - self.force_n[after]) * system.inverse_mass[body]
+        });
         let opening = Opening {
             depth_m: system.offset_m[contact] - (x[at + lanes] - x[at]),
             rate_m_s: v[at] - v[at + lanes],
-            change_m_s2: (before - own) * masses[0] - (own - after) * masses[1],
+            change_m_s2: left - right,
         };
         let since = opening.since_s(h)?;
         let before = |steps: f64| {
             let (depth, rate) = opening.at(since + steps * h);
             system.unclipped_force(contact, Closed::new(depth, rate))
         };
+        // A force that pulls and is cut at 0 ends earlier, and not sharply.
+        if system.tension == Tension::Clipped && before(SOON) < 0.0 {
+            return None;
+        }
         let leading = Leading::new(before);
-        let kick = leading.size() * h * masses[0].max(masses[1]);
+        let [left, right] = bodies.map(|body| system.inverse_mass[body]);
+        let kick = leading.size() * h * left.max(right);
         let matters = kick > SLIGHT * system.scales().speed_m_s;
         matters.then(|| Edge::ending(&leading, 1.0 - since / h, self.schedule.steady()))
     }
 
-    /// Gives the last step what edges made it lack.
+    /// Gives the last step what earlier edges made it lack, before its forces.
     fn mend_edges(&mut self) {
-        for (at, edge, age) in &mut self.edges {
-            let (contact, lane) = (*at / self.lanes, *at % self.lanes);
-            let h = self.step_s[lane];
-            let [sped, moved] = [edge.lacking[*age][0] * h, edge.lacking[*age][1] * h * h];
-            let masses = &self.systems[lane].inverse_mass[contact..];
-            for (at, push) in [(*at, -masses[0]), (*at + self.lanes, masses[1])] {
-                self.motion.v[at] += push * sped;
-                self.motion.x[at] += push * moved;
-            }
+        let mut edges = std::mem::take(&mut self.edges);
+        for (at, edge, age) in &mut edges {
+            self.mend(*at, edge, *age);
             *age += 1;
         }
-        self.edges.retain(|(_, _, age)| *age < USED);
+        edges.retain(|(_, _, age)| *age < USED);
+        self.edges = edges;
+    }
+
+    /// Gives the last step what an edge of some age made it lack.
+    fn mend(&mut self, at: usize, edge: &Edge, age: usize) {
+        let (contact, lane) = (at / self.lanes, at % self.lanes);
+        let h = self.step_s[lane];
+        let [sped, moved] = [edge.lacking[age][0] * h, edge.lacking[age][1] * h * h];
+        for (body, sign) in self.sides(contact).into_iter().zip([-1.0, 1.0]) {
+            let push = sign * self.systems[lane].inverse_mass[body];
+            self.motion.v[body * self.lanes + lane] += push * sped;
+            self.motion.x[body * self.lanes + lane] += push * moved;
+        }
+    }
+
+    /// The bodies that a contact moves: in a ring bead 1 follows the last.
+    fn sides(&self, contact: usize) -> [usize; 2] {
+        let first = self.systems[0];
+        match first.periodic && contact + 2 == first.bodies() {
+            true => [contact, 1],
+            false => [contact, contact + 1],
+        }
     }
 
     /// In a ring the last body is bead 1 again.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 pub mod ensemble;
+pub mod random_shots;
 
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Passage, Passages};
