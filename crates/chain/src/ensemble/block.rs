@@ -57,6 +57,8 @@ pub(super) struct Block<'a> {
     edges: Vec<(usize, Edge, usize)>,
     /// Steps made.
     pub steps: usize,
+    /// Bodies of all lanes looked at, summed over steps.
+    pub bodies_looked_at: u64,
 }
 
 impl<'a> Block<'a> {
@@ -109,6 +111,7 @@ impl<'a> Block<'a> {
             set,
             schedule,
             steps: 0,
+            bodies_looked_at: 0,
         };
         block.rest();
         block.forces();
@@ -159,6 +162,7 @@ impl<'a> Block<'a> {
         self.forces();
         self.look_at_changes(true);
         self.steps += 1;
+        self.bodies_looked_at += (self.window.bodies.len() * WIDTH) as u64;
     }
 
     /// Forces of all contacts that are awake.

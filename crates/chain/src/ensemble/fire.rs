@@ -96,6 +96,10 @@ pub struct Flown {
     pub correction: f64,
     /// What it cost.
     pub work: Work,
+    /// Bodies looked at, summed over steps: fewer than all where the shots of
+    /// a block leave out what does not move. The only number here that
+    /// depends on what flies along.
+    pub bodies_looked_at: u64,
 }
 
 /// Steps between looks at whether a shot is over.
@@ -192,12 +196,13 @@ fn fire_block(
     );
     fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
+    let looked_at = block.bodies_looked_at / lanes as u64;
     let result = |(at, lane): (usize, Lane)| {
         let clock = Clock {
             schedule,
             step_s: steps_s[at],
         };
-        lane.flown(std::mem::take(&mut signals[at]), clock)
+        lane.flown(std::mem::take(&mut signals[at]), clock, looked_at)
     };
     flying.into_iter().enumerate().map(result).collect()
 }
@@ -319,7 +324,12 @@ impl Lane {
         }
     }
 
-    fn flown(self, signals: Vec<Signal>, clock: Clock<'_>) -> Result<Flown, EnsembleError> {
+    fn flown(
+        self,
+        signals: Vec<Signal>,
+        clock: Clock<'_>,
+        looked_at: u64,
+    ) -> Result<Flown, EnsembleError> {
         let (step, finished) = match self.state {
             State::Finished { step, early } => (step, early),
             State::Flying => (self.last_step, false),
@@ -347,6 +357,7 @@ impl Lane {
                 bodies_passed: (step as u64 + 1) * bodies,
                 ..Work::default()
             },
+            bodies_looked_at: looked_at,
         })
     }
 }

@@ -35,41 +35,32 @@ pub(super) fn signal(
     clock: Clock<'_>,
     silent: f64,
 ) -> Signal {
+    let values = samples.until(last_step);
     let trace = Trace {
-        samples,
-        last: last_step.min(samples.latest()),
+        values: &values,
         clock,
     };
     let mut largest = 0.0_f64;
     let mut maxima = Vec::with_capacity(8);
-    let (mut before, mut value, mut step) = (f64::INFINITY, f64::INFINITY, 0);
-    for group in samples.groups() {
-        let group = &group[..group.len().min(trace.last - step)];
-        let least = silent.max(KEPT * largest);
-        for &after in group {
-            step += 1;
-            if value >= before && value > after && value > least && step > 2 {
-                maxima.push(trace.maximum(step - 1));
-            }
-            (before, value) = (value, after);
+    for (i, around) in values.windows(3).enumerate() {
+        let [before, value, after] = [around[0], around[1], around[2]];
+        // Branches, not `max`: its care for NaN would make each sample wait
+        // for the last.
+        if before.abs() > largest {
+            largest = before.abs();
         }
-        // No `max`: its care for NaN would make each sample wait for the last.
-        largest = group
-            .iter()
-            .fold(largest, |most, value| match value.abs() > most {
-                true => value.abs(),
-                false => most,
-            });
+        if value >= before && value > after && value > silent.max(KEPT * largest) {
+            maxima.push(trace.maximum(i + 1));
+        }
     }
     let stretches = trace.stretches(silent.max(KEPT * largest));
     Signal::assembled(sensor, stretches, maxima)
 }
 
-/// The samples of a lane with their times.
+/// The samples of a lane from step 1 on, with their times.
 #[derive(Clone, Copy)]
 struct Trace<'a> {
-    samples: Samples<'a>,
-    last: usize,
+    values: &'a [f64],
     clock: Clock<'a>,
 }
 
@@ -78,19 +69,14 @@ impl Trace<'_> {
     /// is seen.
     fn stretches(self, floor: f64) -> Vec<Stretch> {
         let first = self.clock.schedule.first_full_step();
-        let mut stretches = Vec::with_capacity(self.last / 4);
-        for start in (first..self.last.saturating_sub(3)).step_by(4) {
-            let mut values = [0.0; 5];
-            let mut seen = false;
-            for (k, value) in values.iter_mut().enumerate() {
-                *value = self.samples.at(start + k);
-                seen |= value.abs() > floor;
-            }
-            if seen {
+        let full = self.values.get(first - 1..).unwrap_or_default();
+        let mut stretches = Vec::with_capacity(full.len() / 4);
+        for (i, five) in full.windows(5).step_by(4).enumerate() {
+            if five.iter().any(|value| value.abs() > floor) {
                 stretches.push(Stretch {
-                    start_s: self.clock.time_s(start),
+                    start_s: self.clock.time_s(first + 4 * i),
                     length_s: 4.0 * self.clock.step_s,
-                    values,
+                    values: [five[0], five[1], five[2], five[3], five[4]],
                 });
             }
         }
@@ -101,18 +87,19 @@ impl Trace<'_> {
     /// of degree six through seven samples, between the neighbours. Too few
     /// samples are their own maximum.
     fn maximum(self, at: usize) -> Maximum {
-        if self.last < POINTS {
+        let step = at + 1;
+        if self.values.len() < POINTS {
             return Maximum {
-                time_s: self.clock.time_s(at),
-                value: self.samples.at(at),
+                time_s: self.clock.time_s(step),
+                value: self.values[at],
             };
         }
-        let from = at.saturating_sub(REACH).max(1).min(self.last + 1 - POINTS);
+        let from = at.saturating_sub(REACH).min(self.values.len() - POINTS);
         let schedule = self.clock.schedule;
-        let middle = schedule.time(at);
-        let nodes: [f64; POINTS] = std::array::from_fn(|i| schedule.time(from + i) - middle);
-        let values = std::array::from_fn(|i| self.samples.at(from + i));
-        let equidistant = from >= schedule.first_full_step() && at == from + REACH;
+        let middle = schedule.time(step);
+        let nodes: [f64; POINTS] = std::array::from_fn(|i| schedule.time(from + 1 + i) - middle);
+        let values = std::array::from_fn(|i| self.values[from + i]);
+        let equidistant = from + 1 >= schedule.first_full_step() && at == from + REACH;
         let polynomial = match equidistant {
             true => through_equidistant(values),
             false => through(nodes, values),

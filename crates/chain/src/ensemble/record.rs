@@ -108,7 +108,7 @@ pub(super) struct Samples<'a> {
     lane: usize,
 }
 
-impl<'a> Samples<'a> {
+impl Samples<'_> {
     /// The largest since the last look.
     pub fn crest(self) -> f64 {
         self.rows.crest[self.lane]
@@ -119,12 +119,15 @@ impl<'a> Samples<'a> {
         self.steps
     }
 
-    /// All samples in groups of consecutive steps from step 1 on; the last
-    /// group is filled up with zeros.
-    pub fn groups(self) -> impl Iterator<Item = &'a [f64]> {
-        let groups = self.rows.values.chunks_exact(GROUP * self.lanes);
+    /// The samples of steps 1 to `last`, as far as there are any.
+    pub fn until(self, last: usize) -> Vec<f64> {
+        let mut samples = Vec::with_capacity(self.steps.next_multiple_of(GROUP));
         let first = self.lane * GROUP;
-        groups.map(move |group| &group[first..first + GROUP])
+        for group in self.rows.values.chunks_exact(GROUP * self.lanes) {
+            samples.extend_from_slice(&group[first..first + GROUP]);
+        }
+        samples.truncate(last.min(self.steps));
+        samples
     }
 
     /// The sample of a step from 1 to the latest.
