@@ -2,7 +2,7 @@
 
 use crate::case::{Case, speeds_m_s};
 use crate::converged::{Converged, errors};
-use crate::ours::ours;
+use crate::ours::{ours, tune};
 use crate::python::Worker;
 use crate::scan::{Point, count_for};
 use crate::tool::{Timed, Tool, measured};
@@ -49,6 +49,7 @@ impl Question {
 
     /// Our shots: as many as fit into the time of a run.
     fn our_speeds(&self) -> Vec<f64> {
+        tune(self.case, self.accuracy);
         let few = speeds_m_s(20);
         let timed = measured(|| ours(self.case, &few, self.accuracy));
         speeds_m_s(self.count(few.len() as f64 / timed.seconds, 20))

@@ -182,6 +182,7 @@ impl Session {
         let mut points = Vec::new();
         for accuracy in OUR_ACCURACIES {
             let speeds = speeds_m_s(if self.quick { 20 } else { 100 });
+            ours::tune(Case::Dry, accuracy);
             let timed = measured(|| ours::ours(Case::Dry, &speeds, accuracy));
             let (incident, reflected) =
                 converged::errors(&timed.tofs_s, &converged.tofs_s(&speeds));

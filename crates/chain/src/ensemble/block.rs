@@ -55,6 +55,8 @@ pub(super) struct Block<'a> {
     changes: Option<Changes>,
     /// Edges that still disturb steps: where, the edge, steps since.
     edges: Vec<(usize, Edge, usize)>,
+    /// No step has been made yet.
+    starting: bool,
     /// Steps made.
     pub steps: usize,
     /// Bodies of all lanes looked at, summed over steps.
@@ -110,6 +112,7 @@ impl<'a> Block<'a> {
             lanes,
             set,
             schedule,
+            starting: true,
             steps: 0,
             bodies_looked_at: 0,
         };
@@ -159,6 +162,7 @@ impl<'a> Block<'a> {
         self.mend_edges();
         self.close_ring();
         self.window.follow(places!(self));
+        self.starting = false;
         self.forces();
         self.look_at_changes(true);
         self.steps += 1;
@@ -183,6 +187,7 @@ impl<'a> Block<'a> {
             lanes,
             awake,
             fresh,
+            starting: self.starting,
             x: &self.motion.x,
             v: &self.motion.v,
         };

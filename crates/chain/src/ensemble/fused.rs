@@ -96,6 +96,7 @@ impl<T: Sum> Fused<T> {
             place.offset_m,
             (chunks.end, place.lanes),
             (place.x, place.v),
+            place.starting,
         );
         let force = force[..chunks.end * WIDTH].as_chunks_mut::<WIDTH>().0;
         // Places beyond the sum's own coefficients are never read.

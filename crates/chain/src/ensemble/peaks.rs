@@ -43,13 +43,14 @@ pub(super) fn signal(
     let mut largest = 0.0_f64;
     let mut maxima = Vec::with_capacity(8);
     for (i, around) in values.windows(3).enumerate() {
-        let [before, value, after] = [around[0], around[1], around[2]];
-        // Branches, not `max`: its care for NaN would make each sample wait
-        // for the last.
-        if before.abs() > largest {
-            largest = before.abs();
+        let [rise, fall] = [around[1] - around[0], around[1] - around[2]];
+        // Between extremes nothing is the largest yet.
+        if rise * fall < 0.0 {
+            continue;
         }
-        if value >= before && value > after && value > silent.max(KEPT * largest) {
+        let value = around[1];
+        largest = largest.max(value.abs());
+        if rise >= 0.0 && fall > 0.0 && value > silent.max(KEPT * largest) {
             maxima.push(trace.maximum(i + 1));
         }
     }

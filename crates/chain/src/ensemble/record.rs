@@ -114,11 +114,6 @@ impl Samples<'_> {
         self.rows.crest[self.lane]
     }
 
-    /// The latest step; 0 before the first sample.
-    pub fn latest(self) -> usize {
-        self.steps
-    }
-
     /// The samples of steps 1 to `last`, as far as there are any.
     pub fn until(self, last: usize) -> Vec<f64> {
         let mut samples = Vec::with_capacity(self.steps.next_multiple_of(GROUP));

@@ -19,6 +19,8 @@ pub(super) struct Place<'a> {
     pub awake: Range<usize>,
     /// Forces are to be set, not added to.
     pub fresh: bool,
+    /// No step has been made yet.
+    pub starting: bool,
     pub x: &'a [f64],
     pub v: &'a [f64],
 }
@@ -128,7 +130,12 @@ impl Unfused {
 
     #[inline(always)]
     fn touch<S: Simd>(&mut self, simd: S, place: &Place<'_>, part: Range<usize>) {
-        let sides = Sides::new(place.offset_m, (part.end, place.lanes), (place.x, place.v));
+        let sides = Sides::new(
+            place.offset_m,
+            (part.end, place.lanes),
+            (place.x, place.v),
+            place.starting,
+        );
         for i in part {
             let touch = sides.touch(simd, i);
             let at = (i - self.first) * WIDTH..(i - self.first + 1) * WIDTH;

@@ -18,6 +18,7 @@ pub(super) struct Touch {
 /// Positions and velocities of the bodies left and right of each contact.
 pub(super) struct Sides<'a> {
     offset_m: Reader<'a>,
+    starting: bool,
     x: [&'a [[f64; WIDTH]]; 2],
     v: [&'a [[f64; WIDTH]]; 2],
 }
@@ -29,6 +30,7 @@ impl<'a> Sides<'a> {
         offset_m: &'a Column,
         (count, lanes): (usize, usize),
         (x, v): (&'a [f64], &'a [f64]),
+        starting: bool,
     ) -> Self {
         let pair = |values: &'a [f64]| {
             let right = &values[lanes..][..count * WIDTH];
@@ -36,12 +38,14 @@ impl<'a> Sides<'a> {
         };
         Self {
             offset_m: offset_m.reader(),
+            starting,
             x: pair(x),
             v: pair(v),
         }
     }
 
-    /// Chunk `i`: closed ⇔ δ > 0, or δ = 0 and approaching.
+    /// Chunk `i`: closed ⇔ δ > 0, or δ = 0 and approaching. The latter can only
+    /// be at the start: whatever approaches from contact overlaps a step later.
     #[inline(always)]
     pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch {
         let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
@@ -50,7 +54,10 @@ impl<'a> Sides<'a> {
         let rate = load(&self.v[0][i]) - load(&self.v[1][i]);
         let deep = depth.simd_gt(f64x8::splat(simd, FLUSH));
         let overlap = deep.select(depth, zero);
-        let closed = deep | (depth.simd_ge(zero) & rate.simd_gt(zero));
+        let closed = match self.starting {
+            true => deep | (depth.simd_ge(zero) & rate.simd_gt(zero)),
+            false => deep,
+        };
         Touch {
             overlap: overlap.into(),
             root: roots(simd, overlap).into(),

@@ -47,6 +47,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             time_s: 1.0,
             silent_force_n: 0.0,
         },
+        pairs: Arc::default(),
     };
     system.has_memory = system
         .sections
@@ -57,6 +58,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     settle(chain, &mut system)?;
     set_in_motion(chain, &mut system);
     system.scales = scales(&system, &pairs);
+    system.pairs = pairs.into();
     Ok(system)
 }
 

@@ -3,7 +3,7 @@
 use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Start};
 use crate::material::Material;
 
-fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
+pub(super) fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(()),
         false => Err(ChainError::Value {

@@ -1,0 +1,180 @@
+//! Errors and force passes of the paper's shots: the tables of `docs/numerics.md`.
+//!
+//! ```sh
+//! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked
+//! cargo run --release -p hertzchain-study --example accuracy -- steps  # by step
+//! ```
+//!
+//! Errors are the larger ones of both times of flight, against the wave loop
+//! at 1e-11, over eleven speeds. Force passes are means over these speeds.
+
+use hertzchain_chain::ensemble::{self, End, Flown};
+use hertzchain_chain::observe::Passages;
+use hertzchain_chain::{Sensor, System};
+use hertzchain_experiment::preset;
+use hertzchain_study::{Flight, InstructionSet, Plan, Shot, shoot, shoot_all};
+use std::error::Error;
+
+const PRESETS: [&str; 6] = [
+    "hertz",
+    "hertz-viscoelastic",
+    "dry",
+    "pump",
+    "gear",
+    "motor",
+];
+
+const SPEEDS_M_S: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
+
+const ACCURACIES: [f64; 4] = [1e-4, 1e-5, 1e-6, 1e-7];
+
+/// In contact times.
+const STEPS: [f64; 12] = [
+    0.22, 0.2, 0.18, 0.16, 0.135, 0.12, 0.1, 0.08, 0.06, 0.05, 0.03, 0.02,
+];
+
+/// Accuracy of what errors are measured against.
+const EXACT: f64 = 1e-11;
+
+/// Longest duration of a shot in s; the slowest ones take half of it.
+const LONGEST_S: f64 = 2e-2;
+
+/// Sweeps do not trust a shot in which one step corrects more than this.
+const MOST_CORRECTION: f64 = 0.03;
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() -> Result<()> {
+    match std::env::args().nth(1).as_deref() {
+        None => by_accuracy(),
+        Some("steps") => by_step(),
+        Some(other) => Err(format!("`{other}` is neither nothing nor `steps`").into()),
+    }
+}
+
+fn plans(name: &str, accuracy: f64) -> Result<Vec<Plan>> {
+    let experiment = preset(name)?;
+    let plan = |speed: &f64| {
+        let (plan, _) = Plan::from_experiment(&experiment, Some(*speed))?;
+        Ok(plan.for_flights().with_accuracy(accuracy))
+    };
+    SPEEDS_M_S.iter().map(plan).collect()
+}
+
+/// Shots by the wave loop.
+fn one_by_one(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
+    let plans = plans(name, accuracy)?;
+    plans.iter().map(|plan| Ok(shoot(plan)?)).collect()
+}
+
+/// Shots as a sweep fires them.
+fn together(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
+    let plans = plans(name, accuracy)?;
+    let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+    shots.into_iter().map(|shot| Ok(shot?)).collect()
+}
+
+/// Errors at all speeds; `None` where there is no flight.
+fn errors(flights: impl Iterator<Item = Option<Flight>>, exact: &[Shot]) -> Vec<Option<f64>> {
+    let exact = exact.iter().map(|shot| shot.flight);
+    let error = |(flight, exact): (Option<Flight>, Option<Flight>)| Some(flight?.change(&exact?));
+    flights.zip(exact).map(error).collect()
+}
+
+/// The largest error, where it is, and how many shots have none.
+fn told(errors: &[Option<f64>]) -> String {
+    let known = errors
+        .iter()
+        .zip(SPEEDS_M_S)
+        .filter_map(|(e, v)| Some(((*e)?, v)));
+    let worst = known.reduce(|most, here| if here.0 > most.0 { here } else { most });
+    let lost = errors.iter().filter(|error| error.is_none()).count();
+    let worst = worst.map_or_else(String::new, |(error, v)| format!("{error:.1e} at {v}"));
+    match lost {
+        0 => worst,
+        _ => format!("{worst} ({lost} lost)"),
+    }
+}
+
+fn mean_passes(passes: impl Iterator<Item = u64>) -> f64 {
+    passes.sum::<u64>() as f64 / SPEEDS_M_S.len() as f64
+}
+
+fn by_accuracy() -> Result<()> {
+    println!("| preset | asked | sweep | passes | of 11 in the ensemble | wave | passes |");
+    for name in PRESETS {
+        let exact = one_by_one(name, EXACT)?;
+        for accuracy in ACCURACIES {
+            let sweep = together(name, accuracy)?;
+            let inside = sweep.iter().filter(|shot| shot.step_s.is_some()).count();
+            let both = [sweep, one_by_one(name, accuracy)?].map(|shots| {
+                let passes = mean_passes(shots.iter().map(|shot| shot.work.force_passes));
+                let flights = shots.iter().map(|shot| shot.flight);
+                (told(&errors(flights, &exact)), passes)
+            });
+            let [(error, passes), (wave, of_wave)] = both;
+            println!(
+                "| {name} | {accuracy:.0e} | {error} | {passes:.0} | {inside} | {wave} | {of_wave:.0} |"
+            );
+        }
+    }
+    Ok(())
+}
+
+fn by_step() -> Result<()> {
+    let names = PRESETS.join(" | ");
+    println!("| openings | step | {names} | passes, dry | until it has passed |");
+    let exact = PRESETS.iter().map(|name| one_by_one(name, EXACT));
+    let exact = exact.collect::<Result<Vec<_>>>()?;
+    for openings in [false, true] {
+        for step in STEPS {
+            let mut row = format!("| {openings} | {step} |");
+            for (name, exact) in PRESETS.iter().zip(&exact) {
+                let flown = flown(name, (step, openings), End::Reflected)?;
+                let flights = flown.into_iter().map(|flown| flight(flown?));
+                row += &format!(" {} |", told(&errors(flights, exact)));
+            }
+            for end in [End::Reflected, End::Passed] {
+                let flown = flown("dry", (step, openings), end)?;
+                let passes = flown.iter().flatten().map(|flown| flown.work.force_passes);
+                row += &format!(" {:.0} |", mean_passes(passes));
+            }
+            println!("{row}");
+        }
+    }
+    Ok(())
+}
+
+/// Shots with a step in contact times; `None` where a sweep would not trust one.
+fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Option<Flown>>> {
+    let plans = plans(name, EXACT)?;
+    let systems = plans.iter().map(|plan| Ok(System::new(&plan.chain)?));
+    let systems = systems.collect::<Result<Vec<_>>>()?;
+    let shot = |system| ensemble::Shot {
+        system,
+        step,
+        duration_s: LONGEST_S,
+    };
+    let shots: Vec<_> = systems.iter().map(shot).collect();
+    let wall = systems[0].contacts() - 1;
+    let settings = ensemble::Settings {
+        sensors: vec![Sensor::Bead(plans[0].sensor_bead), Sensor::Contact(wall)],
+        end,
+        set: InstructionSet::default(),
+        whole_chain: false,
+        openings,
+    };
+    let flown = ensemble::fire(&shots, &settings).into_iter();
+    let trusted = |flown: &Flown| flown.correction <= MOST_CORRECTION;
+    Ok(flown.map(|flown| flown.ok().filter(trusted)).collect())
+}
+
+fn flight(flown: Flown) -> Option<Flight> {
+    let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
+    let passages = Passages::from_signals(sensor, wall, flown.time_s);
+    let passage = passages.passage().ok()?;
+    Some(Flight {
+        incident_s: passage.tof_incident_s(),
+        reflected_s: passage.tof_reflected_s(),
+    })
+}
