@@ -32,23 +32,25 @@ pub(crate) fn tolerance(plan: &Plan) -> (f64, bool) {
     (wanted.max(TIGHTEST), wanted < TIGHTEST)
 }
 
-/// Steps of the ensemble loop, in contact times, that give an accuracy, and
-/// whether openings must be found: measured, `docs/numerics.md`.
-const EQUAL_STEPS: [(f64, f64, bool); 4] = [
-    (1e-4, 0.2, false),
-    (1e-5, 0.135, false),
-    (1e-6, 0.05, true),
-    (1e-7, 0.03, true),
+/// Steps of the ensemble loop, in contact times, with which rows of alike
+/// beads mostly reach an accuracy, and whether openings must be found: measured,
+/// `docs/numerics.md`. Each shot tells by a second, longer step whether it has.
+const EQUAL_STEPS: [(f64, f64, bool); 5] = [
+    (1e-3, 0.18, false),
+    (1e-4, 0.15, false),
+    (1e-5, 0.1, true),
+    (1e-6, 0.045, true),
+    (1e-7, 0.018, true),
 ];
 
 /// Chains longer than this lose more on the way than [`EQUAL_STEPS`] tells.
 const EQUAL_STEPS_FOR: f64 = 60.0;
 
-/// The step of the ensemble loop for a plan's accuracy times a factor, and
-/// whether openings must be found; `None` below what it can do.
-pub(crate) fn equal_steps(plan: &Plan, factor: f64) -> Option<(f64, bool)> {
+/// The step of the ensemble loop for a plan's accuracy, and whether openings
+/// must be found; `None` below what it can do.
+pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
     let length = plan.chain.beads.len() as f64 / EQUAL_STEPS_FOR;
-    let accuracy = plan.accuracy * factor / length.max(1.0);
+    let accuracy = plan.accuracy / length.max(1.0);
     let [(loosest, longest, _), ..] = EQUAL_STEPS;
     if accuracy >= loosest {
         return Some((longest, false));

@@ -8,7 +8,7 @@ use crate::accuracy;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
 use crate::flight::Flight;
-use crate::plan::{Plan, Solver};
+use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked};
 use hertzchain_chain::ensemble::{self, End, Flown, LANES};
 use hertzchain_chain::observe::Passages;
@@ -19,8 +19,9 @@ use rayon::prelude::*;
 /// and have the same bits whatever the number of threads and whatever else is
 /// fired along.
 ///
-/// `progress` is called once a plan, from any thread. With `checked` every shot
-/// is computed a second time to learn the accuracy reached.
+/// `progress` is called once a plan, from any thread. In the ensemble loop every
+/// shot is computed twice and carries the accuracy it reached; in the wave loop
+/// only with `checked`.
 pub fn shoot_all(
     plans: &[Plan],
     set: InstructionSet,
@@ -74,17 +75,22 @@ fn fire_together(one: &Plan, other: &Plan) -> bool {
 /// Whether the ensemble loop can run a plan to the accuracy asked.
 fn suits(plan: &Plan) -> bool {
     plan.solver == Solver::Adaptive
+        && plan.pick == Pick::Peak
         && !plan.rebound
         && !plan.budget
         && plan.watch.is_none()
         && plan.chain.suspension_m.is_none()
         && !matches!(plan.chain.start, Start::Driven { .. })
         && has_wall(&plan.chain.far)
-        && accuracy::equal_steps(plan, 1.0).is_some()
+        && accuracy::equal_steps(plan).is_some()
 }
 
-/// A check is computed as for an accuracy this much tighter.
-const CHECK: f64 = 0.1;
+/// The second, longer step by which a shot is judged, over its own.
+const LONGER: f64 = 1.3;
+
+/// The accuracy reached is what the longer step changes, times this: an error
+/// of order 1, which closings leave now and then, is three times the change.
+const OF_CHANGE: f64 = 3.0;
 
 /// Shots of plans that go together, or of one that goes alone.
 fn shoot_block(
@@ -92,32 +98,22 @@ fn shoot_block(
     set: InstructionSet,
     checked: bool,
 ) -> Vec<Result<Shot, StudyError>> {
-    let mut shots = fired(plans, set, 1.0);
-    if checked {
-        for (shot, finer) in shots.iter_mut().zip(fired(plans, set, CHECK)) {
-            *shot = shot.take().and_then(|shot| kept(shot, finer?));
-        }
-    }
-    let alone = |plan: &Plan| match checked {
+    // What was too hard for equal steps deserves a check in the wave loop too.
+    let alone = |plan: &Plan| match checked || suits(plan) {
         true => shoot_checked(plan),
         false => shoot(plan),
     };
+    let shots = fired(plans, set);
     let shots = plans.iter().zip(shots);
     shots
         .map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok))
         .collect()
 }
 
-/// A shot with the accuracy it reached, if that is what was asked.
-fn kept(mut shot: Shot, finer: Shot) -> Option<Shot> {
-    let change = shot.change(&finer);
-    shot.accuracy_reached = Some(change);
-    (change <= shot.accuracy_asked).then_some(shot)
-}
-
-/// Shots of plans by the ensemble loop, as for their accuracy times a factor;
-/// `None` where the wave loop must have a look, if only to say what is wrong.
-fn fired(plans: &[&Plan], set: InstructionSet, factor: f64) -> Vec<Option<Shot>> {
+/// Shots of plans by the ensemble loop, each with the accuracy it reached;
+/// `None` where the wave loop must have a look, because that is not what was
+/// asked or if only to say what is wrong.
+fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let load = |plan: &&Plan| {
         let suits = suits(plan) && plan.check().is_ok();
         suits.then(|| System::new(&plan.chain).ok()).flatten()
@@ -127,26 +123,36 @@ fn fired(plans: &[&Plan], set: InstructionSet, factor: f64) -> Vec<Option<Shot>>
     let ready: Vec<(&Plan, &System)> = ready
         .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
         .collect();
-    let mut shots = fire(&ready, set, factor).into_iter();
+    let shots = fire(&ready, set, 1.0).into_iter();
+    let judges = fire(&ready, set, LONGER);
+    let mut kept = shots.zip(judges).map(|(shot, judge)| kept(shot?, &judge?));
     systems
         .iter()
-        .map(|system| system.as_ref().and_then(|_| shots.next().flatten()))
+        .map(|system| system.as_ref().and_then(|_| kept.next().flatten()))
         .collect()
 }
 
-/// Fires plans that are alike in accuracy, sensor and length.
-fn fire(ready: &[(&Plan, &System)], set: InstructionSet, factor: f64) -> Vec<Option<Shot>> {
+/// A shot with the accuracy it reached, if that is what was asked.
+fn kept(mut shot: Shot, judge: &Shot) -> Option<Shot> {
+    let change = OF_CHANGE * shot.change(judge);
+    shot.accuracy_reached = Some(change);
+    (change <= shot.accuracy_asked).then_some(shot)
+}
+
+/// Fires plans that are alike in accuracy, sensor and length, with their step
+/// times a factor.
+fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Option<Shot>> {
     let Some((first, system)) = ready.first() else {
         return Vec::new();
     };
-    let Some((step, openings)) = accuracy::equal_steps(first, factor) else {
+    let Some((step, openings)) = accuracy::equal_steps(first) else {
         return vec![None; ready.len()];
     };
     let shots: Vec<ensemble::Shot<'_>> = ready
         .iter()
         .map(|(plan, system)| ensemble::Shot {
             system,
-            step,
+            step: step * longer,
             duration_s: duration::end(plan, system).longest_s,
         })
         .collect();
@@ -172,7 +178,7 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, factor: f64) -> Vec<Opt
 
 /// A single step may correct a velocity by this fraction of the shot's speed:
 /// more, and something happens that equal steps do not resolve.
-const MOST_CORRECTION: f64 = 0.03;
+const MOST_CORRECTION: f64 = 0.01;
 
 /// What a plan asks for, from what its sensors showed.
 fn shot(plan: &Plan, flown: Flown) -> Option<Shot> {
@@ -199,7 +205,7 @@ fn shot(plan: &Plan, flown: Flown) -> Option<Shot> {
         work: flown.work,
         accuracy_asked: plan.accuracy,
         accuracy_reached: None,
-        solver: "predictor–corrector of order 6, equal steps".to_owned(),
+        solver: "predictor–corrector of order 4, equal steps".to_owned(),
         tolerance: None,
         step_s: Some(flown.step_s),
         notes: Vec::new(),
