@@ -1,0 +1,110 @@
+//! What a shot costs: by instruction set, by law, alone and in a long chain.
+//!
+//! `cargo bench -p hertzchain-chain`; an item is a bead's step unless a
+//! bench says otherwise.
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on should fail")]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{cubic, hertz, row, viscoelastic};
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use hertzchain_chain::ensemble::{End, LANES, Settings, Shot, fire};
+use hertzchain_chain::laws::{DampingPower, Law, law};
+use hertzchain_chain::{FarEnd, InstructionSet, Sensor, System};
+use std::sync::Arc;
+
+fn main() {
+    divan::main();
+}
+
+/// The laws of a bench by name; `unfused` is a sum that the loop runs law by law.
+fn laws(name: &str) -> Vec<Arc<dyn Law>> {
+    let power = DampingPower {
+        coefficient: 1.0,
+        rate_exponent: 1.0,
+        overlap_exponent: 0.5,
+    };
+    match name {
+        "hertz" => vec![hertz()],
+        "viscoelastic" => vec![hertz(), viscoelastic()],
+        "dry" => vec![hertz(), viscoelastic(), cubic()],
+        "unfused" => vec![viscoelastic(), hertz(), cubic()],
+        _ => vec![hertz(), law(power)],
+    }
+}
+
+fn settings(set: &str, beads: usize) -> Settings {
+    Settings {
+        sensors: vec![Sensor::Bead(7), Sensor::Contact(beads)],
+        end: End::Passed,
+        set: InstructionSet::named(set).unwrap_or_default(),
+        whole_chain: false,
+        openings: false,
+    }
+}
+
+/// Eight shots of the paper's row side by side.
+fn block(bencher: Bencher<'_, '_>, set: &str, name: &str) {
+    let system = System::new(&row(40, 0.5, laws(name))).unwrap();
+    let shot = Shot {
+        system: &system,
+        step: 0.16,
+        duration_s: 5e-3,
+    };
+    let settings = settings(set, 40);
+    let steps = fire(&[shot], &settings)[0].as_ref().unwrap().work.steps;
+    let items = ItemsCount::new(steps as usize * 42 * LANES);
+    bencher
+        .counter(items)
+        .bench(|| black_box(fire(&[shot; LANES], &settings)));
+}
+
+#[divan::bench(args = ["avx512", "avx2", "sse2"])]
+fn eight_dry_shots_by_instruction_set(bencher: Bencher<'_, '_>, set: &str) {
+    block(bencher, set, "dry");
+}
+
+#[divan::bench(args = ["hertz", "viscoelastic", "dry", "unfused", "damping_power"])]
+fn eight_shots_by_law(bencher: Bencher<'_, '_>, name: &str) {
+    block(bencher, "", name);
+}
+
+/// An item is a shot.
+#[divan::bench]
+fn one_dry_shot_alone(bencher: Bencher<'_, '_>) {
+    let system = System::new(&row(40, 0.5, laws("dry"))).unwrap();
+    let shot = Shot {
+        system: &system,
+        step: 0.16,
+        duration_s: 5e-3,
+    };
+    let settings = settings("", 40);
+    bencher
+        .counter(ItemsCount::new(1_usize))
+        .bench(|| black_box(fire(&[shot], &settings)));
+}
+
+/// All of a long chain, whether it moves or not.
+#[divan::bench(args = [40, 4_000, 100_000, 1_000_000], sample_count = 5)]
+fn one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
+    let mut chain = row(beads, 0.5, laws("hertz"));
+    chain.far = FarEnd::Free;
+    let system = System::new(&chain).unwrap();
+    let steps = (10_000_000 / beads).max(16);
+    let shot = Shot {
+        system: &system,
+        step: 0.1,
+        duration_s: 0.1 * steps as f64 * system.scales().time_s,
+    };
+    let settings = Settings {
+        sensors: vec![],
+        end: End::Duration,
+        whole_chain: true,
+        ..settings("", beads)
+    };
+    bencher
+        .counter(ItemsCount::new(steps * beads))
+        .bench(|| black_box(fire(&[shot], &settings)));
+}
