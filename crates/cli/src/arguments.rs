@@ -96,7 +96,7 @@ pub struct How {
     /// Where a pulse is timed
     #[arg(long, value_enum, value_name = "NAME")]
     pub pick: Option<Pick>,
-    /// Compute again more tightly and print the accuracy reached
+    /// Compute again and print the accuracy reached; shots of ensembles always are
     #[arg(long)]
     pub check: bool,
 }

@@ -12,11 +12,11 @@ use fearless_simd::{Avx512, Level};
 /// elsewhere the hardware's root is as fast.
 #[inline(always)]
 pub(super) fn roots<S: Simd>(simd: S, d: f64x8<S>) -> f64x8<S> {
-    #[cfg(target_arch = "x86_64")]
-    if let Level::Avx512(avx512) = simd.level() {
-        return refined(avx512, d.into()).simd_into(simd);
+    match simd.level() {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(avx512) => refined(avx512, d.into()).simd_into(simd),
+        _ => d.sqrt(),
     }
-    d.sqrt()
 }
 
 #[cfg(target_arch = "x86_64")]
