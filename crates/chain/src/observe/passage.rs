@@ -139,15 +139,24 @@ impl Passages {
         Ok((incident, wall))
     }
 
+    /// The incident, the wall's and the reflected maximum alone: what times of
+    /// flight need, without widths.
+    ///
+    /// # Errors
+    /// When the pulse did not pass the sensor bead or reach the wall.
+    pub fn peaks(&self) -> Result<(Maximum, Maximum, Option<Maximum>), PassageError> {
+        let (incident, wall) = self.incident_and_wall()?;
+        let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
+        let within = |peak: &Maximum| peak.time_s > wall.time_s && peak.time_s <= until;
+        Ok((incident, wall, largest(self.sensor.maxima(), within)))
+    }
+
     /// What was seen.
     ///
     /// # Errors
     /// When the pulse did not pass the sensor bead or reach the wall.
     pub fn passage(&self) -> Result<Passage, PassageError> {
-        let (incident, wall) = self.incident_and_wall()?;
-        let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
-        let within = |peak: &Maximum| peak.time_s > wall.time_s && peak.time_s <= until;
-        let reflected = largest(self.sensor.maxima(), within);
+        let (incident, wall, reflected) = self.peaks()?;
         let width = |signal: &Signal, peak: Maximum| {
             let half = 0.5 * peak.value;
             Some(
