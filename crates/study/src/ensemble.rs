@@ -8,6 +8,7 @@ use crate::accuracy;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
 use crate::flight::Flight;
+use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked};
 use hertzchain_chain::ensemble::{self, End, Flown, LANES};
@@ -45,7 +46,7 @@ pub fn shoot_all(
     results.into_iter().flatten().collect()
 }
 
-/// Plans to be fired together: alike in accuracy, sensor and length.
+/// Plans to be fired together: alike in accuracy, sensor, length and what ends them.
 fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
     let mut blocks = Vec::new();
     let mut open: Vec<Vec<usize>> = Vec::new();
@@ -70,6 +71,7 @@ fn fire_together(one: &Plan, other: &Plan) -> bool {
     one.accuracy == other.accuracy
         && one.sensor_bead == other.sensor_bead
         && one.chain.beads.len() == other.chain.beads.len()
+        && one.duration_s.is_none() == other.duration_s.is_none()
 }
 
 /// Whether the ensemble loop can run a plan to the accuracy asked.
@@ -169,10 +171,10 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Opt
         openings,
     };
     let flown = ensemble::fire(&shots, &settings).into_iter();
-    let plans = ready.iter().map(|(plan, _)| *plan);
-    plans
+    ready
+        .iter()
         .zip(flown)
-        .map(|(plan, flown)| shot(plan, flown.ok()?))
+        .map(|((plan, system), flown)| shot(plan, system, flown.ok()?))
         .collect()
 }
 
@@ -181,7 +183,7 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Opt
 const MOST_CORRECTION: f64 = 0.01;
 
 /// What a plan asks for, from what its sensors showed.
-fn shot(plan: &Plan, flown: Flown) -> Option<Shot> {
+fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
     if flown.correction > MOST_CORRECTION {
         return None;
     }
@@ -208,6 +210,6 @@ fn shot(plan: &Plan, flown: Flown) -> Option<Shot> {
         solver: "predictor–corrector of order 4, equal steps".to_owned(),
         tolerance: None,
         step_s: Some(flown.step_s),
-        notes: Vec::new(),
+        notes: closed_gaps(plan, system).into_iter().collect(),
     })
 }

@@ -30,7 +30,7 @@ impl<'a> Gun<'a> {
     /// The shot, computed twice if checked.
     pub(crate) fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
         let mut shot = self.computed(checked)?;
-        shot.notes.extend(self.closed_gaps());
+        shot.notes.extend(closed_gaps(self.plan, &self.system));
         let residual = shot.budget.as_ref().map_or(0.0, Budget::relative_residual);
         if residual.abs() > self.plan.accuracy {
             shot.notes.push(format!(
@@ -38,18 +38,6 @@ impl<'a> Gun<'a> {
             ));
         }
         Ok(shot)
-    }
-
-    /// A gap under load is no gap: the chain has closed it before the shot.
-    fn closed_gaps(&self) -> Option<String> {
-        let gaps = self.plan.chain.gaps.iter().filter(|gap| gap.gap_m > 0.0);
-        let loaded = |contact| self.system.static_contact(contact).overlap_m >= 0.0;
-        match gaps.filter(|gap| loaded(gap.contact)).count() {
-            0 => None,
-            count => Some(format!(
-                "{count} of the initial gaps carry a load and are closed before the shot"
-            )),
-        }
     }
 
     fn computed(&self, checked: bool) -> Result<Shot, StudyError> {
@@ -270,5 +258,17 @@ impl<'a> Gun<'a> {
             step_s: None,
             notes: Vec::new(),
         }
+    }
+}
+
+/// A gap under load is no gap: the chain has closed it before the shot.
+pub(crate) fn closed_gaps(plan: &Plan, system: &System) -> Option<String> {
+    let gaps = plan.chain.gaps.iter().filter(|gap| gap.gap_m > 0.0);
+    let loaded = |contact| system.static_contact(contact).overlap_m >= 0.0;
+    match gaps.filter(|gap| loaded(gap.contact)).count() {
+        0 => None,
+        count => Some(format!(
+            "{count} of the initial gaps carry a load and are closed before the shot"
+        )),
     }
 }

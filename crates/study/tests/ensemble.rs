@@ -82,6 +82,15 @@ fn what_the_ensemble_loop_does_not_have_is_flown_one_by_one() {
 }
 
 #[test]
+fn a_shot_with_a_duration_changes_none_without() {
+    let mut plans = plans("dry", &[0.3, 0.4, 0.5], 1e-5);
+    let alone = fly(&plans[1..]);
+    plans[0].duration_s = Some(4e-3);
+    assert_eq!(fly(&plans)[1..], alone);
+    assert_ne!(alone[0].duration_s, fly(&plans)[0].duration_s);
+}
+
+#[test]
 fn a_plan_that_cannot_be_flown_stops_no_other() {
     let mut plans = plans("dry", &[0.3, 0.4, 0.5], 1e-5);
     let exact = fly(&plans);

@@ -1,6 +1,7 @@
 //! Whether the reflected pulse has passed, from samples alone.
 
 use super::record::Samples;
+use crate::observe::RETURN_WITHIN;
 use std::ops::Range;
 
 /// When a shot is over.
@@ -28,9 +29,6 @@ const SOONEST: f64 = 0.8;
 /// it doubles, returns with wall²/(4 incident). What is below this share of
 /// wall²/incident is a ripple, and the pulse may be yet to come.
 const RETURNED: f64 = 0.1;
-
-/// The reflected pulse comes within this many times the way to the wall.
-const LATEST: f64 = 3.0;
 
 /// Samples after a maximum that its interpolation may use.
 const MARGIN: usize = 8;
@@ -105,7 +103,7 @@ impl Passing {
         if end == End::Duration || self.wall.value <= silent_n || self.incident.value <= silent_n {
             return false;
         }
-        let too_late = self.wall.step as f64 + LATEST * self.way();
+        let too_late = self.wall.step as f64 + RETURN_WITHIN * self.way();
         let back = self.returned;
         let returned = RETURNED * self.wall.value * self.wall.value;
         let passed = back.value > silent_n

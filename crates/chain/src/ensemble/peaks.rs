@@ -2,15 +2,12 @@
 
 use super::record::Samples;
 use super::weights::Schedule;
-use crate::observe::{Maximum, Signal, Stretch};
+use crate::observe::{KEPT, Maximum, Signal, Stretch};
 use crate::sensor::Sensor;
 
 /// Samples on either side of the highest that its polynomial goes through.
 const REACH: usize = 3;
 const POINTS: usize = 2 * REACH + 1;
-
-/// Samples below this fraction of the largest so far are not kept.
-const KEPT: f64 = 1e-4;
 
 /// Times of a lane's samples.
 #[derive(Clone, Copy)]

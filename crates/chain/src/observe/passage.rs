@@ -60,7 +60,7 @@ pub type Flank = f64;
 const REPORTED: f64 = 0.05;
 
 /// The reflected pulse is looked for until tw + this · (tw − t7).
-const RETURN_WITHIN: f64 = 3.0;
+pub(crate) const RETURN_WITHIN: f64 = 3.0;
 
 impl Passage {
     /// Incident time of flight in s.

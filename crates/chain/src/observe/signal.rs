@@ -71,7 +71,7 @@ pub struct Signal {
 
 /// Steps at whose ends the signal is below this fraction of its largest value
 /// so far are not kept: they lie below anything that is picked.
-const KEPT: f64 = 1e-4;
+pub(crate) const KEPT: f64 = 1e-4;
 
 /// A force jump smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
