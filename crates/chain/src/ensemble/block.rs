@@ -325,7 +325,7 @@ impl<'a> Block<'a> {
             };
             for body in 0..bodies {
                 let at = body * self.lanes + lane;
-                external[at] = pushed(system, body, self.motion.x[at]);
+                external[at] = system.pushed(body, self.motion.x[at]);
             }
         }
     }
@@ -400,20 +400,4 @@ impl<'a> Block<'a> {
             self.step_s[lane] * own.fold(0.0, |a, b| if b <= a { a } else { b })
         })
     }
-}
-
-/// Acceleration in m/s² of a body by what is not a contact.
-fn pushed(system: &System, body: usize, x_m: f64) -> f64 {
-    let mut a = 0.0;
-    if body == 0 && system.has_striker {
-        a += system.slope_m_s2;
-    }
-    if let Some(spring) = system.spring.filter(|_| body == 1) {
-        // Against the force at rest; a spring never pulls.
-        a += (-spring.stiffness_n_m * x_m).max(-spring.force_n) * system.inverse_mass[1];
-    }
-    if system.hangs(body) {
-        a -= system.pendulum_per_s2 * x_m;
-    }
-    a
 }

@@ -218,10 +218,7 @@ fn signals(
     let of_lane = |(at, lane): (usize, &Lane)| {
         let sensors = settings.sensors.iter().enumerate();
         let signal = |(index, &sensor): (usize, &Sensor)| {
-            let silent = match sensor {
-                Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
-                _ => systems[at].scales().silent_force_n,
-            };
+            let silent = systems[at].silence(sensor);
             let clock = Clock {
                 schedule,
                 step_s: steps_s[at],

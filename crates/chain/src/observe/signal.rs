@@ -129,14 +129,6 @@ impl Signal {
         }
     }
 
-    /// Values up to this are no signal.
-    fn silence(&self, piece: &Piece<'_>) -> f64 {
-        match self.sensor {
-            Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
-            _ => piece.system().scales().silent_force_n,
-        }
-    }
-
     /// A slope right in sign: near a maximum the samples alone may not be.
     fn slope(&self, piece: &Piece<'_>, theta: f64, slope: f64, change: f64) -> f64 {
         match slope.abs() < change.abs() {
@@ -201,7 +193,7 @@ impl Observer for Signal {
         let size = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
-        if size <= KEPT * self.largest || size <= self.silence(piece) {
+        if size <= KEPT * self.largest || size <= piece.system().silence(self.sensor) {
             self.fall_silent();
             return Flow::Continue;
         }

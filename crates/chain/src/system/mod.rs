@@ -189,6 +189,31 @@ impl System {
         body < self.bodies() - 1 && (body > 0 || self.has_striker)
     }
 
+    /// Acceleration in m/s² of a displaced body by what is not a contact: the
+    /// striker's weight, the spring on bead 1, threads.
+    pub(crate) fn pushed(&self, body: usize, x_m: f64) -> f64 {
+        let mut a = 0.0;
+        if body == 0 && self.has_striker {
+            a += self.slope_m_s2;
+        }
+        if let Some(spring) = self.spring.filter(|_| body == 1) {
+            // Against the force at rest; a spring never pulls.
+            a += (-spring.stiffness_n_m * x_m).max(-spring.force_n) * self.inverse_mass[1];
+        }
+        if self.hangs(body) {
+            a -= self.pendulum_per_s2 * x_m;
+        }
+        a
+    }
+
+    /// Signals of a sensor up to this are none.
+    pub(crate) fn silence(&self, sensor: Sensor) -> f64 {
+        match sensor {
+            Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
+            _ => self.scales.silent_force_n,
+        }
+    }
+
     /// Whether bodies without contact fly on straight lines at constant speed.
     #[must_use]
     pub fn flies_free(&self) -> bool {

@@ -188,21 +188,8 @@ impl Piece<'_> {
         } else {
             body.checked_sub(1)
         };
-        let mut a = (side(before) - side(Some(body))) * system.inverse_mass[body];
-        let x = self.body(body, theta).0;
-        if body == 0 && system.has_striker {
-            a += system.slope_m_s2;
-        }
-        if body == 1
-            && let Some(spring) = system.spring
-        {
-            a += (-spring.stiffness_n_m * x).max(-spring.force_n) * system.inverse_mass[1];
-        }
-        if system.hangs(body) {
-            a - system.pendulum_per_s2 * x
-        } else {
-            a
-        }
+        let a = (side(before) - side(Some(body))) * system.inverse_mass[body];
+        a + system.pushed(body, self.body(body, theta).0)
     }
 
     /// Rate of change of a contact's force in N/s, by a central difference

@@ -222,20 +222,14 @@ impl Pass {
     }
 }
 
-/// What acts on single bodies beside contacts: the striker's weight, the
-/// spring on bead 1, threads.
+/// What acts on single bodies beside contacts.
 fn push_ends(system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
-    if bodies.start == 0 && system.has_striker {
-        a[0] += system.slope_m_s2;
-    }
-    if let Some(spring) = system.spring.filter(|_| bodies.start <= 1) {
-        // Against the force at rest; a spring never pulls.
-        let change = (-spring.stiffness_n_m * x[1]).max(-spring.force_n);
-        a[1] += change * system.inverse_mass[1];
-    }
-    if system.pendulum_per_s2 > 0.0 {
-        for i in bodies.filter(|&i| system.hangs(i)) {
-            a[i] -= system.pendulum_per_s2 * x[i];
-        }
+    let last = if system.pendulum_per_s2 > 0.0 {
+        bodies.end
+    } else {
+        2
+    };
+    for i in bodies.start..bodies.end.min(last) {
+        a[i] += system.pushed(i, x[i]);
     }
 }
