@@ -10,7 +10,7 @@ use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Liquid, Near, SectionSpec, Solver, Spec};
+use crate::spec::{Liquid, Near, Rig, SectionSpec, Solver, Spec};
 use crate::unit_slip;
 use crate::value::Units;
 use crate::view::View;
@@ -287,6 +287,13 @@ impl Experiment {
     #[must_use]
     pub fn liquid(&self) -> Option<&Liquid> {
         self.spec.liquid.as_ref()
+    }
+
+    /// What stands around the chain, if the file tells; nothing is computed
+    /// from it.
+    #[must_use]
+    pub fn rig(&self) -> Option<&Rig> {
+        self.spec.rig.as_ref()
     }
 
     /// Sections of contacts with their laws, in the reading.

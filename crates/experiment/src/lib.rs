@@ -74,5 +74,5 @@ pub use paths::{Named, PathError};
 pub use presets::{Preset, UnknownPreset, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use schema::schema;
-pub use spec::{Liquid, Method, SectionSpec, Solver};
+pub use spec::{Liquid, Method, Rig, RigPart, RigPartKind, SectionSpec, Solver};
 pub use value::Units;

@@ -5,9 +5,11 @@ mod contacts;
 mod ends;
 mod layout;
 mod materials;
+mod rig;
 mod setting;
 
 pub use contacts::SectionSpec;
+pub use rig::{Rig, RigPart, RigPartKind};
 pub use setting::{Liquid, METHODS, Method, Solver};
 
 pub(crate) use beads::{Group, sphere_mass_kg};
@@ -50,6 +52,7 @@ pub(crate) struct Spec {
     pub(crate) sensors: Sensors,
     pub(crate) solver: Solver,
     pub(crate) liquid: Option<Liquid>,
+    pub(crate) rig: Option<Rig>,
     pub(crate) reading: Reading,
 }
 
@@ -91,6 +94,7 @@ impl Spec {
             sensors: Sensors::read(root, count)?,
             solver: Solver::read(root)?,
             liquid: Liquid::read(root)?,
+            rig: Rig::read(root)?,
             reading: reading(root),
             materials,
             groups,
