@@ -96,10 +96,16 @@ fn law(spec: &Spec, contact: usize, error: &LawError) -> Problem {
     let problem = Problem::new(&span, message, &error.what);
     let from_materials = law.map_or(Vec::new(), |law| {
         let parameters = law.row.info.parameters.iter();
-        let left = parameters.filter(|p| p.source == Source::Materials);
+        let given = |name: &str| law.given.iter().any(|(given, _)| *given == name);
+        let left = parameters.filter(|p| p.source == Source::Materials && !given(p.name));
         left.map(|p| format!("`{}`", p.name)).collect()
     });
+    let bare = section(spec, contact).is_some_and(|section| section.material.is_none());
+    let mut parts = spec.groups.iter().flat_map(|group| &group.cell);
     match from_materials.is_empty() {
+        true if bare && parts.all(|part| part.material.is_none()) => {
+            problem.help("it needs the stiffness of a material: name one in [[beads]]")
+        }
         true => problem,
         false => problem.help(format!(
             "the materials must set {}, unless the law gives it",
