@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, Reading, preset};
-use hertzchain_study::reproduce::{CASES, Gathering, gather};
+use hertzchain_study::reproduce::{CASES, Effort, Gathering, gather};
 use hertzchain_study::{Plan, Settings, Shot, shoot, sweep};
 
 fn plan(experiment: &Experiment, speed_m_s: f64, accuracy: f64) -> Plan {
@@ -25,7 +25,7 @@ fn shot_sweep_and_reproduce_agree_on_the_rebound() {
         reading: Reading::default(),
         speeds_m_s: &speeds,
         accuracy,
-        checked: true,
+        effort: Effort::Checked,
     };
     let reproduced = gather(&how, &|_, _, _| {}, &|| {}).unwrap();
     for case in CASES {

@@ -5,25 +5,27 @@
     reason = "a test that cannot go on should fail"
 )]
 
+use hertzchain_chain::Sensor;
 use hertzchain_experiment::{Reading, preset};
-use hertzchain_study::claims::{Branch, Evidence};
+use hertzchain_study::claims::{Branch, Evidence, Point, claims};
 use hertzchain_study::readings::{Draw, DryPoisson, Prefactors, scan};
 use hertzchain_study::reproduce::{Cases, SPEEDS_M_S};
-use hertzchain_study::reproduce::{Gathering, Options, Silent, gather, oils_csv, tof_csv};
+use hertzchain_study::reproduce::{Effort, Gathering, Options, Silent, gather, oils_csv, tof_csv};
+use hertzchain_study::{Plan, shoot};
 
-fn gathered(speeds_m_s: &[f64], accuracy: f64, checked: bool) -> Evidence {
+fn gathered(speeds_m_s: &[f64], accuracy: f64, effort: Effort<'_>) -> Evidence {
     let how = Gathering {
         reading: Reading::default(),
         speeds_m_s,
         accuracy,
-        checked,
+        effort,
     };
     gather(&how, &|_, _, _| {}, &|| {}).unwrap()
 }
 
 #[test]
 fn times_of_flight_are_those_of_an_independent_integration() {
-    let evidence = gathered(&[0.075, 0.5, 1.23], 1e-8, true);
+    let evidence = gathered(&[0.075, 0.5, 1.23], 1e-8, Effort::Checked);
     // From bench/reference/tof.csv, right to 1e-9.
     let known = [
         (
@@ -55,7 +57,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
 fn every_time_of_flight_keeps_the_accuracy_that_is_asked() {
     let asked = Options::default().accuracy;
     // Speeds at which wet chains amplify errors most.
-    let evidence = gathered(&[0.075, 0.2, 0.28, 1.0], asked, true);
+    let evidence = gathered(&[0.075, 0.2, 0.28, 1.0], asked, Effort::Checked);
     for curve in &evidence.curves {
         for p in &curve.points {
             let (case, speed, reached) = (&curve.case, p.speed_m_s, p.accuracy_reached);
@@ -64,9 +66,89 @@ fn every_time_of_flight_keeps_the_accuracy_that_is_asked() {
     }
 }
 
+/// Numbers of a point with their absolute accuracies.
+fn with_accuracies(p: &Point) -> Vec<(f64, f64)> {
+    let tofs = [p.tof_incident_s, p.tof_reflected_s].map(|t| (t, p.accuracy_reached * t));
+    let peaks = [p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
+    let peaks = peaks.map(|peak| (peak, p.peak_accuracy * peak));
+    let widths = p.widths_s.map(|width| (width, p.width_accuracy * width));
+    let others = [
+        (p.second_returning_peak_n, p.second_peak_accuracy_n),
+        (p.striker_separation_m_s, p.striker_accuracy_m_s),
+        (p.striker_rebound_m_s, p.striker_accuracy_m_s),
+        (p.loosened_m, p.loosened_accuracy_m),
+    ];
+    tofs.into_iter()
+        .chain(peaks)
+        .chain(widths)
+        .chain(others)
+        .collect()
+}
+
+#[test]
+fn lean_shots_have_all_that_claims_ask_for_as_right_as_they_say() {
+    let judges = claims().unwrap();
+    // Speeds with and without rebound, and that of the split pulse.
+    let speeds = [0.16, 0.3993, 1.05];
+    let lean = gathered(&speeds, 1e-5, Effort::Lean(&judges));
+    let fine = gathered(&speeds, 1e-8, Effort::Checked);
+    let curves = lean.curves.iter().zip(&fine.curves);
+    let points =
+        curves.flat_map(|(a, b)| a.points.iter().zip(&b.points).map(|pair| (&a.case, pair)));
+    for (case, (lean, fine)) in points {
+        let numbers = with_accuracies(lean).into_iter().zip(with_accuracies(fine));
+        for (i, ((one, off), (other, as_off))) in numbers.enumerate() {
+            let what = format!("{case} at {} m/s, number {i}", lean.speed_m_s);
+            // The fine shot is as right as it says up to twice: its judge errs too.
+            assert!(
+                one.is_nan() || (one - other).abs() <= off + 2.0 * as_off,
+                "{what}: {one:e} {other:e} {off:e}"
+            );
+        }
+        let followed = judges.iter().any(|j| j.needs_end(case, lean.speed_m_s));
+        assert_eq!(!lean.striker_rebound_m_s.is_nan(), followed, "{case}");
+        assert_eq!(!lean.loosened_m.is_nan(), followed, "{case}");
+    }
+    for judge in &judges {
+        assert_eq!(
+            judge.decide(&lean).leaning,
+            judge.decide(&fine).leaning,
+            "{}",
+            judge.claim.id
+        );
+    }
+}
+
+#[test]
+fn the_second_returning_peak_is_the_top_that_fine_samples_show() {
+    let motor = preset("motor").unwrap();
+    let (plan, _) = Plan::from_experiment(&motor, Some(0.3993)).unwrap();
+    let sensors = vec![Sensor::Bead(plan.sensor_bead)];
+    let shot = shoot(&plan.with_accuracy(1e-8).watching(sensors, Some(2e-8))).unwrap();
+    let (trace, passage) = (shot.trace.unwrap(), shot.passage.unwrap());
+    let first = passage.reflected.unwrap();
+    // Seven beads to the striker's end and back, at the speed of 33 beads.
+    let no_echo_s = first.time_s + 14.0 / 33.0 * passage.tof_reflected_s().unwrap();
+    let samples = trace.columns[0].windows(3).zip(&trace.time_s[1..]);
+    let tops = samples.filter(|(w, time)| {
+        let apart = (**time - first.time_s).abs() > 0.25 * passage.reflected_width_s.unwrap();
+        let returning = **time > passage.wall.time_s && **time < no_echo_s;
+        w[1] > w[0] && w[1] >= w[2] && apart && returning
+    });
+    let sampled = tops.map(|(w, _)| w[1]).fold(0.0, f64::max);
+    let evidence = gathered(&[0.3993], 1e-8, Effort::Checked);
+    let found = evidence.curve("motor").unwrap().points[0].second_returning_peak_n;
+    // 20 ns beside the top of a pulse of 50 µs a sample is low by less than 1e-6.
+    assert!((sampled / found - 1.0).abs() < 1e-6, "{sampled} {found}");
+}
+
 #[test]
 fn default_reading_gives_the_ratios_known_from_an_independent_integration() {
-    let evidence = gathered(&[0.075, 0.12, 0.15, 0.5, 0.56, 1.0, 1.23], 1e-6, false);
+    let evidence = gathered(
+        &[0.075, 0.12, 0.15, 0.5, 0.56, 1.0, 1.23],
+        1e-6,
+        Effort::Lean(&[]),
+    );
     let ratio = |case: &str, i: usize| evidence.ratios(case)[i].incident;
     // Bounds as wide as the two digits in which they are stated.
     assert!((0..7).all(|i| (0.965..0.995).contains(&ratio("gear", i))));
@@ -79,7 +161,7 @@ fn default_reading_gives_the_ratios_known_from_an_independent_integration() {
 #[test]
 fn tables_have_a_row_for_every_case_and_speed() {
     assert!(SPEEDS_M_S.len() >= 25);
-    let evidence = gathered(&[0.25, 1.0], 1e-4, false);
+    let evidence = gathered(&[0.25, 1.0], 1e-4, Effort::Lean(&[]));
     let csv = tof_csv(&evidence);
     assert_eq!(csv.lines().count(), 1 + 6 * 2);
     assert!(csv.starts_with(
@@ -123,7 +205,7 @@ fn a_draw_depends_on_its_seed_and_index_alone() {
 #[test]
 fn scan_tries_every_option_once_and_says_what_it_left_out() {
     // A coarse scan: verdicts differ from the fine one, its bookkeeping does not.
-    let scan = scan(4, 1e-3, &Silent).unwrap();
+    let scan = scan(4, &[0.1, 0.24, 0.5, 1.23], 1e-3, &Silent).unwrap();
     let options: usize = Reading::switches()
         .iter()
         .map(|s| s.options.len() - 1)

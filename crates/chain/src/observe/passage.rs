@@ -41,6 +41,9 @@ pub struct Passage {
     pub wall: Maximum,
     /// Largest maximum of the sensor bead in (tw, tw + 3 (tw − t7)].
     pub reflected: Option<Maximum>,
+    /// All maxima of the sensor bead in the same time, small ones too: 1e-4 of
+    /// its largest.
+    pub returning_maxima: Vec<Maximum>,
     /// All maxima of the sensor bead above 5 % of its largest.
     pub sensor_maxima: Vec<Maximum>,
     /// All maxima of the wall above 5 % of its largest.
@@ -146,9 +149,8 @@ impl Passages {
     /// When the pulse did not pass the sensor bead or reach the wall.
     pub fn peaks(&self) -> Result<(Maximum, Maximum, Option<Maximum>), PassageError> {
         let (incident, wall) = self.incident_and_wall()?;
-        let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
-        let within = |peak: &Maximum| peak.time_s > wall.time_s && peak.time_s <= until;
-        Ok((incident, wall, largest(self.sensor.maxima(), within)))
+        let returning = |peak: &Maximum| returns(peak, incident, wall);
+        Ok((incident, wall, largest(self.sensor.maxima(), returning)))
     }
 
     /// What was seen.
@@ -164,10 +166,13 @@ impl Passages {
                     - crossing(signal, peak, half, Side::Before)?,
             )
         };
+        let returning = |peak: &&Maximum| returns(peak, incident, wall);
+        let maxima = self.sensor.maxima().iter();
         Ok(Passage {
             incident,
             wall,
             reflected,
+            returning_maxima: maxima.filter(returning).copied().collect(),
             sensor_maxima: reported(self.sensor.maxima()),
             wall_maxima: reported(self.wall.maxima()),
             incident_width_s: width(&self.sensor, incident),
@@ -208,6 +213,12 @@ impl Observer for Passages {
             _ => Flow::Continue,
         }
     }
+}
+
+/// Whether a maximum of the sensor bead lies in (tw, tw + 3 (tw − t7)].
+fn returns(peak: &Maximum, incident: Maximum, wall: Maximum) -> bool {
+    let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
+    peak.time_s > wall.time_s && peak.time_s <= until
 }
 
 fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {

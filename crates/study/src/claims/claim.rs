@@ -99,6 +99,15 @@ impl Judge {
     pub fn decide(&self, evidence: &Evidence) -> Finding {
         (self.predicate)(&self.claim, evidence)
     }
+
+    /// Whether the claim is about what a shot of a case leaves behind when the
+    /// pulses have passed: the striker or the gaps.
+    #[must_use]
+    pub fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
+        predicates::OF_THE_END.contains(&self.claim.predicate.as_str())
+            && self.claim.cases.iter().any(|name| name == case)
+            && (self.claim.from_m_s..=self.claim.to_m_s).contains(&speed_m_s)
+    }
 }
 
 #[derive(Deserialize)]

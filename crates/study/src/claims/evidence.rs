@@ -62,6 +62,16 @@ pub struct Point {
     pub loosened_m: f64,
     /// Relative accuracy reached of both ToFs.
     pub accuracy_reached: f64,
+    /// Relative accuracy of the sensor, wall and returning peak.
+    pub peak_accuracy: f64,
+    /// Absolute accuracy of the second returning peak in N.
+    pub second_peak_accuracy_n: f64,
+    /// Relative accuracy of the three widths.
+    pub width_accuracy: f64,
+    /// Absolute accuracy of the striker's two velocities in m/s.
+    pub striker_accuracy_m_s: f64,
+    /// Absolute accuracy of the loosening in m.
+    pub loosened_accuracy_m: f64,
 }
 
 impl Point {
@@ -110,29 +120,48 @@ impl Curve {
         self.points.iter().find(near)
     }
 
-    /// dT/dv of a branch in s²/m at every speed, from the slopes between
-    /// neighbours in log–log, where the curve is nearly straight.
-    #[must_use]
-    pub fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
-        let log = |p: &Point| (p.speed_m_s.ln(), p.tof_s(branch).ln());
+    /// d ln T/d ln v of a branch at every speed, from its neighbours in log–log,
+    /// where the curve is nearly straight; and its absolute accuracy: that of
+    /// the two ToFs over the distance of their speeds in ln v.
+    fn exponents(&self, branch: Branch) -> Vec<(f64, f64)> {
         let exponent = |a: &Point, b: &Point| {
-            let ((xa, ya), (xb, yb)) = (log(a), log(b));
-            (yb - ya) / (xb - xa)
+            let span = (b.speed_m_s / a.speed_m_s).ln();
+            let rise = (b.tof_s(branch) / a.tof_s(branch)).ln();
+            (
+                rise / span,
+                (a.accuracy_reached + b.accuracy_reached) / span,
+            )
         };
         let last = self.points.len().saturating_sub(1);
-        let slope = |(i, p): (usize, &Point)| {
-            let around = (
-                self.points.get(i.saturating_sub(1)),
-                self.points.get((i + 1).min(last)),
-            );
-            match around {
+        let around = |i: usize| {
+            let before = self.points.get(i.saturating_sub(1));
+            match (before, self.points.get((i + 1).min(last))) {
                 (Some(before), Some(after)) if before.speed_m_s < after.speed_m_s => {
-                    exponent(before, after) * p.tof_s(branch) / p.speed_m_s
+                    exponent(before, after)
                 }
-                _ => f64::NAN,
+                _ => (f64::NAN, f64::NAN),
             }
         };
-        self.points.iter().enumerate().map(slope).collect()
+        (0..self.points.len()).map(around).collect()
+    }
+
+    /// dT/dv of a branch in s²/m at every speed.
+    #[must_use]
+    pub fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
+        let slopes = self.exponents(branch).into_iter().zip(&self.points);
+        slopes
+            .map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s)
+            .collect()
+    }
+
+    /// Relative accuracy of dT/dv at every speed: that of the local exponent
+    /// and of the ToF.
+    #[must_use]
+    pub fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
+        let exponents = self.exponents(branch).into_iter().zip(&self.points);
+        exponents
+            .map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached)
+            .collect()
     }
 
     /// Standard error in s that the paper's points have: the scatter of the

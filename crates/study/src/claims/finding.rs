@@ -50,6 +50,9 @@ impl std::fmt::Display for Verdict {
 pub struct Finding {
     /// What follows.
     pub verdict: Verdict,
+    /// What would follow if the numbers were exact: on which side they lie, be it
+    /// by less than their accuracy.
+    pub leaning: Verdict,
     /// The number that decides; not a number when there is none.
     pub value: f64,
     /// Absolute accuracy of the number.
@@ -58,6 +61,18 @@ pub struct Finding {
     pub expected: Option<f64>,
     /// Where and how much, in words.
     pub detail: String,
+    /// Of what is counted: how far the nearest reading is from changing it.
+    pub nearest_change: Option<Distance>,
+}
+
+/// How far a reading is from where what is counted changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// The reading's distance from there.
+    pub margin: f64,
+    /// Absolute accuracy of the reading: a count whose margins are all larger
+    /// is exact.
+    pub accuracy: f64,
 }
 
 impl Finding {
@@ -72,26 +87,38 @@ impl Finding {
     pub fn without_numbers(why: &str) -> Self {
         Self {
             verdict: Verdict::NotDecidable,
+            leaning: Verdict::NotDecidable,
             value: f64::NAN,
             accuracy: f64::NAN,
             expected: None,
             detail: why.to_owned(),
+            nearest_change: None,
         }
+    }
+
+    /// Whether more accurate numbers could say more.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.verdict != self.leaning
     }
 }
 
 /// Counts single comparisons and makes a verdict of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
+    seen: Counts,
+    leaning: Counts,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Counts {
     yes: usize,
     no: usize,
     open: usize,
 }
 
-impl Tally {
-    /// Counts a comparison: met when the margin exceeds its accuracy, not met
-    /// when it is below minus that, open in between or when not a number.
-    pub fn margin(&mut self, margin: f64, accuracy: f64) {
+impl Counts {
+    fn margin(&mut self, margin: f64, accuracy: f64) {
         if margin > accuracy {
             self.yes += 1;
         } else if margin < -accuracy {
@@ -101,18 +128,7 @@ impl Tally {
         }
     }
 
-    /// Counts a plain yes or no.
-    pub fn answer(&mut self, yes: bool) {
-        match yes {
-            true => self.yes += 1,
-            false => self.no += 1,
-        }
-    }
-
-    /// Holds when all are met, fails when none is, in part when some are;
-    /// not decidable as soon as an open one could change that.
-    #[must_use]
-    pub fn verdict(self) -> Verdict {
+    fn verdict(self) -> Verdict {
         match (self.yes, self.no, self.open) {
             (0, 0, _) => Verdict::NotDecidable,
             (_, 0, 0) => Verdict::Holds,
@@ -121,11 +137,39 @@ impl Tally {
             _ => Verdict::InPart,
         }
     }
+}
+
+impl Tally {
+    /// Counts a comparison: met when the margin exceeds its accuracy, not met
+    /// when it is below minus that, open in between or when not a number.
+    pub fn margin(&mut self, margin: f64, accuracy: f64) {
+        self.seen.margin(margin, accuracy);
+        self.leaning.margin(margin, 0.0);
+    }
+
+    /// Counts a plain yes or no.
+    pub fn answer(&mut self, yes: bool) {
+        self.margin(if yes { 1.0 } else { -1.0 }, 0.0);
+    }
+
+    /// Holds when all are met, fails when none is, in part when some are;
+    /// not decidable as soon as an open one could change that.
+    #[must_use]
+    pub fn verdict(self) -> Verdict {
+        self.seen.verdict()
+    }
+
+    /// The same by the signs of the margins alone.
+    #[must_use]
+    pub fn leaning(self) -> Verdict {
+        self.leaning.verdict()
+    }
 
     /// How many were met, and of how many.
     #[must_use]
     pub fn counts(self) -> (usize, usize) {
-        (self.yes, self.yes + self.no + self.open)
+        let Counts { yes, no, open } = self.seen;
+        (yes, yes + no + open)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Claim, Judged, Needs, Verdict};
+use super::{Claim, Finding, Judged, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -34,6 +34,10 @@ fn row(judged: &Judged) -> Value {
         "value_expected": judged.finding.expected,
         "deviation": judged.finding.deviation().map_or(Value::Null, number),
         "detail": judged.finding.detail,
+        "nearest_change": judged.finding.nearest_change.map(|nearest| json!({
+            "margin": number(nearest.margin),
+            "accuracy": number(nearest.accuracy),
+        })),
         "verdict_as_printed": judged.finding.verdict.name(),
         "verdict": judged.verdict.name(),
     });
@@ -45,6 +49,7 @@ fn row(judged: &Judged) -> Value {
         let rounding = json!({
             "draws": rounded.draws,
             "verdicts": counts,
+            "within_accuracy": rounded.open,
             "value_range": rounded.range.map(|(low, high)| [low, high]),
         });
         row.insert("rounding".to_owned(), rounding);
@@ -99,9 +104,9 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
 
 /// What was drawn, for the page.
 const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
-    digit, steel's Poisson ratio 0.3 from 0.25 to 0.35; a claim that a draw decides otherwise \
-    is not decidable. Draws have fewer speeds than the tables; they are held against what the printed constants \
-    give at the same speeds.\n\n";
+    digit, steel's Poisson ratio 0.3 from 0.25 to 0.35, and all speeds are computed anew; a claim of which \
+    one draw lies on another side than the printed constants is not decidable. A draw that lies closer to \
+    a threshold than its accuracy is computed again more accurately.\n\n";
 
 /// How many claims have which verdict, in a sentence.
 fn totals(judged: &[Judged]) -> String {
@@ -123,7 +128,7 @@ fn section(page: &mut String, judged: &Judged) {
     if let (Some(expected), Some(deviation)) = (finding.expected, finding.deviation()) {
         let expected = with_unit(expected, claim);
         let sign = if deviation > 0.0 { "+" } else { "" };
-        let deviation = value_text(deviation, finding.accuracy);
+        let deviation = value_text(deviation, accuracy_shown(finding));
         let _ = writeln!(
             page,
             "- The paper: {expected}. Deviation: {sign}{}.",
@@ -133,27 +138,35 @@ fn section(page: &mut String, judged: &Judged) {
     let _ = writeln!(page, "- Needed: {}. {}", needed(judged), claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
     if let Some(rounded) = &judged.rounded {
-        let counts = Verdict::ALL.iter().zip(rounded.verdicts);
-        let counts = counts.filter(|(_, count)| *count > 0);
-        let counts: Vec<String> = counts
-            .map(|(verdict, count)| format!("{verdict} in {count}"))
-            .collect();
-        let range =
-            rounded_text(judged).map_or(String::new(), |range| format!("; computed: {range}"));
-        let _ = writeln!(
-            page,
-            "- Rounding of the printed constants, {} draws: {}{range}. The constants as printed give: {}.",
-            rounded.draws,
-            counts.join(", "),
-            finding.verdict,
-        );
+        rounding(page, judged, rounded);
     }
+}
+
+/// What rounding of the printed constants does to a claim.
+fn rounding(page: &mut String, judged: &Judged, rounded: &Rounded) {
+    let counts = Verdict::ALL.iter().zip(rounded.verdicts);
+    let counts = counts.filter(|(_, count)| *count > 0);
+    let counts: Vec<String> = counts
+        .map(|(verdict, count)| format!("{verdict} in {count}"))
+        .collect();
+    let open = match rounded.open {
+        0 => String::new(),
+        open => format!(" ({open} of them by less than their accuracy)"),
+    };
+    let range = rounded_text(judged).map_or(String::new(), |range| format!("; computed: {range}"));
+    let _ = writeln!(
+        page,
+        "- Rounding of the printed constants, {} draws: {}{open}{range}. The constants as printed give: {}.",
+        rounded.draws,
+        counts.join(", "),
+        judged.finding.verdict,
+    );
 }
 
 /// What was computed, with its accuracy and unit.
 #[must_use]
 pub fn computed_text(judged: &Judged) -> String {
-    let value = value_text(judged.finding.value, judged.finding.accuracy);
+    let value = value_text(judged.finding.value, accuracy_shown(&judged.finding));
     of_unit(value, &judged.claim)
 }
 
@@ -195,12 +208,22 @@ fn of_unit(number: String, claim: &Claim) -> String {
     }
 }
 
+/// Accuracies below this fraction of their value are rounding of the arithmetic
+/// and not worth their ink.
+const ROUNDED: f64 = 1e-13;
+
+/// The accuracy of a finding, `None` where it is rounding of the arithmetic.
+fn accuracy_shown(finding: &Finding) -> Option<f64> {
+    let accuracy = finding.accuracy;
+    (accuracy.is_finite() && accuracy > ROUNDED * finding.value.abs()).then_some(accuracy)
+}
+
 /// A value with as many digits as its accuracy allows, at most eight.
-fn value_text(value: f64, accuracy: f64) -> String {
-    match (value.is_finite(), accuracy.is_finite() && accuracy > 0.0) {
-        (false, _) => "none".to_owned(),
-        (true, false) => digits(value),
-        (true, true) => {
+fn value_text(value: f64, accuracy: Option<f64>) -> String {
+    match accuracy {
+        _ if !value.is_finite() => "none".to_owned(),
+        None => digits(value),
+        Some(accuracy) => {
             let shown = (value.abs() / accuracy).log10().ceil().clamp(1.0, 7.0) as usize;
             format!("{} ± {accuracy:.0e}", significant(value, shown))
         }

@@ -8,19 +8,20 @@ use super::{Claim, Evidence, Finding, Judge, Verdict};
 pub struct Rounded {
     /// Number of draws.
     pub draws: usize,
-    /// Draws with each verdict, in the order of [`Verdict::ALL`].
+    /// Draws with each verdict, in the order of [`Verdict::ALL`], by the side on
+    /// which their numbers lie: how accurately a draw was computed decides nothing.
     pub verdicts: [usize; 4],
+    /// Draws whose numbers lie on their side by less than their accuracy.
+    pub open: usize,
     /// Smallest and largest deciding number of the draws that had one.
     pub range: Option<(f64, f64)>,
 }
 
 impl Rounded {
-    /// From the draws' findings; `shift` is what finer numbers add to the
-    /// reference's value.
-    fn of(findings: &[Finding], shift: f64) -> Self {
-        let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
-        let values = findings.iter().map(|f| f.value + shift);
-        let values = values.filter(|v| v.is_finite());
+    /// From the draws' findings.
+    fn of(findings: &[Finding]) -> Self {
+        let count = |verdict| findings.iter().filter(|f| f.leaning == verdict).count();
+        let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
         let range = values.fold(None, |range: Option<(f64, f64)>, v| {
             let (low, high) = range.unwrap_or((v, v));
             Some((low.min(v), high.max(v)))
@@ -28,11 +29,12 @@ impl Rounded {
         Self {
             draws: findings.len(),
             verdicts: Verdict::ALL.map(count),
+            open: findings.iter().filter(|f| f.is_open()).count(),
             range,
         }
     }
 
-    /// Whether some draw differs from a verdict.
+    /// Whether some draw lies on another side than a verdict.
     #[must_use]
     pub fn flips(&self, verdict: Verdict) -> bool {
         let same = Verdict::ALL.iter().position(|v| *v == verdict);
@@ -56,37 +58,23 @@ pub struct Judged {
 /// Decides all claims on the constants as printed.
 #[must_use]
 pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
-    judge_all_rounded(judges, printed, printed, &[])
+    judge_all_rounded(judges, printed, &[])
 }
 
 /// Decides all claims on the constants as printed, and looks what draws within
-/// their rounding do. `reference` has the printed constants and is as fine as
-/// the draws are: a verdict from which a draw differs there is not decidable. The
-/// range of a value is that of the draws about the reference, carried over to
-/// the printed one.
+/// their rounding do: a claim of which one draw lies on another side than the
+/// printed constants is not decidable.
 #[must_use]
-pub fn judge_all_rounded(
-    judges: &[Judge],
-    printed: &Evidence,
-    reference: &Evidence,
-    draws: &[Evidence],
-) -> Vec<Judged> {
-    let all = judges
-        .iter()
-        .map(|judge| decide(judge, printed, reference, draws));
+pub fn judge_all_rounded(judges: &[Judge], printed: &Evidence, draws: &[Evidence]) -> Vec<Judged> {
+    let all = judges.iter().map(|judge| decide(judge, printed, draws));
     all.collect()
 }
 
-fn decide(judge: &Judge, printed: &Evidence, reference: &Evidence, draws: &[Evidence]) -> Judged {
+fn decide(judge: &Judge, printed: &Evidence, draws: &[Evidence]) -> Judged {
     let finding = judge.decide(printed);
     let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
-    let unrounded = judge.decide(reference);
-    let shift = match finding.value - unrounded.value {
-        shift if shift.is_finite() => shift,
-        _ => 0.0,
-    };
-    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn, shift));
-    let flips = rounded.as_ref().is_some_and(|r| r.flips(unrounded.verdict));
+    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
+    let flips = rounded.as_ref().is_some_and(|r| r.flips(finding.leaning));
     Judged {
         claim: judge.claim.clone(),
         verdict: if flips {

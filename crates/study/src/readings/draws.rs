@@ -1,22 +1,30 @@
 //! Evidence under the rounding of the printed constants.
 
 use super::rounding::{Draw, DryPoisson, Prefactors};
-use crate::claims::Evidence;
-use crate::reproduce::{Cases, Gathering, OILS, ReproduceError, gather};
+use super::sharpened::sharpened;
+use crate::claims::{Evidence, Judge};
+use crate::reproduce::{Cases, Effort, Gathering, OILS, ReproduceError, SPEEDS_M_S, gather};
 use hertzchain_chain::Chain;
+use hertzchain_experiment::Reading;
 
-/// Draws the printed constants anew and shoots all cases for each draw.
+/// Accuracies of a draw's shots: the next one where the last leaves it open on
+/// which side of a threshold a number lies.
+const ACCURACIES: [f64; 3] = [1e-5, 1e-6, 1e-7];
+
+/// Draws the printed constants anew and shoots all cases at all speeds of the tables
+/// for each draw, as accurately as the claims take to be decided on it.
 ///
 /// # Errors
 /// The first shot that can't be computed.
 pub fn rounded_evidence(
-    how: &Gathering<'_>,
+    judges: &[Judge],
     seed: u64,
     draws: usize,
     dry_poisson: DryPoisson,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Evidence>, ReproduceError> {
-    let cases = Cases::new(&how.reading)?;
+    let reading = Reading::default();
+    let cases = Cases::new(&reading)?;
     let mut prefactors = Vec::new();
     for case in OILS {
         if let Some(experiment) = cases.get(case) {
@@ -29,9 +37,19 @@ pub fn rounded_evidence(
             let known = prefactors.iter().find(|(name, _)| *name == case);
             draw.change(case, speed, known.and_then(|(_, p)| *p), chain);
         };
-        let mut evidence = gather(how, &change, done)?;
-        draw.change_oils(&mut evidence.oils);
-        Ok(evidence)
+        let evidence = sharpened(judges, &ACCURACIES, &|accuracy| {
+            let how = Gathering {
+                reading,
+                speeds_m_s: &SPEEDS_M_S,
+                accuracy,
+                effort: Effort::Lean(judges),
+            };
+            let mut evidence = gather(&how, &change, &|| {})?;
+            draw.change_oils(&mut evidence.oils);
+            Ok(evidence)
+        });
+        done();
+        evidence
     };
     (0..draws).map(one).collect()
 }

@@ -5,6 +5,7 @@ mod draws;
 mod report;
 mod rounding;
 mod scan;
+mod sharpened;
 
 pub use draws::rounded_evidence;
 pub use report::{scan_csv, scan_markdown, two_digits_markdown};

@@ -2,7 +2,6 @@
 
 use super::scan::{Row, Scan};
 use crate::claims::{Claim, Judged, Verdict, rounded_text, with_unit};
-use crate::reproduce::{SCAN_ACCURACY, SCAN_SPEEDS_M_S};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -35,11 +34,6 @@ pub fn scan_markdown(scan: &Scan) -> String {
     page.push_str(
         "The paper leaves open what these switches decide. The score counts a claim that holds as \
          1 and one that holds in part as 1/2; rounding of the printed constants is left aside here.\n\n",
-    );
-    let _ = writeln!(
-        page,
-        "Values differ a little from those of claims.md: the scan computes {} of its speeds, to {SCAN_ACCURACY:e}.\n",
-        SCAN_SPEEDS_M_S.len()
     );
     page.push_str(
         "## One switch at a time\n\n| reading | score | gained | lost |\n|---|---|---|---|\n",

@@ -1,9 +1,8 @@
 //! Which claims hold in which reading.
 
+use super::sharpened::sharpened;
 use crate::claims::{Claim, Judge, Verdict, claims};
-use crate::reproduce::{
-    Gathering, Memory, Progress, ReproduceError, SCAN_SPEEDS_M_S, gather_remembering,
-};
+use crate::reproduce::{Effort, Gathering, Memory, Progress, ReproduceError, gather_remembering};
 use hertzchain_experiment::Reading;
 
 /// The claims' verdicts in one reading.
@@ -74,14 +73,21 @@ pub struct Scan {
 
 /// Tries readings: one switch at a time, then the full product of those that
 /// move a verdict as far as `most` readings go, then from the best of these
-/// one switch at a time for as long as that improves it.
+/// one switch at a time for as long as that improves it. A reading that leaves a
+/// claim open is computed again at a tenth of the accuracy.
 ///
 /// # Errors
 /// The first shot that can't be computed.
-pub fn scan(most: usize, accuracy: f64, progress: &dyn Progress) -> Result<Scan, ReproduceError> {
+pub fn scan(
+    most: usize,
+    speeds_m_s: &[f64],
+    accuracy: f64,
+    progress: &dyn Progress,
+) -> Result<Scan, ReproduceError> {
     let scanner = Scanner {
         judges: claims()?,
         memory: Memory::default(),
+        speeds_m_s,
         accuracy,
         progress,
     };
@@ -225,19 +231,23 @@ fn product(factors: &[Factor]) -> Vec<Reading> {
 struct Scanner<'a> {
     judges: Vec<Judge>,
     memory: Memory,
+    speeds_m_s: &'a [f64],
     accuracy: f64,
     progress: &'a dyn Progress,
 }
 
 impl Scanner<'_> {
     fn row(&self, reading: &Reading) -> Result<Row, ReproduceError> {
-        let how = Gathering {
-            reading: *reading,
-            speeds_m_s: &SCAN_SPEEDS_M_S,
-            accuracy: self.accuracy,
-            checked: false,
-        };
-        let evidence = gather_remembering(&how, &self.memory)?;
+        let accuracies = [self.accuracy, 0.1 * self.accuracy];
+        let evidence = sharpened(&self.judges, &accuracies, &|accuracy| {
+            let how = Gathering {
+                reading: *reading,
+                speeds_m_s: self.speeds_m_s,
+                accuracy,
+                effort: Effort::Lean(&self.judges),
+            };
+            gather_remembering(&how, &self.memory)
+        })?;
         let findings = self.judges.iter().map(|judge| judge.decide(&evidence));
         let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();
         Ok(Row {

@@ -41,3 +41,11 @@ pub enum ReproduceError {
         error: std::io::Error,
     },
 }
+
+pub(crate) fn failed(case: &str, speed_m_s: f64, error: StudyError) -> ReproduceError {
+    ReproduceError::Shot {
+        case: case.to_owned(),
+        speed_m_s,
+        error: Box::new(error),
+    }
+}

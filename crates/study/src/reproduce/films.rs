@@ -1,7 +1,8 @@
 //! Shots looked at over time, for pictures.
 
-use super::ReproduceError;
-use super::gather::{Cases, failed, plan};
+use super::cases::Cases;
+use super::gather::plan;
+use super::{ReproduceError, failed};
 use crate::shoot;
 use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::Budget;

@@ -1,30 +1,14 @@
 //! From shots to the numbers that claims are judged on.
 
-use super::ReproduceError;
+use super::cases::Cases;
 use super::memory::Memory;
-use crate::claims::{Curve, Evidence, Oil, Point};
-use crate::{Plan, Shot, shoot, shoot_checked};
-use hertzchain_chain::observe::Passage;
+use super::point::{checked, read_off};
+use super::{ReproduceError, failed};
+use crate::claims::{Curve, Evidence, Judge, Point};
+use crate::{InstructionSet, Plan, Shot, StudyError, shoot, shoot_all};
 use hertzchain_chain::{Chain, Sensor};
-use hertzchain_experiment::{Experiment, Reading, preset};
+use hertzchain_experiment::{Experiment, Reading};
 use rayon::prelude::*;
-
-/// The paper's chains, in the order of the tables.
-pub const CASES: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "gear",
-    "motor",
-];
-
-/// The wet ones.
-pub const OILS: [&str; 3] = ["pump", "gear", "motor"];
-
-/// The dry chain held together by the paper's spring force, for the claim
-/// about loosening.
-pub const HELD: &str = "dry-held";
 
 /// How the paper's chains are shot.
 #[derive(Clone, Debug)]
@@ -35,58 +19,23 @@ pub struct Gathering<'a> {
     pub speeds_m_s: &'a [f64],
     /// Relative accuracy asked of ToFs.
     pub accuracy: f64,
-    /// Whether every shot is run again at a tenth of the tolerance.
-    pub checked: bool,
+    /// How much is known of every shot.
+    pub effort: Effort<'a>,
+}
+
+/// How much is known of every shot.
+#[derive(Clone, Copy, Debug)]
+pub enum Effort<'a> {
+    /// All numbers, each with the accuracy it reached: every shot is computed again
+    /// at a tenth of the tolerance.
+    Checked,
+    /// Times, peaks and widths by the ensemble loop; the striker and the gaps
+    /// only of the shots in which one of these claims asks for them.
+    Lean(&'a [Judge]),
 }
 
 /// Changes a chain of a case, hit at a speed, before it is shot.
 pub type Change<'a> = &'a (dyn Fn(&str, f64, &mut Chain) + Sync);
-
-/// The paper's chains in one reading.
-#[derive(Clone, Debug)]
-pub struct Cases(Vec<(&'static str, Experiment)>);
-
-impl Cases {
-    /// All of them, and the dry chain held together.
-    ///
-    /// # Errors
-    /// A reading that leaves something outside a chain.
-    pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
-        let held = reading
-            .with("preload", "constant")
-            .map_err(ReproduceError::Reading)?;
-        let named = CASES.map(|case| (case, case, *reading));
-        let all = named.into_iter().chain([(HELD, "dry", held)]);
-        let open = |(case, file, reading): (&'static str, &str, Reading)| {
-            let experiment = preset(file).map_err(ReproduceError::Preset)?;
-            Ok((case, experiment.with_reading(&reading)?))
-        };
-        all.map(open)
-            .collect::<Result<_, ReproduceError>>()
-            .map(Self)
-    }
-
-    /// The experiment of a case.
-    #[must_use]
-    pub fn get(&self, case: &str) -> Option<&Experiment> {
-        let found = self.0.iter().find(|(name, _)| *name == case);
-        found.map(|(_, experiment)| experiment)
-    }
-
-    /// The liquids as printed.
-    #[must_use]
-    pub fn oils(&self) -> Vec<Oil> {
-        let oil = |case: &&str| {
-            let liquid = self.get(case)?.liquid()?;
-            Some(Oil {
-                case: (*case).to_owned(),
-                kinematic_viscosity_m2_s: liquid.kinematic_viscosity_m2_s?,
-                density_kg_m3: liquid.density_kg_m3?,
-            })
-        };
-        OILS.iter().filter_map(oil).collect()
-    }
-}
 
 /// Shoots all cases at all speeds, on all cores; `done` is called after each
 /// shot, from any thread. The result does not depend on their number.
@@ -119,21 +68,23 @@ fn gathered(
     done: &(dyn Fn() + Sync),
 ) -> Result<Evidence, ReproduceError> {
     let cases = Cases::new(&how.reading)?;
-    let jobs: Vec<(usize, f64)> = (0..cases.0.len())
-        .flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)))
-        .collect();
-    let shoot = |&(case, speed): &(usize, f64)| {
-        let (name, experiment) = &cases.0[case];
-        let point = point((name, experiment), speed, how, change, memory);
-        done();
-        point
+    let all = cases.all().iter();
+    let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
+    let jobs: Vec<_> = jobs.collect();
+    let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
+        Target::new(case, experiment, speed, how, change)
     };
-    let points: Vec<Point> = jobs.par_iter().map(shoot).collect::<Result<_, _>>()?;
+    let targets: Vec<Target> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
+    let points = shot_at(&targets, how.effort, memory, done)?;
     let curves = points.chunks(how.speeds_m_s.len().max(1));
-    let curves = cases.0.iter().zip(curves).map(|((case, _), points)| Curve {
-        case: (*case).to_owned(),
-        points: points.to_vec(),
-    });
+    let curves = cases
+        .all()
+        .iter()
+        .zip(curves)
+        .map(|((case, _), points)| Curve {
+            case: (*case).to_owned(),
+            points: points.to_vec(),
+        });
     Ok(Evidence {
         curves: curves.collect(),
         oils: cases.oils(),
@@ -153,38 +104,116 @@ fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, Repr
     Ok(material.map_or(f64::NAN, |m| m.shear_viscosity_pa_s / m.young_modulus_pa))
 }
 
-/// The sensor bead is sampled this often to see small returning maxima, in s:
-/// ten samples in the narrowest pulse of the paper's speeds.
+/// A shot to be computed.
+struct Target {
+    case: &'static str,
+    speed_m_s: f64,
+    plan: Plan,
+}
+
+/// The end beads are sampled this often to see how far they are apart, in s.
 const SAMPLED_S: f64 = 5e-6;
 
-fn point(
-    (case, experiment): (&str, &Experiment),
-    speed_m_s: f64,
-    how: &Gathering<'_>,
-    change: Change<'_>,
-    memory: Option<&Memory>,
-) -> Result<Point, ReproduceError> {
-    let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
-    let (n, beads) = (plan.sensor_bead, plan.chain.beads.len());
-    let sensors = vec![
-        Sensor::Bead(n),
-        Sensor::Position(1),
-        Sensor::Position(beads),
-    ];
-    let plan = plan.watching(sensors, Some(SAMPLED_S));
-    let compute = || {
-        let shot = if how.checked {
-            shoot_checked(&plan)
-        } else {
-            shoot(&plan)
+impl Target {
+    fn new(
+        case: &'static str,
+        experiment: &Experiment,
+        speed_m_s: f64,
+        how: &Gathering<'_>,
+        change: Change<'_>,
+    ) -> Result<Self, ReproduceError> {
+        let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
+        let followed = match how.effort {
+            Effort::Checked => true,
+            Effort::Lean(judges) => judges.iter().any(|j| j.needs_end(case, speed_m_s)),
         };
-        let shot = shot.map_err(|error| failed(case, speed_m_s, error))?;
-        Ok(read_off(&plan, speed_m_s, &shot))
-    };
-    match memory {
-        Some(memory) => memory.point(&plan, compute),
-        None => compute(),
+        let ends = vec![
+            Sensor::Position(1),
+            Sensor::Position(plan.chain.beads.len()),
+        ];
+        let plan = match followed {
+            true => plan.watching(ends, Some(SAMPLED_S)),
+            false => plan.for_flights(),
+        };
+        Ok(Self {
+            case,
+            speed_m_s,
+            plan,
+        })
     }
+
+    fn failed(&self, error: StudyError) -> ReproduceError {
+        failed(self.case, self.speed_m_s, error)
+    }
+
+    fn point(&self, shot: Result<Shot, StudyError>) -> Result<Point, ReproduceError> {
+        let shot = shot.map_err(|error| self.failed(error))?;
+        Ok(read_off(&self.plan, self.speed_m_s, &shot))
+    }
+}
+
+/// Points of all targets, in order.
+fn shot_at(
+    targets: &[Target],
+    effort: Effort<'_>,
+    memory: Option<&Memory>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Point>, ReproduceError> {
+    let known = |target: &Target| memory.and_then(|memory| memory.recall(&target.plan));
+    let mut points: Vec<Option<Point>> = targets.par_iter().map(known).collect();
+    let new = || targets.iter().zip(&points).enumerate();
+    let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
+    let new: Vec<(usize, &Target)> = new.collect();
+    let fresh = match effort {
+        Effort::Checked => checked_points(&new, done)?,
+        Effort::Lean(_) => lean_points(&new, done)?,
+    };
+    for ((at, target), point) in new.into_iter().zip(fresh) {
+        if let Some(memory) = memory {
+            memory.keep(&target.plan, &point);
+        }
+        points[at] = Some(point);
+    }
+    Ok(points.into_iter().flatten().collect())
+}
+
+fn checked_points(
+    targets: &[(usize, &Target)],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Point>, ReproduceError> {
+    let one = |(_, target): &(usize, &Target)| {
+        let point = checked(&target.plan, target.speed_m_s);
+        done();
+        point.map_err(|error| target.failed(error))
+    };
+    targets.par_iter().map(one).collect()
+}
+
+/// Shots that are followed to their end run in the wave loop, the others side by
+/// side in the ensemble loop.
+fn lean_points(
+    targets: &[(usize, &Target)],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Point>, ReproduceError> {
+    let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
+    let plans: Vec<Plan> = passing.map(|(_, target)| target.plan.clone()).collect();
+    let set = InstructionSet::default();
+    let mut passing = shoot_all(&plans, set, false, done).into_iter();
+    let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
+    let one = |(_, target): &&(usize, &Target)| {
+        let shot = shoot(&target.plan);
+        done();
+        shot
+    };
+    let mut followed = followed.par_iter().map(one).collect::<Vec<_>>().into_iter();
+    let in_order = targets.iter().filter_map(|(_, target)| {
+        let shot = match target.plan.rebound {
+            true => followed.next(),
+            false => passing.next(),
+        };
+        Some(target.point(shot?))
+    });
+    in_order.collect()
 }
 
 /// The plan of a shot of a case.
@@ -200,85 +229,4 @@ pub(super) fn plan(
     change(case, speed_m_s, &mut plan.chain);
     plan.accuracy = accuracy;
     Ok(plan)
-}
-
-pub(super) fn failed(case: &str, speed_m_s: f64, error: crate::StudyError) -> ReproduceError {
-    ReproduceError::Shot {
-        case: case.to_owned(),
-        speed_m_s,
-        error: Box::new(error),
-    }
-}
-
-fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
-    let passage = shot.passage.as_ref().ok();
-    let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    let reflected = passage.and_then(|p| p.reflected);
-    let tof_reflected_s = shot.flight.and_then(|f| f.reflected_s);
-    let rebound = shot.rebound;
-    Point {
-        speed_m_s,
-        tof_incident_s: or_nan(shot.flight.map(|f| f.incident_s)),
-        tof_reflected_s: or_nan(tof_reflected_s),
-        sensor_peak_n: or_nan(passage.map(|p| p.incident.value)),
-        wall_peak_n: or_nan(passage.map(|p| p.wall.value)),
-        returning_peak_n: or_nan(reflected.map(|peak| peak.value)),
-        second_returning_peak_n: or_nan(passage.and_then(|p| second_return(plan, shot, p))),
-        widths_s: [
-            or_nan(passage.and_then(|p| p.incident_width_s)),
-            or_nan(passage.and_then(|p| p.wall_width_s)),
-            or_nan(passage.and_then(|p| p.reflected_width_s)),
-        ],
-        striker_separation_m_s: or_nan(rebound.and_then(|r| r.first).map(|(_, v)| v)),
-        striker_rebound_m_s: or_nan(rebound.and_then(|r| r.end_m_s)),
-        loosened_m: or_nan(loosened(shot)),
-        accuracy_reached: shot.accuracy_reached.unwrap_or(shot.accuracy_asked),
-    }
-}
-
-/// Largest returning maximum beside the first. What comes later than twice the
-/// way from the sensor bead to the near end takes may be an echo from there.
-fn second_return(plan: &Plan, shot: &Shot, passage: &Passage) -> Option<f64> {
-    let (first, width) = (passage.reflected?, passage.reflected_width_s?);
-    let back = passage.tof_reflected_s()?;
-    let (n, beads) = (plan.sensor_bead as f64, plan.chain.beads.len() as f64);
-    let until = first.time_s + 2.0 * n / (beads - n) * back;
-    let trace = shot.trace.as_ref()?;
-    let samples = trace.columns.first()?;
-    let tops = samples
-        .windows(3)
-        .zip(trace.time_s.iter().skip(1))
-        .filter_map(|(w, time)| {
-            let [left, middle, right] = [w.first()?, w.get(1)?, w.get(2)?];
-            let other = *time > passage.wall.time_s
-                && *time < until
-                && (time - first.time_s).abs() > 0.25 * width;
-            (other && middle > left && middle >= right).then_some(top(*left, *middle, *right))
-        });
-    Some(tops.fold(0.0, f64::max))
-}
-
-/// Top of the parabola through three samples.
-fn top(left: f64, middle: f64, right: f64) -> f64 {
-    let bend = left - 2.0 * middle + right;
-    match bend < 0.0 {
-        true => middle - (right - left).powi(2) / (8.0 * bend),
-        false => middle,
-    }
-}
-
-/// By how much beads 1 and N stand farther apart than at rest, in m, at the end
-/// of the time in which the returning pulse is looked for.
-fn loosened(shot: &Shot) -> Option<f64> {
-    let (trace, passage) = (shot.trace.as_ref()?, shot.passage.as_ref().ok()?);
-    let until = passage.wall.time_s + 3.0 * passage.tof_incident_s();
-    let seen = trace.time_s.partition_point(|time| *time <= until);
-    let at = |column: usize| {
-        trace
-            .columns
-            .get(column)?
-            .get(seen.checked_sub(1)?)
-            .copied()
-    };
-    Some(at(2)? - at(1)?)
 }

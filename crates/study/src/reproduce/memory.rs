@@ -12,20 +12,16 @@ use std::sync::{Mutex, PoisonError};
 pub struct Memory(Mutex<HashMap<[u64; 2], Point>>);
 
 impl Memory {
-    /// The remembered point of a plan, or a new one.
-    pub(super) fn point<E>(
-        &self,
-        plan: &Plan,
-        compute: impl FnOnce() -> Result<Point, E>,
-    ) -> Result<Point, E> {
+    /// The remembered point of a plan.
+    pub(super) fn recall(&self, plan: &Plan) -> Option<Point> {
         let key = key(plan);
-        let known = self.lock().get(&key).cloned();
-        if let Some(point) = known {
-            return Ok(point);
-        }
-        let point = compute()?;
+        self.lock().get(&key).cloned()
+    }
+
+    /// Remembers the point of a plan.
+    pub(super) fn keep(&self, plan: &Plan, point: &Point) {
+        let key = key(plan);
         self.lock().insert(key, point.clone());
-        Ok(point)
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<[u64; 2], Point>> {

@@ -1,11 +1,12 @@
 //! The whole of a reproduction, from shots to verdicts.
 
+use super::cases::{CASES, Cases};
 use super::films::{Film, SignalShot, films, signals};
-use super::gather::{CASES, Cases, Gathering, gather};
+use super::gather::{Effort, Gathering, gather};
 use super::provenance::{commit, machine};
 use super::{
-    Progress, Provenance, ReproduceError, SCAN_SPEEDS_M_S, SPEEDS_M_S, oils_csv,
-    power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv, write_atomically,
+    Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
+    power_laws_csv, ratios_csv, tof_csv, write_atomically,
 };
 use crate::claims::{Evidence, Judged, claims, claims_json, claims_markdown, judge_all_rounded};
 use crate::readings::{
@@ -52,12 +53,9 @@ impl Options {
     }
 }
 
-/// Accuracy of shots that only tell whether rounding can change a verdict.
-const DRAW_ACCURACY: f64 = 1e-5;
-
-/// Accuracy of shots that decide claims in other readings: dips of a ratio and
-/// residuals in standard errors need more than the crossing of 1 does.
-pub(crate) const SCAN_ACCURACY: f64 = 1e-6;
+/// Accuracy of shots that decide claims in other readings, whose values are
+/// shown to six digits.
+const SCAN_ACCURACY: f64 = 1e-6;
 
 /// Everything that was computed.
 #[derive(Clone, Debug)]
@@ -103,7 +101,7 @@ pub fn reproduce(
         reading,
         speeds_m_s: &SPEEDS_M_S,
         accuracy: options.accuracy,
-        checked: true,
+        effort: Effort::Checked,
     };
     let evidence = gather(&how, &|_, _, _| {}, &done)?;
     progress.begin("signals and films", 2);
@@ -116,7 +114,10 @@ pub fn reproduce(
         0 => (None, None),
         most => {
             let two_digits = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
-            (Some(two_digits), Some(scan(most, SCAN_ACCURACY, progress)?))
+            (
+                Some(two_digits),
+                Some(scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?),
+            )
         }
     };
     Ok(Reproduction {
@@ -139,17 +140,11 @@ fn judged(
     evidence: &Evidence,
     progress: &dyn Progress,
 ) -> Result<Vec<Judged>, ReproduceError> {
-    let how = Gathering {
-        reading: Reading::default(),
-        speeds_m_s: &SCAN_SPEEDS_M_S,
-        accuracy: DRAW_ACCURACY,
-        checked: false,
-    };
+    let judges = claims()?;
     progress.begin("rounding of the printed constants", options.draws as u64);
-    let printed = gather(&how, &|_, _, _| {}, &|| {})?;
     let done = || progress.advance();
-    let draws = rounded_evidence(&how, options.seed, options.draws, dry_poisson, &done)?;
-    Ok(judge_all_rounded(&claims()?, evidence, &printed, &draws))
+    let draws = rounded_evidence(&judges, options.seed, options.draws, dry_poisson, &done)?;
+    Ok(judge_all_rounded(&judges, evidence, &draws))
 }
 
 fn provenance(
@@ -162,7 +157,7 @@ fn provenance(
     let hertz = cases.get("hertz").ok_or_else(no_case)?;
     let (plan, _warnings) = Plan::from_experiment(hertz, None)?;
     let shot = shoot(&plan.with_accuracy(options.accuracy))
-        .map_err(|error| super::gather::failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
+        .map_err(|error| super::failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
     let points = evidence.curves.iter().flat_map(|curve| &curve.points);
     Ok(Provenance {
         version: env!("CARGO_PKG_VERSION"),

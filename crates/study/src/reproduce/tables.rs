@@ -1,6 +1,6 @@
 //! Tables of a reproduction as CSV.
 
-use super::gather::{CASES, Cases, OILS};
+use super::cases::{CASES, Cases, OILS};
 use super::{ReproduceError, SPEEDS_M_S};
 use crate::claims::{Branch, Curve, Evidence, Point};
 use hertzchain_chain::{Chain, Pair};

@@ -1,7 +1,11 @@
 //! Numbers made up so that everything the paper says is true.
 
 use hertzchain_study::claims::{Curve, DigitisedPeak, Evidence, Oil, Point};
-use hertzchain_study::reproduce::SCAN_SPEEDS_M_S;
+
+/// Speeds in m/s.
+const SPEEDS_M_S: [f64; 12] = [
+    0.075, 0.1, 0.1396, 0.2, 0.28, 0.3993, 0.5, 0.6, 0.75, 1.0, 1.152, 1.23,
+];
 
 fn point(speed_m_s: f64, incident_s: f64, reflected_s: f64) -> Point {
     Point {
@@ -17,11 +21,16 @@ fn point(speed_m_s: f64, incident_s: f64, reflected_s: f64) -> Point {
         striker_rebound_m_s: 0.0,
         loosened_m: 2e-5,
         accuracy_reached: 1e-10,
+        peak_accuracy: 1e-9,
+        second_peak_accuracy_n: 1e-9,
+        width_accuracy: 1e-9,
+        striker_accuracy_m_s: 1e-9,
+        loosened_accuracy_m: 1e-14,
     }
 }
 
 fn curve(case: &str, tofs: impl Fn(f64) -> (f64, f64)) -> Curve {
-    let points = SCAN_SPEEDS_M_S.map(|v| {
+    let points = SPEEDS_M_S.map(|v| {
         let (incident, reflected) = tofs(v);
         point(v, incident, reflected)
     });

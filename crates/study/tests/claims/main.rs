@@ -6,13 +6,14 @@
     reason = "a test that cannot go on should fail"
 )]
 
+mod accuracy;
 mod agreeing;
 mod breaks;
 
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_study::claims::{
-    Claim, Evidence, Finding, Judge, Needs, Verdict, claims, claims_markdown, judge_all,
+    Claim, Evidence, Finding, Judge, Judged, Needs, Verdict, claims, claims_markdown, judge_all,
     judge_all_rounded, read,
 };
 
@@ -219,7 +220,7 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     let mut draw = printed.clone();
     draw.viscosity_over_modulus_s = 1.6e-7;
     let draws = [printed.clone(), draw];
-    let judged = judge_all_rounded(&claims().unwrap(), &printed, &printed, &draws);
+    let judged = judge_all_rounded(&claims().unwrap(), &printed, &draws);
     let relaxation = judged
         .iter()
         .find(|j| j.claim.id == "relaxation-time")
@@ -230,6 +231,39 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     assert_eq!(rounded.range, Some((1.5e-7, 1.6e-7)));
     let other = judged.iter().find(|j| j.claim.id == "gear-below").unwrap();
     assert_eq!(other.verdict, Verdict::Holds);
+}
+
+/// The verdict on motor oil's ratios when one draw computes them to 1e-6 and
+/// the lowest of them is off 1 by this much.
+fn motor_above_with_a_draw(off: f64) -> Judged {
+    let printed = agreeing();
+    let mut draw = printed.clone();
+    each(&mut draw, "motor", |p| {
+        p.accuracy_reached = 1e-6;
+        if p.speed_m_s == 0.5 {
+            p.tof_incident_s = dry(p.speed_m_s).0 * (1.0 + off);
+        }
+    });
+    assert!(decide("motor-above", &draw).is_open());
+    let judged = judge_all_rounded(&claims().unwrap(), &printed, &[draw]);
+    let motor = judged.into_iter().find(|j| j.claim.id == "motor-above");
+    motor.unwrap()
+}
+
+#[test]
+fn a_draw_that_is_too_coarse_to_tell_but_lies_on_the_same_side_flips_nothing() {
+    let judged = motor_above_with_a_draw(1e-7);
+    assert_eq!(judged.verdict, Verdict::Holds, "{judged:?}");
+    assert_eq!(judged.rounded.unwrap().open, 1);
+}
+
+#[test]
+fn a_draw_on_the_other_side_flips_however_coarse_it_is() {
+    let judged = motor_above_with_a_draw(-1e-7);
+    assert_eq!(judged.finding.verdict, Verdict::Holds);
+    assert_eq!(judged.verdict, Verdict::NotDecidable);
+    // One ratio of several is below 1 then.
+    assert_eq!(judged.rounded.unwrap().verdicts, [0, 1, 0, 0]);
 }
 
 #[test]

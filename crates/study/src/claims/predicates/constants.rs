@@ -34,15 +34,24 @@ pub(super) fn relaxation_order(claim: &Claim, evidence: &Evidence) -> Finding {
     near(claim, evidence.viscosity_over_modulus_s.log10())
 }
 
+/// Operations behind a value: two conversions of units and a product each for
+/// two liquids, their ratio, a logarithm and the difference from what is printed.
+const ROUNDED: f64 = 10.0;
+
+/// Nothing is computed here but arithmetic on printed constants: the value is
+/// wrong by what double precision rounds, n ε |x|.
 fn near(claim: &Claim, value: f64) -> Finding {
     let expected = claim.expected.first().copied().unwrap_or(f64::NAN);
+    let accuracy = ROUNDED * f64::EPSILON * value.abs();
     let mut tally = Tally::default();
-    tally.margin(claim.threshold - (value - expected).abs(), 0.0);
+    tally.margin(claim.threshold - (value - expected).abs(), accuracy);
     Finding {
         verdict: tally.verdict(),
+        leaning: tally.leaning(),
         value,
-        accuracy: 0.0,
+        accuracy,
         expected: Some(expected),
         detail: "from the printed constants alone".to_owned(),
+        nearest_change: None,
     }
 }

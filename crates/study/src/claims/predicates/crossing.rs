@@ -1,17 +1,18 @@
 //! Predicates on where a wet over dry ratio passes 1.
 
 use super::missing;
-use crate::claims::{Claim, Evidence, Finding, Ratio, Tally, Verdict};
+use crate::claims::{Claim, Distance, Evidence, Finding, Ratio, Tally, Verdict};
 
 /// Speed at which a ratio passes 1 and how sure it is: linear in ln v between
-/// the two speeds around it.
+/// the two speeds around it. Δv/v is the error of the ratios over their slope in
+/// ln v, and what the chord may leave out.
 fn crossing(low: &Ratio, high: &Ratio) -> (f64, f64) {
     let (before, after) = (low.incident - 1.0, high.incident - 1.0);
     let span = (high.speed_m_s / low.speed_m_s).ln();
     let part = before / (before - after);
     let speed = low.speed_m_s * (part * span).exp();
     let slope = (after - before) / span;
-    let from_tofs = low.accuracy_reached.max(high.accuracy_reached) / slope.abs();
+    let from_tofs = unsure(low).max(unsure(high)) / slope.abs();
     // A smooth curve leaves its chord by at most an eighth of the change of
     // slope over the interval; slopes here change by less than themselves.
     let from_chord = part * (1.0 - part) * span;
@@ -42,39 +43,99 @@ fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<Ratio> {
     case.map_or(Vec::new(), |case| evidence.ratios(case))
 }
 
+/// Upward passages less twice the downward ones.
+fn count(ratios: &[Ratio]) -> f64 {
+    let (up, down) = crossings(ratios);
+    up.len() as f64 - 2.0 * down.len() as f64
+}
+
+/// Absolute accuracy of a ratio of two ToFs.
+fn unsure(ratio: &Ratio) -> f64 {
+    ratio.accuracy_reached * ratio.incident
+}
+
+/// Whether a ratio is 1 within its accuracy.
+fn is_open(ratio: &Ratio) -> bool {
+    (ratio.incident - 1.0).abs() <= unsure(ratio)
+}
+
+/// By how much the count may be wrong: what it changes, summed over all ratios,
+/// when a ratio that is 1 within its accuracy is put below or above it. 0 when
+/// there is none, for then the count is that of the exact ratios.
+fn count_accuracy(ratios: &[Ratio]) -> f64 {
+    let mut moved = ratios.to_vec();
+    let mut accuracy = 0.0;
+    for (i, ratio) in ratios.iter().enumerate().filter(|(_, r)| is_open(r)) {
+        let changes = [-1.0, 1.0].map(|side| {
+            if let Some(reading) = moved.get_mut(i) {
+                reading.incident = 1.0 + side * unsure(ratio);
+            }
+            (count(&moved) - count(ratios)).abs()
+        });
+        if let Some(reading) = moved.get_mut(i) {
+            *reading = *ratio;
+        }
+        accuracy += changes.into_iter().fold(0.0, f64::max);
+    }
+    accuracy
+}
+
+/// The ratio that is nearest to 1, by its accuracies.
+fn nearest_to_1(ratios: &[Ratio]) -> Option<&Ratio> {
+    let by_accuracy = |r: &&Ratio| (r.incident - 1.0).abs() / unsure(r);
+    let near = |a: &&Ratio, b: &&Ratio| by_accuracy(a).total_cmp(&by_accuracy(b));
+    ratios.iter().min_by(near)
+}
+
 /// The ratio passes 1 once, upward. The number is that of upward passages less
 /// twice that of downward ones, which is 1 in no other case; not decidable
-/// where a ratio is 1 within its accuracy.
+/// where a ratio is 1 within its accuracy. A passage is one between
+/// neighbouring speeds.
 pub(super) fn once_upward(claim: &Claim, evidence: &Evidence) -> Finding {
     let ratios = ratios(claim, evidence);
-    let (Some(first), Some(last), Some(expected)) =
-        (ratios.first(), ratios.last(), claim.expected.first())
-    else {
+    let (Some(nearest), Some(expected)) = (nearest_to_1(&ratios), claim.expected.first()) else {
         return missing();
     };
-    let (up, down) = crossings(&ratios);
-    let value = up.len() as f64 - 2.0 * down.len() as f64;
-    let open = |r: &Ratio| (r.incident - 1.0).abs() <= r.accuracy_reached * r.incident;
+    let (value, accuracy) = (count(&ratios), count_accuracy(&ratios));
     let mut tally = Tally::default();
     tally.margin(claim.threshold - (value - expected).abs(), 0.0);
+    let open = ratios.iter().any(is_open);
     Finding {
-        verdict: match ratios.iter().any(open) {
-            true => Verdict::NotDecidable,
-            false => tally.verdict(),
+        verdict: if open {
+            Verdict::NotDecidable
+        } else {
+            tally.verdict()
         },
+        leaning: tally.leaning(),
         value,
-        accuracy: 0.0,
+        accuracy,
         expected: Some(*expected),
-        detail: format!(
-            "{} upward and {} downward; from {:.5} at {} m/s to {:.5} at {} m/s",
-            up.len(),
-            down.len(),
-            first.incident,
-            first.speed_m_s,
-            last.incident,
-            last.speed_m_s
-        ),
+        detail: passages(&ratios, nearest),
+        nearest_change: Some(Distance {
+            margin: (nearest.incident - 1.0).abs(),
+            accuracy: unsure(nearest),
+        }),
     }
+}
+
+/// What passes 1, and what comes nearest to it, in words.
+fn passages(ratios: &[Ratio], nearest: &Ratio) -> String {
+    let (up, down) = crossings(ratios);
+    let end = |r: Option<&Ratio>| {
+        r.map_or(String::new(), |r| {
+            format!("{:.5} at {} m/s", r.incident, r.speed_m_s)
+        })
+    };
+    format!(
+        "{} upward and {} downward; from {} to {}; the ratio nearest to 1 is off by {:.1e} ± {:.0e}, at {} m/s",
+        up.len(),
+        down.len(),
+        end(ratios.first()),
+        end(ratios.last()),
+        (nearest.incident - 1.0).abs(),
+        unsure(nearest),
+        nearest.speed_m_s
+    )
 }
 
 /// The upward passage of 1 that is nearest to the printed speed lies within the
@@ -88,21 +149,31 @@ pub(super) fn at_speed(claim: &Claim, evidence: &Evidence) -> Finding {
     let off = |speed: f64| (speed - expected).abs();
     let nearest = up.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
     let Some(&(value, accuracy)) = nearest else {
-        return Finding {
-            verdict: Verdict::Fails,
-            value: f64::NAN,
-            accuracy: f64::NAN,
-            expected: Some(*expected),
-            detail: "no upward passage of 1".to_owned(),
-        };
+        return nowhere(*expected, ratios.iter().any(is_open));
     };
     let mut tally = Tally::default();
     tally.margin(claim.threshold - off(value), accuracy);
     Finding {
         verdict: tally.verdict(),
+        leaning: tally.leaning(),
         value,
         accuracy,
         expected: Some(*expected),
         detail: format!("the nearest of {} upward passages", up.len()),
+        nearest_change: None,
+    }
+}
+
+/// The answer without a passage, which a ratio of 1 within its accuracy may hide.
+fn nowhere(expected: f64, open: bool) -> Finding {
+    Finding {
+        verdict: if open {
+            Verdict::NotDecidable
+        } else {
+            Verdict::Fails
+        },
+        leaning: Verdict::Fails,
+        expected: Some(expected),
+        ..Finding::without_numbers("no upward passage of 1")
     }
 }

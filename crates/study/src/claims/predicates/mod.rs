@@ -11,7 +11,7 @@ mod ratios;
 mod striker;
 mod trends;
 
-use super::{Branch, Claim, Curve, Evidence, Finding, Point};
+use super::{Branch, Claim, Curve, Evidence, Finding, Point, Verdict};
 
 /// Decides a claim.
 pub(super) type Predicate = fn(&Claim, &Evidence) -> Finding;
@@ -53,6 +53,9 @@ static PREDICATES: &[(&str, Predicate)] = &[
     ("overlaps-data", data::overlaps_data),
 ];
 
+/// Predicates on what a shot leaves behind when the pulses have passed.
+pub(super) static OF_THE_END: [&str; 2] = ["gaps-open", "no-rebound"];
+
 /// A predicate by its name.
 pub(super) fn find(name: &str) -> Option<Predicate> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
@@ -72,6 +75,15 @@ fn curves<'a>(claim: &Claim, evidence: &'a Evidence) -> Option<Vec<&'a Curve>> {
 /// The answer when a case of the claim was not computed.
 fn missing() -> Finding {
     Finding::without_numbers("a case that this claim is about was not computed")
+}
+
+/// A verdict at the threshold, or in part where only the weaker one is met.
+fn or_in_part(verdict: Verdict, weaker: Option<Verdict>) -> Verdict {
+    match (verdict, weaker) {
+        (Verdict::Fails, Some(Verdict::Holds)) => Verdict::InPart,
+        (Verdict::Fails, Some(Verdict::NotDecidable)) => Verdict::NotDecidable,
+        (verdict, _) => verdict,
+    }
 }
 
 /// The branches of a claim; both when it names none.
@@ -127,10 +139,12 @@ impl Worst {
         };
         Finding {
             verdict: tally.verdict(),
+            leaning: tally.leaning(),
             value: self.value,
             accuracy: self.accuracy,
             expected: None,
             detail,
+            nearest_change: None,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Predicates on the three pulses of a shot.
 
-use super::{Worst, curves, missing, within};
-use crate::claims::{Branch, Claim, Evidence, Finding, Point, SPEED_SCATTER_M_S, Tally, Verdict};
+use super::{Worst, curves, missing, or_in_part, within};
+use crate::claims::{Branch, Claim, Evidence, Finding, Point, SPEED_SCATTER_M_S, Tally};
 
 /// Incoming, wall and returning pulse follow each other, apart in time: each ToF
 /// exceeds the threshold times the mean full width at half maximum of its two
-/// pulses. A pulse out of order has a negative ToF.
+/// pulses. A pulse out of order has a negative ToF. Relative errors of the ToF and of
+/// the widths add up.
 pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
@@ -20,7 +21,7 @@ pub(super) fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
             ];
             for (tof, widths) in pairs {
                 let value = tof / (0.5 * widths);
-                let accuracy = value * p.accuracy_reached;
+                let accuracy = value.abs() * (p.accuracy_reached + p.width_accuracy);
                 tally.margin(value - claim.threshold, accuracy);
                 let margin = value - claim.threshold;
                 worst.see(margin, value, accuracy, || place(&curve.case, p));
@@ -54,7 +55,7 @@ pub(super) fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding
 }
 
 /// A second returning maximum of at least the threshold times the first; in
-/// part above the weaker threshold.
+/// part above the weaker threshold. With r = p₂/p₁, Δr = Δp₂/p₁ + r Δp₁/p₁.
 pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
@@ -64,20 +65,16 @@ pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
         return missing();
     };
     let value = p.second_returning_peak_n / p.returning_peak_n;
-    // Three samples tell a top to about a thousandth.
-    let accuracy = 2e-3 * value + 2.0 * value * p.accuracy_reached;
+    let accuracy = p.second_peak_accuracy_n / p.returning_peak_n + value * p.peak_accuracy;
     let above = |threshold: f64| {
         let mut tally = Tally::default();
         tally.margin(value - threshold, accuracy);
-        tally.verdict()
+        tally
     };
-    let verdict = match (above(claim.threshold), claim.partly.map(above)) {
-        (Verdict::Fails, Some(Verdict::Holds)) => Verdict::InPart,
-        (Verdict::Fails, Some(weaker)) => weaker,
-        (verdict, _) => verdict,
-    };
+    let (full, weaker) = (above(claim.threshold), claim.partly.map(above));
     Finding {
-        verdict,
+        verdict: or_in_part(full.verdict(), weaker.map(Tally::verdict)),
+        leaning: or_in_part(full.leaning(), weaker.map(Tally::leaning)),
         value,
         accuracy,
         expected: None,
@@ -85,24 +82,27 @@ pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
             "returning peaks of {:.3} N and {:.3} N at {} m/s",
             p.returning_peak_n, p.second_returning_peak_n, p.speed_m_s
         ),
+        nearest_change: None,
     }
 }
 
 /// By how much the return takes longer, less the same in the second case, a
-/// chain held together, is positive.
+/// chain held together, is positive. Relative errors of the two ToFs of a ratio
+/// add up, and those of the ratios.
 pub(super) fn loosening_lengthens_return(claim: &Claim, evidence: &Evidence) -> Finding {
     let curves = curves(claim, evidence).unwrap_or_default();
     let [free, held] = curves[..] else {
         return missing();
     };
-    let increase = |p: &Point| p.tof_reflected_s / p.tof_incident_s - 1.0;
+    let ratio = |p: &Point| p.tof_reflected_s / p.tof_incident_s;
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for p in within(claim, held) {
         let Some(loose) = free.at(p.speed_m_s) else {
             continue;
         };
-        let value = increase(loose) - increase(p);
-        let accuracy = 2.0 * (p.accuracy_reached + loose.accuracy_reached);
+        let value = ratio(loose) - ratio(p);
+        let sure = |p: &Point| 2.0 * ratio(p) * p.accuracy_reached;
+        let accuracy = sure(p) + sure(loose);
         tally.margin(value - claim.threshold, accuracy);
         worst.see(value - claim.threshold, value, accuracy, || {
             place(&free.case, p)
@@ -119,12 +119,14 @@ pub(super) fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> Findin
     };
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for curve in curves {
-        let slopes = Branch::BOTH.map(|branch| curve.slopes_s2_m(branch));
-        let [incident, reflected] = &slopes;
-        for ((p, incident), reflected) in curve.points.iter().zip(incident).zip(reflected) {
+        let [incident, reflected] = Branch::BOTH.map(|branch| {
+            let slopes = curve.slopes_s2_m(branch).into_iter();
+            slopes.zip(curve.slope_accuracies(branch))
+        });
+        for (p, (incident, reflected)) in curve.points.iter().zip(incident.zip(reflected)) {
+            let ((incident, unsure), (reflected, as_unsure)) = (incident, reflected);
             let value = reflected / incident;
-            // A slope is a difference of two ToFs some 3 % apart.
-            let accuracy = 2.0 * p.accuracy_reached / 0.03;
+            let accuracy = value.abs() * (unsure + as_unsure);
             tally.margin(value - claim.threshold, accuracy);
             worst.see(value - claim.threshold, value, accuracy, || {
                 let us = reflected.abs() * SPEED_SCATTER_M_S * 1e6;
@@ -145,7 +147,7 @@ pub(super) fn gaps_open(claim: &Claim, evidence: &Evidence) -> Finding {
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for curve in curves {
         for p in within(claim, curve) {
-            let accuracy = p.accuracy_reached * p.loosened_m;
+            let accuracy = p.loosened_accuracy_m;
             tally.margin(p.loosened_m - claim.threshold, accuracy);
             tally.margin(largest - p.loosened_m, accuracy);
             let margin = (p.loosened_m - claim.threshold).min(largest - p.loosened_m);

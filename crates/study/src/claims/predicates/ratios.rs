@@ -1,7 +1,7 @@
 //! Predicates on wet over dry incident ToFs.
 
 use super::{Worst, missing};
-use crate::claims::{Claim, Evidence, Finding, Ratio, Tally};
+use crate::claims::{Claim, Distance, Evidence, Finding, Ratio, Tally};
 
 /// Every ratio at the claim's speeds lies below the threshold.
 pub(super) fn below(claim: &Claim, evidence: &Evidence) -> Finding {
@@ -34,28 +34,46 @@ fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> Finding {
 }
 
 /// In every case the ratio rises over more than the threshold's share of the
-/// range of ln v.
+/// range of ln v. A share without turns is exact as long as no step between
+/// neighbouring speeds could be one of the other sign.
 pub(super) fn mainly_rises(claim: &Claim, evidence: &Evidence) -> Finding {
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut steps: Vec<Distance> = Vec::new();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
         let (Some(first), Some(last)) = (ratios.first(), ratios.last()) else {
             return missing();
         };
         let all = (last.speed_m_s / first.speed_m_s).ln();
+        steps.extend(ratios.windows(2).filter_map(distance_from_flat));
         let (rising, accuracy) = rising(&ratios);
         let (value, accuracy) = (rising / all, accuracy / all);
         let margin = value - claim.threshold;
         tally.margin(margin, accuracy);
         worst.see(margin, value, accuracy, || case.clone());
     }
-    worst.finding(tally)
+    let in_accuracies = |step: &Distance| step.margin / step.accuracy;
+    let nearest = |a: &Distance, b: &Distance| in_accuracies(a).total_cmp(&in_accuracies(b));
+    Finding {
+        nearest_change: steps.into_iter().min_by(nearest),
+        ..worst.finding(tally)
+    }
+}
+
+/// How far the step between two ratios is from 0.
+fn distance_from_flat(pair: &[Ratio]) -> Option<Distance> {
+    let (low, high) = (pair.first()?, pair.last()?);
+    Some(Distance {
+        margin: (high.incident - low.incident).abs(),
+        accuracy: step_accuracy(low, high),
+    })
 }
 
 /// Over how much of ln v a ratio rises, and how sure that is. Between a rise
 /// and a fall the ratio turns at the vertex of the parabola through three
 /// speeds; the parabola through every other speed, four times as wrong, tells how
-/// sure that is, and near the ends a quarter of the wider interval. Steps within the
+/// sure that is, and near the ends a quarter of the wider interval; what the
+/// accuracies of the three ratios move the vertex by is added. Steps within the
 /// accuracy of their ends count half and are as unsure.
 fn rising(ratios: &[Ratio]) -> (f64, f64) {
     let (mut rising, mut accuracy) = (0.0, 0.0);
@@ -76,6 +94,7 @@ fn rising(ratios: &[Ratio]) -> (f64, f64) {
             let unsure = 0.25 * width(before, at).max(width(at, after));
             rising += turn * (at.incident - before.incident).signum();
             accuracy += coarse.map_or(unsure, |coarse| (coarse - turn).abs());
+            accuracy += turn_accuracy([before, at, after], turn);
         }
     }
     (rising, accuracy)
@@ -90,6 +109,27 @@ fn turn(before: &Ratio, at: &Ratio, after: &Ratio) -> Option<f64> {
     // The parabola's slope is linear between the middles of the intervals.
     let turn = || -0.5 * left + 0.5 * (left + right) * rise / (rise - fall);
     (rise * fall < 0.0).then(turn)
+}
+
+/// By how much a turn moves when each ratio in its turn is off by its accuracy;
+/// a turn that goes away may have been anywhere in the two intervals.
+fn turn_accuracy(three: [&Ratio; 3], at_exact: f64) -> f64 {
+    let moved = |i: usize| {
+        let [before, at, after] = std::array::from_fn(|j| {
+            let off = if i == j {
+                three[i].accuracy_reached
+            } else {
+                0.0
+            };
+            Ratio {
+                incident: three[j].incident * (1.0 + off),
+                ..*three[j]
+            }
+        });
+        let lost = width(&before, &after);
+        turn(&before, &at, &after).map_or(lost, |turn| (turn - at_exact).abs())
+    };
+    (0..3).map(moved).sum()
 }
 
 /// Width of an interval of speeds in ln v.
@@ -132,7 +172,7 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
         }
         let accuracy = ratios
             .iter()
-            .map(|r| r.accuracy_reached)
+            .map(|r| r.accuracy_reached * r.incident)
             .fold(0.0, f64::max);
         // Negative where the ratio rises throughout: the smallest rise.
         let (mut highest, mut fall, mut at) = (f64::NAN, f64::NEG_INFINITY, f64::NAN);

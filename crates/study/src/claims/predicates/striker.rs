@@ -3,10 +3,6 @@
 use super::{Worst, curves, missing, within};
 use crate::claims::{Claim, Evidence, Finding, Tally};
 
-/// Velocities of the striker are this many times as wrong as times of flight:
-/// they gather the errors of all steps.
-const OF_VELOCITY: f64 = 30.0;
-
 /// At the claim's speeds the striker's velocity, at first separation and at
 /// the end of the shot, is above the threshold: it does not come back.
 pub(super) fn no_rebound(claim: &Claim, evidence: &Evidence) -> Finding {
@@ -21,7 +17,7 @@ pub(super) fn no_rebound(claim: &Claim, evidence: &Evidence) -> Finding {
                 ("end of the shot", p.striker_rebound_m_s),
             ];
             for (moment, value) in moments.into_iter().filter(|(_, value)| !value.is_nan()) {
-                let accuracy = OF_VELOCITY * p.accuracy_reached * p.speed_m_s;
+                let accuracy = p.striker_accuracy_m_s;
                 tally.margin(value - claim.threshold, accuracy);
                 worst.see(value - claim.threshold, value, accuracy, || {
                     format!("{} at {} m/s, {moment}", curve.case, p.speed_m_s)

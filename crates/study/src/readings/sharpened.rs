@@ -1,0 +1,22 @@
+//! As accurate as it takes.
+
+use crate::claims::{Evidence, Judge};
+use crate::reproduce::ReproduceError;
+
+/// Evidence at the first of some accuracies at which no claim is left open, or
+/// at the last.
+pub(super) fn sharpened(
+    judges: &[Judge],
+    accuracies: &[f64],
+    gather: &dyn Fn(f64) -> Result<Evidence, ReproduceError>,
+) -> Result<Evidence, ReproduceError> {
+    let mut evidence = Evidence::default();
+    for accuracy in accuracies {
+        evidence = gather(*accuracy)?;
+        let mut findings = judges.iter().map(|judge| judge.decide(&evidence));
+        if !findings.any(|finding| finding.is_open()) {
+            break;
+        }
+    }
+    Ok(evidence)
+}
