@@ -10,7 +10,7 @@ mod common;
 use common::{cubic, hertz, row, viscoelastic};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use hertzchain_chain::ensemble::{End, LANES, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, Precision, Settings, Shot, fire};
 use hertzchain_chain::laws::{DampingPower, Law, law};
 use hertzchain_chain::{FarEnd, InstructionSet, Sensor, System};
 use std::sync::Arc;
@@ -40,6 +40,8 @@ fn settings(set: &str, beads: usize) -> Settings {
         sensors: vec![Sensor::Bead(7), Sensor::Contact(beads)],
         end: End::Passed,
         set: InstructionSet::named(set).unwrap_or_default(),
+        precision: Precision::Double,
+        shapes: false,
         whole_chain: false,
         openings: false,
     }

@@ -9,7 +9,7 @@
 //! at 1e-11, over eleven speeds. Force passes are means over these speeds: of a
 //! sweep, those that stayed in the ensemble, without the shots that judge them.
 
-use hertzchain_chain::ensemble::{self, End, Flown};
+use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
@@ -166,6 +166,8 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         sensors: vec![Sensor::Bead(plans[0].sensor_bead), Sensor::Contact(wall)],
         end,
         set: InstructionSet::default(),
+        precision: Precision::Double,
+        shapes: false,
         whole_chain: false,
         openings,
     };

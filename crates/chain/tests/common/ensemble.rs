@@ -1,7 +1,7 @@
 //! Shots of the ensemble loop, for its tests.
 
 use super::*;
-use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
 
 /// What the paper's rig watches: a bead (the seventh, or the last of a shorter
 /// row) and the wall.
@@ -15,6 +15,8 @@ pub fn settings(beads: usize) -> Settings {
         sensors: watched(beads),
         end: End::Passed,
         set: InstructionSet::default(),
+        precision: Precision::Double,
+        shapes: true,
         whole_chain: false,
         openings: false,
     }
