@@ -159,6 +159,7 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         system,
         step,
         duration_s: LONGEST_S,
+        precision: Precision::Double,
     };
     let shots: Vec<_> = systems.iter().map(shot).collect();
     let wall = systems[0].contacts() - 1;
@@ -166,7 +167,6 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         sensors: vec![Sensor::Bead(plans[0].sensor_bead), Sensor::Contact(wall)],
         end,
         set: InstructionSet::default(),
-        precision: Precision::Double,
         shapes: false,
         whole_chain: false,
         openings,

@@ -21,6 +21,8 @@ pub struct Shot<'a> {
     pub step: f64,
     /// Longest duration in s.
     pub duration_s: f64,
+    /// How long numbers are.
+    pub precision: Precision,
 }
 
 impl Shot<'_> {
@@ -62,8 +64,6 @@ pub struct Settings {
     pub set: InstructionSet,
     /// Step also what nothing has reached.
     pub whole_chain: bool,
-    /// How long numbers are.
-    pub precision: Precision,
     /// Keep the shape of signals too, for widths and levels, not their maxima
     /// alone.
     pub shapes: bool,
@@ -149,9 +149,9 @@ pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, Ensemb
             Err(error) => flown[shot] = Some(Err(error)),
         }
     }
-    for block in blocks(shots, &ready, settings.precision.lanes()) {
+    for block in blocks(shots, &ready) {
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
-        let results = match settings.precision {
+        let results = match side_by_side[0].precision {
             Precision::Double => fire_block::<f64, 8>(&side_by_side, settings),
             Precision::Single => fire_block::<f32, 16>(&side_by_side, settings),
         };
@@ -162,28 +162,27 @@ pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, Ensemb
     flown.into_iter().flatten().collect()
 }
 
-/// Shots whose chains have the same shape, as many together as there are lanes.
-fn blocks(shots: &[Shot<'_>], ready: &[usize], lanes: usize) -> Vec<Vec<usize>> {
+/// Shots alike in precision and in the shape of their chains, as many together
+/// as there are lanes.
+fn blocks(shots: &[Shot<'_>], ready: &[usize]) -> Vec<Vec<usize>> {
     let mut blocks: Vec<Vec<usize>> = Vec::new();
-    // The last block of each shape.
+    // The last block of each kind.
     let mut open: Vec<usize> = Vec::new();
     for &shot in ready {
+        let fired = &shots[shot];
         let alike = |at: &&mut usize| {
-            shots[blocks[**at][0]]
-                .system
-                .has_shape_of(shots[shot].system)
+            let first = &shots[blocks[**at][0]];
+            first.precision == fired.precision && first.system.has_shape_of(fired.system)
         };
         match open.iter_mut().find(alike) {
-            Some(&mut at) if blocks[at].len() < lanes => blocks[at].push(shot),
-            Some(at) => {
-                *at = blocks.len();
-                blocks.push(vec![shot]);
+            Some(at) if blocks[*at].len() < fired.precision.lanes() => {
+                blocks[*at].push(shot);
+                continue;
             }
-            None => {
-                open.push(blocks.len());
-                blocks.push(vec![shot]);
-            }
+            Some(at) => *at = blocks.len(),
+            None => open.push(blocks.len()),
         }
+        blocks.push(vec![shot]);
     }
     blocks
 }
@@ -245,7 +244,7 @@ fn fire_block<N: Number<W>, const W: usize>(
         settings.set,
         (settings.whole_chain, settings.openings),
     );
-    fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
+    fly(&mut block, &mut recorder, &mut flying, settings, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
     let looked_at = block.bodies_looked_at / lanes as u64;
     let result = |(at, lane): (usize, Lane)| {
@@ -267,7 +266,6 @@ fn signals<N: Number<W>, const W: usize>(
     schedule: &Schedule,
 ) -> Vec<Vec<Signal>> {
     let mut signals: Vec<Vec<Signal>> = vec![Vec::new(); lanes.len()];
-    let count = systems.len();
     for (index, &sensor) in settings.sensors.iter().enumerate() {
         let extremes = recorder.extremes(index, settings.set);
         for (at, lane) in lanes.iter().enumerate() {
@@ -280,9 +278,7 @@ fn signals<N: Number<W>, const W: usize>(
                 },
                 silent: systems[at].silence(sensor),
             };
-            let own = extremes.iter().filter(|&&extreme| extreme % count == at);
-            let own = own.map(|extreme| extreme / count);
-            signals[at].push(trace.signal(sensor, own, settings.shapes));
+            signals[at].push(trace.signal(sensor, &extremes[at], settings.shapes));
         }
     }
     signals
@@ -299,13 +295,13 @@ fn fly<N: Number<W>, const W: usize>(
     block: &mut Block<'_, N, W>,
     recorder: &mut Recorder<N, W>,
     lanes: &mut [Lane],
-    end: End,
+    settings: &Settings,
     systems: &[&System],
 ) {
     while lanes.iter().any(|lane| lane.state == State::Flying) {
         for _ in 0..LOOK_EVERY {
             block.step();
-            recorder.add(block);
+            recorder.add(settings.set, block);
         }
         if block.steps.is_multiple_of(CORRECTION_EVERY) {
             let corrections = block.corrections();
@@ -316,7 +312,7 @@ fn fly<N: Number<W>, const W: usize>(
         }
         for (at, lane) in lanes.iter_mut().enumerate() {
             if lane.state == State::Flying {
-                lane.look(block, recorder, at, end, systems[at]);
+                lane.look(block, recorder, at, settings.end, systems[at]);
             }
         }
         recorder.looked();

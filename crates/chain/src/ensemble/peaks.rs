@@ -37,14 +37,10 @@ pub(super) struct Trace<'a, N, const W: usize> {
 impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
     /// The signal: its maxima, from steps whose samples are above both
     /// neighbours or below both, and with `shape` all that is above its floor.
-    pub fn signal(
-        self,
-        sensor: Sensor,
-        extremes: impl Iterator<Item = usize>,
-        shape: bool,
-    ) -> Signal {
+    pub fn signal(self, sensor: Sensor, extremes: &[usize], shape: bool) -> Signal {
         let mut largest = 0.0_f64;
         let mut maxima = Vec::with_capacity(8);
+        let extremes = extremes.iter().copied();
         for step in extremes.take_while(|&step| step < self.last_step) {
             let value = self.samples.at(step);
             largest = largest.max(value.abs());

@@ -24,6 +24,9 @@ pub(super) struct Recorder<N, const W: usize> {
     steps: usize,
 }
 
+/// Extremes of a sensor and shot for which room is made.
+const EXPECTED: usize = 32;
+
 impl<N: Number<W>, const W: usize> Recorder<N, W> {
     /// With room for `steps` samples, so that the loop allocates nothing.
     pub fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
@@ -41,12 +44,14 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 
     /// Adds what all sensors show now.
     #[inline]
-    pub fn add(&mut self, block: &Block<'_, N, W>) {
-        if self.lanes == W {
-            self.add_row::<W>(block);
-        } else {
-            self.add_row::<1>(block);
-        }
+    pub fn add(&mut self, set: InstructionSet, block: &Block<'_, N, W>) {
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || match self.lanes == W {
+                true => self.add_row::<W>(block),
+                false => self.add_row::<1>(block),
+            }
+        ));
     }
 
     #[inline(always)]
@@ -77,10 +82,10 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
         }
     }
 
-    /// Where a sensor's samples in any lane are above both neighbours, or
-    /// below both, in order: step · lanes + lane.
-    pub fn extremes(&self, sensor: usize, set: InstructionSet) -> Vec<usize> {
-        let mut found = Vec::with_capacity(16 * self.lanes);
+    /// Lane by lane the steps at which a sensor's samples are above both
+    /// neighbours, or below both.
+    pub fn extremes(&self, sensor: usize, set: InstructionSet) -> Vec<Vec<usize>> {
+        let mut found = vec![Vec::with_capacity(EXPECTED); self.lanes];
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
             || self.find_extremes(simd, &self.rows[sensor].values, &mut found)
@@ -89,26 +94,27 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
     }
 
     #[inline(always)]
-    fn find_extremes<S: Simd>(&self, simd: S, values: &[N], found: &mut Vec<usize>) {
+    fn find_extremes<S: Simd>(&self, simd: S, values: &[N], found: &mut [Vec<usize>]) {
+        let lanes = self.lanes;
         let load = |from: usize| N::Wide::<S>::from_slice(simd, &values[from..from + W]);
-        let last = values.len().saturating_sub(self.lanes);
-        let mut at = self.lanes;
+        let last = values.len().saturating_sub(lanes);
+        let mut at = lanes;
         while at + W <= last {
-            let (before, now, after) = (load(at - self.lanes), load(at), load(at + self.lanes));
+            let (before, now, after) = (load(at - lanes), load(at), load(at + lanes));
             let high = now.simd_ge(before) & now.simd_gt(after);
             let low = now.simd_le(before) & now.simd_lt(after);
             let mut extremes = (high | low).to_bitmask();
             while extremes != 0 {
-                found.push(at + self.lanes + extremes.trailing_zeros() as usize);
+                let place = at + extremes.trailing_zeros() as usize;
+                found[place % lanes].push(place / lanes + 1);
                 extremes &= extremes - 1;
             }
             at += W;
         }
         for at in at..last {
-            let (before, now, after) =
-                (values[at - self.lanes], values[at], values[at + self.lanes]);
+            let (before, now, after) = (values[at - lanes], values[at], values[at + lanes]);
             if (now >= before && now > after) || (now <= before && now < after) {
-                found.push(at + self.lanes);
+                found[at % lanes].push(at / lanes + 1);
             }
         }
     }

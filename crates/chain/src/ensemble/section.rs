@@ -166,8 +166,8 @@ impl Unfused {
         }
     }
 
-    /// Forces of some contacts, the first of which is the first of the section's chunks.
-    fn sum(&mut self, set: InstructionSet, here: Range<usize>) {
+    /// Forces of some contacts, of which `row` is the first's among the section's.
+    fn sum(&mut self, set: InstructionSet, here: Range<usize>, row: usize) {
         let sum = &mut self.sum[here.clone()];
         sum.fill(0.0);
         for (terms, rate) in [(&self.gated, &self.rate), (&self.ungated, &self.across)] {
@@ -178,7 +178,7 @@ impl Unfused {
                 largest: &self.largest[here.clone()],
             };
             for term in terms {
-                term.law.add_forces(set, &term.columns, 0, seen, sum);
+                term.law.add_forces(set, &term.columns, row, seen, sum);
             }
         }
     }
@@ -198,7 +198,8 @@ impl<N: Number<W>, const W: usize> Sweep<N, W> for Unfused {
         let flat = (self.contacts.start * place.lanes).max(part.start * W)
             ..(part.end * W).min(self.contacts.end * place.lanes);
         let here = flat.start - self.first..flat.end - self.first;
-        self.sum(set, here.clone());
+        let row = flat.start - self.contacts.start * place.lanes;
+        self.sum(set, here.clone(), row);
         for (force, &sum) in force[flat].iter_mut().zip(&self.sum[here]) {
             let before = if place.fresh { 0.0 } else { (*force).into() };
             *force = N::of(before + if self.clipped { sum.max(0.0) } else { sum });
