@@ -3,6 +3,7 @@
 use crate::finding::Problem;
 use crate::keys::ranges::SPEED;
 use crate::spec::{Far, Near, Shape, Spec};
+use crate::validity;
 use crate::value::{Units, short};
 use hertzchain_chain::{Bead, Chain, FarEnd, Gap, Initial, Material, Section, Start};
 
@@ -38,6 +39,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
         tension: spec.tension,
         beads,
     };
+    oddities.extend(validity::warnings(spec, &chain));
     Ok((chain, oddities))
 }
 
@@ -80,6 +82,14 @@ impl Spec {
         match &self.near {
             Near::Striker { shape, .. } | Near::Driven { shape, .. } => shape.span.clone(),
             Near::Free { span } => span.clone(),
+        }
+    }
+
+    /// Where the file tells how fast it is set in motion.
+    pub(crate) fn speed_span(&self) -> std::ops::Range<usize> {
+        match &self.near {
+            Near::Striker { speed_span, .. } => speed_span.clone(),
+            Near::Driven { .. } | Near::Free { .. } => self.near_span(),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use crate::document::{Entry, Node, Value};
 use crate::finding::Problem;
-use crate::keys::{self, Fields, Key, Kind, Limits, Need, Variants, advice};
+use crate::keys::{self, Fields, Key, Kind, Limits, Need, ROOT, Variants, advice};
+use crate::known::Known;
 use crate::laws;
 use crate::nearest;
 use crate::value::{Expected, Units, short};
@@ -14,12 +15,23 @@ pub(crate) struct Check {
     pub(crate) problems: Vec<Problem>,
     /// Quantities with a dimension that suit the unit system.
     pub(crate) fitting: usize,
+    known: Known,
 }
 
 /// The keys of a power law of the striker's speed.
 pub(crate) const POWER_LAW: [&str; 2] = ["prefactor", "exponent"];
 
 impl Check {
+    /// A check of this document.
+    pub(crate) fn new(units: Units, tree: &Node) -> Self {
+        Self {
+            units,
+            problems: Vec::new(),
+            fitting: 0,
+            known: Known::of(tree),
+        }
+    }
+
     /// Checks a table against its keys; `tag` is a deciding key already read.
     pub(crate) fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
         if !matches!(node.value, Value::Table(_)) {
@@ -66,6 +78,9 @@ impl Check {
         };
         self.add(match advice::about(fields.title, &entry.key) {
             Some(advice) => problem.help(advice),
+            None if fields.title == ROOT.title && is_material(&entry.node) => {
+                problem.help(format!("a material is written [materials.{}]", entry.key))
+            }
             None => problem.nearest(near),
         });
     }
@@ -102,6 +117,7 @@ impl Check {
                 check.count(key.name, 0, i64::MAX, member);
             }),
             Kind::Choice(options) => self.choice(key.name, options, node),
+            Kind::Text if key.name == "material" => self.material(node),
             Kind::Text => self.kind(key, node, "text in quotes", node.text().is_some()),
             Kind::Flag => {
                 let fits = matches!(node.value, Value::Flag(_));
@@ -129,6 +145,19 @@ impl Check {
                 format!("expected {expected}"),
             ));
         }
+    }
+
+    /// The name of a material; whether there is one is seen later.
+    fn material(&mut self, node: &Node) {
+        if node.text().is_some() {
+            return;
+        }
+        let message = format!("`material` is {}, not a name in quotes", node.kind());
+        let problem = Problem::new(&node.span, message, self.known.expected_material());
+        self.add(match node.value {
+            Value::Table(_) => problem.help("write it as a table of its own, [materials.NAME]"),
+            _ => problem,
+        });
     }
 
     fn each(&mut self, key: &Key, node: &Node, mut check: impl FnMut(&mut Self, &Node)) {
@@ -195,7 +224,15 @@ impl Check {
 
     fn count(&mut self, name: &str, least: i64, most: i64, node: &Node) {
         if let Err(problem) = whole(name, least, most, node) {
-            self.add(problem);
+            // The same, with what this chain has.
+            let problem = match self.known.range(name) {
+                Some((least, most)) => whole(name, least, most, node).err().unwrap_or(problem),
+                None => problem,
+            };
+            self.add(match Known::counting(name) {
+                Some(help) => problem.help(help),
+                None => problem,
+            });
         }
     }
 
@@ -236,7 +273,10 @@ impl Check {
             return self.add(Problem::new(&entry.key_span, message, label));
         }
         for entry in node.entries() {
-            self.table(&entry.node, fields, None);
+            match inner_material(entry) {
+                Some(inner) => self.add(name_with_point(key, entry, inner)),
+                None => self.table(&entry.node, fields, None),
+            }
         }
     }
 
@@ -301,6 +341,28 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
     } else {
         Err(problem(format!("`{name}` = {found} is out of range")))
     }
+}
+
+/// Whether a table says what only materials say.
+fn is_material(node: &Node) -> bool {
+    node.get("young_modulus").is_some() || node.get("poisson_ratio").is_some()
+}
+
+/// A material inside another table of materials, for want of quotes.
+fn inner_material(entry: &Entry) -> Option<&Entry> {
+    let mut inner = entry.node.entries().iter();
+    let inner = inner.find(|inner| is_material(&inner.node));
+    inner.filter(|_| !is_material(&entry.node))
+}
+
+fn name_with_point(key: &Key, outer: &Entry, inner: &Entry) -> Problem {
+    let name = format!("{}.{}", outer.key, inner.key);
+    let message = format!("a point parts the name `{name}` in two tables");
+    let label = format!(
+        "expected one name: [{0}.{1}] or [{0}.\"{name}\"]",
+        key.name, inner.key
+    );
+    Problem::new(&inner.key_span, message, label)
 }
 
 /// Whether a key that a power law does not know is a slip of this one.

@@ -3,7 +3,7 @@
 use crate::finding::Problem;
 use crate::spec::Spec;
 use crate::value::{Units, rounded};
-use hertzchain_chain::{Chain, System};
+use hertzchain_chain::{Chain, FarEnd, System};
 
 /// The first contact that is overlapped by more than the smaller radius at the
 /// start, by load or by displacement. Dimensionless lengths have no radius to
@@ -19,8 +19,13 @@ pub(crate) fn problem(spec: &Spec, chain: &Chain, system: &System) -> Option<Pro
             *place = initial.displacement_m;
         }
     }
+    if let (FarEnd::Periodic { .. }, [_, first, .., last]) = (&chain.far, &mut displaced_m[..]) {
+        *last = *first;
+    }
     let inner = displaced_m.iter().zip(displaced_m.iter().skip(1)).skip(1);
-    let radii = chain.beads.iter().zip(chain.beads.iter().skip(1));
+    // What bead N leans on is at least as large, or of no radius at all.
+    let right = chain.beads.iter().skip(1).chain(chain.beads.last());
+    let radii = chain.beads.iter().zip(right);
     let mut contacts = (1..).zip(inner.zip(radii));
     contacts.find_map(|(contact, ((left_m, right_m), (left, right)))| {
         let at_rest_m = system.static_contact(contact).overlap_m;

@@ -5,15 +5,18 @@ use crate::assemble;
 use crate::check::Check;
 use crate::crushed;
 use crate::document::{self, Node, Value};
+use crate::effort;
 use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Liquid, Near, SectionSpec, Solver, Spec};
+use crate::spec::{Liquid, Near, Rig, SectionSpec, Solver, Spec};
 use crate::unit_slip;
+use crate::validity;
 use crate::value::Units;
 use crate::view::View;
+use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
 use std::path::{Path, PathBuf};
@@ -86,11 +89,7 @@ impl Experiment {
             return Err(Mistakes::one(problem.help(help), &source));
         }
         let units = units(&tree);
-        let mut check = Check {
-            units,
-            problems: Vec::new(),
-            fitting: 0,
-        };
+        let mut check = Check::new(units, &tree);
         check.table(&tree, &ROOT, None);
         if !check.problems.is_empty() {
             let problems = unit_slip::gathered(check.problems, check.fitting, units, &tree);
@@ -146,15 +145,33 @@ impl Experiment {
     ///
     /// # Errors
     /// Those of [`Experiment::chain`]; laws that the materials can't serve; no
-    /// static equilibrium, or one in which beads are crushed.
+    /// static equilibrium, or beads that are crushed at rest or by the impact;
+    /// dissipation that stops all motion at once; a step longer than a contact,
+    /// or more steps than a shot can have.
     pub fn system(&self, speed_m_s: Option<f64>) -> Result<(System, Vec<Warning>), Mistakes> {
         let (chain, warnings) = self.chain(speed_m_s)?;
         let refused = |error| self.mistake(locate::problem(&self.spec, &error));
         let system = System::new(&chain).map_err(refused)?;
-        match crushed::problem(&self.spec, &chain, &system) {
+        let problem = crushed::problem(&self.spec, &chain, &system)
+            .or_else(|| validity::refusal(&self.spec, &chain))
+            .or_else(|| effort::problem(&self.spec, &chain, &system));
+        match problem {
             Some(problem) => Err(self.mistake(problem)),
             None => Ok((system, warnings)),
         }
+    }
+
+    /// What a solver says of this experiment's motion, at the laws of the
+    /// contact where it ended, or at the solver's settings.
+    #[must_use]
+    pub fn unsolved(&self, error: &SolveError) -> Mistakes {
+        self.mistake(locate::unsolved(&self.spec, error))
+    }
+
+    /// Why a solver does not reach what it was asked for, at its settings.
+    #[must_use]
+    pub fn unreached(&self, why: &str) -> Mistakes {
+        self.mistake(locate::unreached(&self.spec, why))
     }
 
     /// Refuses an experiment without a striker where a speed is asked for,
@@ -287,6 +304,13 @@ impl Experiment {
     #[must_use]
     pub fn liquid(&self) -> Option<&Liquid> {
         self.spec.liquid.as_ref()
+    }
+
+    /// What stands around the chain, if the file tells; nothing is computed
+    /// from it.
+    #[must_use]
+    pub fn rig(&self) -> Option<&Rig> {
+        self.spec.rig.as_ref()
     }
 
     /// Sections of contacts with their laws, in the reading.

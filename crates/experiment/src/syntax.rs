@@ -2,6 +2,7 @@
 
 use crate::duplicate;
 use crate::finding::Problem;
+use crate::spec::as_key;
 use crate::units;
 use std::ops::Range;
 use toml::de::Error;
@@ -109,6 +110,9 @@ fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
     if is_duplicate(error) {
         return duplicate::problem(place, text);
     }
+    if let Some(problem) = bare_name(place, text) {
+        return problem;
+    }
     let value = value(text, place.start);
     let raw = text.get(value.clone()).unwrap_or_default();
     if let Some(label) = unquoted(raw) {
@@ -122,6 +126,30 @@ fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
         None => (place.clone(), error.message()),
     };
     Problem::new(&place, "this is not valid TOML", label)
+}
+
+/// The name of a table with letters that want quotes, or with a space for a
+/// point.
+fn bare_name(place: &Range<usize>, text: &str) -> Option<Problem> {
+    let line = line(text, place.start);
+    let written = text.get(line.clone())?;
+    let code = written.split('#').next()?.trim();
+    let inner = code.strip_prefix('[')?.strip_suffix(']')?;
+    if inner.contains(['[', ']', '"', '\'', ',', '=']) {
+        return None;
+    }
+    let name = match inner.trim().split_once([' ', '\t']) {
+        Some(("materials", name)) => format!("materials.{}", as_key(name.trim())),
+        _ => inner
+            .split('.')
+            .map(|part| as_key(part.trim()))
+            .collect::<Vec<_>>()
+            .join("."),
+    };
+    let start = line.start + written.find('[')?;
+    let place = start..start + code.len();
+    let label = format!("expected [{name}]");
+    (name != inner).then(|| Problem::new(&place, "this is no name of a table", label))
 }
 
 /// A `key =` without a value, in the line of an error or right before it.

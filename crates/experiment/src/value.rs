@@ -149,6 +149,11 @@ pub(crate) fn rounded(value: f64) -> String {
     short(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
+/// An estimate for messages, to two digits.
+pub(crate) fn brief(value: f64) -> String {
+    short(format!("{value:.1e}").parse().unwrap_or(value))
+}
+
 /// A number for messages: as short as it can be read back.
 pub(crate) fn short(value: f64) -> String {
     match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {

@@ -128,6 +128,9 @@ fn header() -> impl Strategy<Value = &'static str> {
         "[solver]",
         "[reading]",
         "[liquid]",
+        "[rig]",
+        "[rig.springs]",
+        "[rig.recorder]",
         "[materials.a]",
         "[a.b]",
     ])

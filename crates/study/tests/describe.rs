@@ -224,3 +224,21 @@ fn small_waves_on_a_load_run_at_the_speed_of_sound_and_large_ones_faster() {
     // To first order V = c (1 + excess of the overlap (n − 1)/6), overlap growing by 2/3 of 0.1.
     assert_close(speeds[0], sound * (1.0 + 0.1 * (2.0 / 3.0) / 12.0), 1e-3);
 }
+
+#[test]
+fn parts_of_the_rig_are_listed_with_their_numbers_and_as_not_computed_with() {
+    let rig = |name: &str| {
+        let groups = described(&preset(name).unwrap());
+        groups
+            .into_iter()
+            .find(|group| group.title.starts_with("Rig"))
+    };
+    let found = rig("dry").unwrap();
+    assert!(found.title.contains("nothing is computed"));
+    let text = |name: &str| found.rows.iter().find(|row| row.name == name).unwrap();
+    let bar = Value::Text("bar against noise, 6 kg".to_owned());
+    assert_eq!(text("bar").value, bar);
+    let springs = Value::Text("two-spring assembly, 0.24 N".to_owned());
+    assert_eq!(text("springs").value, springs);
+    assert_eq!(rig("hertz"), None);
+}

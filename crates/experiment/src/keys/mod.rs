@@ -4,8 +4,10 @@
 pub(crate) mod advice;
 mod ends;
 pub(crate) mod ranges;
+mod rig;
 mod tables;
 
+pub(crate) use rig::RIG;
 pub(crate) use tables::{MOST_BEADS, ROOT};
 
 use crate::value::Units;

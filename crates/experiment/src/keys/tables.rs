@@ -1,6 +1,7 @@
 //! Every table of an experiment file.
 
 use super::ends::{DRIVEN, FAR_END, NEAR_END, STRIKER};
+use super::rig::RIG;
 use super::{Fields, Key, Kind, Limits, Need, ranges};
 use crate::reading;
 use std::f64::consts::FRAC_PI_2;
@@ -38,7 +39,7 @@ pub(super) const fn either_way(name: &'static str, about: &'static str) -> Key {
     Key::new(name, Kind::Quantity("m", ranges::DISPLACEMENT), about)
 }
 
-const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
+pub(super) const fn number_of(name: &'static str, least: i64, about: &'static str) -> Key {
     let most = MOST_BEADS;
     Key::new(name, Kind::Count { least, most }, about)
 }
@@ -310,6 +311,11 @@ pub(crate) static ROOT: Fields = Fields {
             "liquid",
             Kind::Table(&LIQUID),
             "the liquid of wet contacts, for reports",
+        ),
+        Key::new(
+            "rig",
+            Kind::Table(&RIG),
+            "what stands around the chain, for drawings and reports; computes nothing",
         ),
         Key::new(
             "reading",

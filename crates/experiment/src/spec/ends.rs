@@ -2,7 +2,9 @@
 
 use super::Materials;
 use crate::finding::Problem;
+use crate::keys::ranges::SPEED;
 use crate::motion_file;
+use crate::value::{Units, brief};
 use crate::view::View;
 use hertzchain_chain::{Motion, Push};
 use std::ops::Range;
@@ -24,6 +26,7 @@ pub(crate) enum Near {
     Striker {
         shape: Shape,
         speed_m_s: f64,
+        speed_span: Range<usize>,
     },
     Driven {
         shape: Shape,
@@ -78,10 +81,11 @@ pub(crate) fn near(root: &View<'_>, materials: &Materials, folder: &Path) -> Res
         (Some(striker), None) => Ok(Near::Striker {
             shape: shape(&striker, materials, ["radius", "mass"])?,
             speed_m_s: striker.needed("speed")?,
+            speed_span: striker.span_of("speed"),
         }),
         (None, Some((tag, table))) => Ok(Near::Driven {
             shape: shape(&table, materials, ["radius", ""])?,
-            motion: motion(tag, &table, folder)?,
+            motion: bearable(motion(tag, &table, folder)?, &table)?,
         }),
         (None, None) if root.has("initial") => Ok(Near::Free {
             span: root.tables("initial").first().map_or(0..0, View::span),
@@ -106,6 +110,25 @@ fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, Problem>
         }),
         _ => motion_file::table(table, folder),
     }
+}
+
+/// A motion as fast as a striker may be.
+fn bearable(motion: Motion, table: &View<'_>) -> Result<Motion, Problem> {
+    let speed_m_s = motion.largest_speed_m_s();
+    let limits = SPEED.within(table.units, "m/s");
+    if limits.hold(speed_m_s) {
+        return Ok(motion);
+    }
+    let unit = match table.units {
+        Units::Si => " m/s",
+        Units::Dimensionless => "",
+    };
+    let message = format!("this motion reaches a speed of {}{unit}", brief(speed_m_s));
+    let keys = ["frequency", "duration", "times", "file"];
+    let place = keys.into_iter().find(|key| table.has(key));
+    let place = place.map_or(table.span(), |key| table.span_of(key));
+    let label = format!("expected a largest speed {}", limits.words);
+    Err(Problem::new(&place, message, label))
 }
 
 /// An amplitude, which must move the body at all.

@@ -2,6 +2,7 @@
 
 use super::{Far, Near, Spec};
 use crate::finding::Problem;
+use crate::known;
 use hertzchain_chain::Initial;
 use std::ops::{Range, RangeInclusive};
 
@@ -87,7 +88,11 @@ impl Spec {
                 there.end()
             ),
         };
-        Err(Problem::new(span, message, label))
+        let problem = Problem::new(span, message, label);
+        Err(match (what, found) {
+            ("sensor bead" | "bead", 0) => problem.help(known::BEADS),
+            _ => problem,
+        })
     }
 
     /// Two gaps in one contact, or two initial states of one bead.

@@ -1,6 +1,7 @@
 //! Materials of a file; their numbers may depend on the striker's speed.
 
 use crate::finding::Problem;
+use crate::known::expected_material;
 use crate::nearest;
 use crate::value::{rounded, short};
 use crate::view::{Scaled, View};
@@ -45,12 +46,28 @@ impl Materials {
 
     fn unknown(&self, table: &View<'_>, name: &str) -> Problem {
         let known: Vec<&str> = self.0.iter().map(|m| m.name.as_str()).collect();
-        let label = match known.is_empty() {
-            true => format!("expected a table [materials.{name}]"),
-            false => format!("expected one of: {}", known.join(", ")),
-        };
+        let label = expected_material(known.iter().copied());
         let message = format!("there is no material `{name}`");
-        Problem::new(&table.span_of("material"), message, label).nearest(nearest::of(name, known))
+        let problem = Problem::new(&table.span_of("material"), message, label);
+        let bare = name.trim().trim_start_matches("materials.");
+        match nearest::of(bare, known) {
+            Some(near) => problem.nearest(Some(near)),
+            None if name.is_empty() => problem,
+            None => problem.help(format!(
+                "no material is built in; write a table [materials.{}] with young_modulus and \
+                 poisson_ratio",
+                as_key(name)
+            )),
+        }
+    }
+}
+
+/// A name as a key of TOML: in quotes unless it is bare.
+pub(crate) fn as_key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    match !name.is_empty() && name.chars().all(bare) {
+        true => name.to_owned(),
+        false => format!("{name:?}"),
     }
 }
 
@@ -73,6 +90,19 @@ impl MaterialSpec {
             bulk_viscosity: table.scaled("bulk_viscosity")?,
             span,
         })
+    }
+
+    /// Where the Young modulus stands.
+    pub(crate) fn modulus_span(&self) -> &Range<usize> {
+        &self.young_modulus.span
+    }
+
+    /// Where the larger of the viscosities stands, if there is one.
+    pub(crate) fn viscosity_span(&self) -> Option<&Range<usize>> {
+        let given = [&self.shear_viscosity, &self.bulk_viscosity];
+        let given = given.into_iter().flatten();
+        let largest = given.max_by(|a, b| a.prefactor.total_cmp(&b.prefactor))?;
+        Some(&largest.span)
     }
 
     /// The material at a striker speed, and what is odd about it.

@@ -5,15 +5,17 @@ mod contacts;
 mod ends;
 mod layout;
 mod materials;
+mod rig;
 mod setting;
 
 pub use contacts::SectionSpec;
+pub use rig::{Rig, RigPart, RigPartKind};
 pub use setting::{Liquid, METHODS, Method, Solver};
 
 pub(crate) use beads::{Group, sphere_mass_kg};
 pub(crate) use ends::{Far, Near, Shape};
-pub(crate) use materials::Materials;
-pub(crate) use setting::Sensors;
+pub(crate) use materials::{MaterialSpec, Materials, as_key};
+pub(crate) use setting::{Sensors, SolverSpans};
 
 use crate::finding::Problem;
 use crate::reading::Reading;
@@ -49,7 +51,9 @@ pub(crate) struct Spec {
     pub(crate) tension: Tension,
     pub(crate) sensors: Sensors,
     pub(crate) solver: Solver,
+    pub(crate) solver_spans: SolverSpans,
     pub(crate) liquid: Option<Liquid>,
+    pub(crate) rig: Option<Rig>,
     pub(crate) reading: Reading,
 }
 
@@ -90,7 +94,9 @@ impl Spec {
             tension: setting::tension(root),
             sensors: Sensors::read(root, count)?,
             solver: Solver::read(root)?,
+            solver_spans: SolverSpans::read(root),
             liquid: Liquid::read(root)?,
+            rig: Rig::read(root)?,
             reading: reading(root),
             materials,
             groups,

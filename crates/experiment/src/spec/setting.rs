@@ -94,6 +94,26 @@ impl Solver {
     }
 }
 
+/// Where a file gives times to the solver.
+#[derive(Clone, Debug)]
+pub(crate) struct SolverSpans {
+    pub(crate) table: Option<Range<usize>>,
+    pub(crate) step: Range<usize>,
+    pub(crate) duration: Range<usize>,
+}
+
+impl SolverSpans {
+    pub(super) fn read(root: &View<'_>) -> Self {
+        let table = root.table("solver");
+        let span = |key| table.map_or(root.span(), |t| t.span_of(key));
+        Self {
+            table: table.map(|t| t.span()),
+            step: span("step"),
+            duration: span("duration"),
+        }
+    }
+}
+
 /// Where the chain is watched.
 #[derive(Clone, Debug)]
 pub(crate) struct Sensors {

@@ -1,6 +1,6 @@
 //! Contact laws and their parameters.
 
-use super::{DRY, after, check, line_of, only};
+use super::{DRY, after, check, line_of, only, refused};
 use hertzchain_experiment::Experiment;
 
 #[test]
@@ -84,4 +84,15 @@ fn a_unit_follows_the_exponent_beside_it() {
         "{}",
         finding.one_line()
     );
+}
+
+#[test]
+fn a_law_that_needs_a_material_asks_for_one() {
+    let law = "{ law = \"damping_brilliantov_1996\", relaxation_time = 1 }";
+    let text = format!(
+        "units = \"dimensionless\"\n[striker]\nspeed = 1\n[[beads]]\n[[contacts]]\n\
+         laws = [\"elastic_hertz\", {law}]\n"
+    );
+    let words = ["can't be used on contact 0", "name one in [[beads]]"];
+    check(&refused(&text), 6, law, &words);
 }

@@ -5,6 +5,8 @@
     reason = "a test that cannot go on should fail"
 )]
 
+mod counting;
+mod effort;
 mod files;
 mod form;
 mod hints;
@@ -13,6 +15,8 @@ mod layout;
 mod materials;
 mod quantities;
 mod twice;
+mod unsolved;
+mod validity;
 
 use hertzchain_experiment::{Experiment, Finding};
 

@@ -70,3 +70,106 @@ fn either_all_beads_have_a_material_or_none() {
             .contains("no material, but others do")
     );
 }
+
+#[test]
+fn a_material_that_is_not_there_is_told_what_is() {
+    let line = line_of("material = ");
+    let named = |name: &str| after("material = \"aisi316\"", &format!("material = \"{name}\""));
+    for (name, words) in [
+        ("AISI 316", "did you mean `aisi316`"),
+        ("aisi316 ", "did you mean `aisi316`"),
+        ("materials.aisi316", "did you mean `aisi316`"),
+        (
+            "steel",
+            "no material is built in; write a table [materials.steel]",
+        ),
+        ("stainless steel", "[materials.\"stainless steel\"]"),
+        ("", "expected \"aisi316\", the file's only material"),
+    ] {
+        check(
+            &named(name),
+            line,
+            &format!("\"{name}\""),
+            &[words, "\"aisi316\""],
+        );
+    }
+}
+
+#[test]
+fn a_material_that_is_no_name_is_told_the_names() {
+    let second = "\n[materials.brass]\nyoung_modulus = \"100 GPa\"\npoisson_ratio = 0.35\n";
+    for value in [
+        "316",
+        "true",
+        "[\"aisi316\"]",
+        "{ name = \"aisi316\" }",
+        "1979-05-27",
+    ] {
+        for (place, key) in [
+            ("material = \"aisi316\"", ""),
+            (
+                "speed = \"0.5 m/s\"",
+                "speed = \"0.5 m/s\"\nmass = \"1 g\"\n",
+            ),
+            ("[[contacts]]\n", "[[contacts]]\n"),
+            ("kind = \"half-bead\"", "kind = \"half-bead\"\n"),
+        ] {
+            let text = DRY.replacen(place, &format!("{key}material = {value}\n"), 1);
+            let finding = only(&format!("{text}{second}"));
+            let line = finding.one_line();
+            assert_eq!(finding.text(), value, "{line}");
+            let words = "one of the file's materials: \"aisi316\", \"brass\"";
+            assert!(line.contains(words), "{line}");
+        }
+    }
+    let finding = after(
+        "material = \"aisi316\"",
+        "material = { poisson_ratio = 0.3 }",
+    );
+    assert!(
+        finding.one_line().contains("[materials.NAME]"),
+        "{}",
+        finding.one_line()
+    );
+}
+
+#[test]
+fn a_table_of_a_material_with_a_wrong_name_is_told_the_right_one() {
+    let line = line_of("[materials.aisi316]");
+    let named = |header: &str| after("[materials.aisi316]", header);
+    for (header, text, words) in [
+        ("[material.aisi316]", "material", "did you mean `materials`"),
+        (
+            "[Materials.aisi316]",
+            "Materials",
+            "did you mean `materials`",
+        ),
+        (
+            "[aisi316]",
+            "aisi316",
+            "a material is written [materials.aisi316]",
+        ),
+        (
+            "[materials.aisi316.x]",
+            "x",
+            "expected one name: [materials.x]",
+        ),
+    ] {
+        check(&named(header), line, text, &[words]);
+    }
+    for (header, right) in [
+        ("[materials.aisi 316]", "[materials.\"aisi 316\"]"),
+        ("[materials aisi316]", "[materials.aisi316]"),
+        ("[materials.äisi316]", "[materials.\"äisi316\"]"),
+    ] {
+        check(
+            &named(header),
+            line,
+            header,
+            &[&format!("expected {right}")],
+        );
+    }
+    let finding = named("[materials.aisi361]");
+    let words = ["no material `aisi316`", "did you mean `aisi361`"];
+    check(&finding, line_of("material = "), "\"aisi316\"", &words);
+}

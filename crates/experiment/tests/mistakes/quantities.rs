@@ -210,7 +210,7 @@ fn nan_and_infinities_are_refused_in_every_number_of_every_experiment() {
 #[test]
 fn a_unit_system_that_suits_no_quantity_is_one_mistake() {
     let finding = only(&format!("units = \"dimensionless\"\n{DRY}"));
-    let words = ["but its 6 quantities have units", "expected \"SI\""];
+    let words = ["but its 10 quantities have units", "expected \"SI\""];
     check(&finding, 1, "\"dimensionless\"", &words);
     assert_eq!(finding.other_line(), Some(line_of("young_modulus") + 1));
     let plain = "[striker]\nspeed = 1\n[[beads]]\nradius = 1\nmass = 1\nmaterial = \"a\"\n\

@@ -5,6 +5,7 @@ mod chain;
 mod contact;
 mod dimer;
 mod rest;
+mod rig;
 mod small_waves;
 mod theory;
 
@@ -100,6 +101,7 @@ pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, St
     groups.extend(rest::linear_waves(chain, &system));
     groups.push(theory::scales(&system));
     groups.extend(theory::expected(experiment, chain));
+    groups.extend(rig::rig(experiment));
     groups.retain(|group| !group.rows.is_empty());
     if experiment.units() == Units::Dimensionless {
         groups.iter_mut().for_each(drop_units);

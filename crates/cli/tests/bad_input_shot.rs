@@ -1,0 +1,131 @@
+//! Files with which no shot comes to a sensible end: every verb refuses them
+//! before anything runs, with one report that underlines the place, code 2.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const DRY: &str = include_str!("../../../experiments/dry.toml");
+
+fn run(arguments: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    program.args(arguments).output().unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn file(name: &str, text: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bad-input-shot");
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// One report from every verb, with its place, the marked text and words.
+fn every_verb_refuses(name: &str, text: &str, marked: &str, words: &[&str]) {
+    let path = file(name, text);
+    let path = path.to_str().unwrap();
+    for verb in ["check", "theory", "shot"] {
+        let output = run(&[verb, path]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{verb} {name}: {message}");
+        let reports = message.lines().filter(|line| line.starts_with("  ×"));
+        assert_eq!(reports.count(), 1, "{verb}: {message}");
+        assert!(!message.contains("error: "), "{verb}: {message}");
+        for part in [name, marked, "─"].iter().chain(words) {
+            assert!(message.contains(part), "{verb}: {message} lacks {part}");
+        }
+    }
+}
+
+fn solver(keys: &str) -> String {
+    format!("{DRY}\n[solver]\n{keys}\n")
+}
+
+#[test]
+fn steps_and_durations_without_sense_are_underlined() {
+    for (name, keys, marked, words) in [
+        (
+            "long-step.toml",
+            "method = \"rk4\"\nstep = \"1 s\"",
+            "step = \"1 s\"",
+            ["longer than a contact lasts", "is sensible"],
+        ),
+        (
+            "short-step.toml",
+            "method = \"verlet\"\nstep = \"1e-15 s\"",
+            "step = \"1e-15 s\"",
+            ["steps of 1e-15 s", "expected at least"],
+        ),
+        (
+            "endless.toml",
+            "duration = \"1e9 s\"",
+            "duration = \"1e9 s\"",
+            ["takes some 6.7e14 steps", "at most 1500 s"],
+        ),
+    ] {
+        every_verb_refuses(name, &solver(keys), marked, &words);
+    }
+}
+
+#[test]
+fn numbers_with_which_nothing_moves_are_underlined() {
+    for (name, from, to, words) in [
+        (
+            "cubic.toml",
+            "77 kg s/m^2",
+            "1e20 kg s/m^2",
+            [
+                "law `damping_cubic` is 7e16 times as strong",
+                "1400 kg s/m^2",
+            ],
+        ),
+        (
+            "viscous.toml",
+            "3.2e4 Pa s",
+            "1e24 Pa s",
+            [
+                "law `damping_viscoelastic` is 1.1e18 times as strong",
+                "viscosities",
+            ],
+        ),
+        (
+            "fast.toml",
+            "0.5 m/s",
+            "1e5 m/s",
+            ["overlap by", "more than a bead's radius"],
+        ),
+    ] {
+        every_verb_refuses(name, &DRY.replace(from, to), to, &words);
+    }
+}
+
+#[test]
+fn bead_0_is_told_from_where_beads_are_counted() {
+    let text = DRY.replace("bead = 7", "bead = 0");
+    let words = ["from 1 to 40", "beads are counted from 1"];
+    every_verb_refuses("bead-0.toml", &text, "bead = 0", &words);
+}
+
+#[test]
+fn a_law_out_of_its_range_is_a_warning_beside_the_results() {
+    let path = file("deep.toml", &DRY.replace("0.5 m/s", "60 m/s"));
+    let path = path.to_str().unwrap();
+    for verb in ["check", "theory", "shot"] {
+        let output = run(&[verb, path]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
+        for part in [
+            "⚠ two bodies",
+            "speed = \"60 m/s\"",
+            "of their reduced radius",
+            "validity",
+        ] {
+            assert!(message.contains(part), "{verb}: {message} lacks {part}");
+        }
+    }
+}
