@@ -10,7 +10,7 @@ mod common;
 use common::{cubic, hertz, row, viscoelastic};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use hertzchain_chain::ensemble::{End, LANES, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, Precision, Settings, Shot, fire};
 use hertzchain_chain::laws::{DampingPower, Law, law};
 use hertzchain_chain::{FarEnd, InstructionSet, Sensor, System};
 use std::sync::Arc;
@@ -40,45 +40,62 @@ fn settings(set: &str, beads: usize) -> Settings {
         sensors: vec![Sensor::Bead(7), Sensor::Contact(beads)],
         end: End::Passed,
         set: InstructionSet::named(set).unwrap_or_default(),
+        shapes: false,
         whole_chain: false,
         openings: false,
     }
 }
 
-/// Eight shots of the paper's row side by side.
-fn block(bencher: Bencher<'_, '_>, set: &str, name: &str) {
+/// As many shots of the paper's row as run side by side.
+fn block(bencher: Bencher<'_, '_>, precision: Precision, set: &str, name: &str) {
     let system = System::new(&row(40, 0.5, laws(name))).unwrap();
     let shot = Shot {
         system: &system,
         step: 0.16,
         duration_s: 5e-3,
+        precision,
     };
     let settings = settings(set, 40);
     let steps = fire(&[shot], &settings)[0].as_ref().unwrap().work.steps;
-    let items = ItemsCount::new(steps as usize * 42 * LANES);
+    let shots = vec![shot; precision.lanes()];
+    let items = ItemsCount::new(steps as usize * 42 * shots.len());
     bencher
         .counter(items)
-        .bench(|| black_box(fire(&[shot; LANES], &settings)));
+        .bench(|| black_box(fire(&shots, &settings)));
 }
 
-#[divan::bench(args = ["avx512", "avx2", "sse2"])]
-fn eight_dry_shots_by_instruction_set(bencher: Bencher<'_, '_>, set: &str) {
-    block(bencher, set, "dry");
+const SETS: [&str; 3] = ["avx512", "avx2", "sse2"];
+const LAWS: [&str; 5] = ["hertz", "viscoelastic", "dry", "unfused", "damping_power"];
+
+#[divan::bench(args = SETS)]
+fn dry_shots_in_double_precision(bencher: Bencher<'_, '_>, set: &str) {
+    block(bencher, Precision::Double, set, "dry");
 }
 
-#[divan::bench(args = ["hertz", "viscoelastic", "dry", "unfused", "damping_power"])]
-fn eight_shots_by_law(bencher: Bencher<'_, '_>, name: &str) {
-    block(bencher, "", name);
+#[divan::bench(args = SETS)]
+fn dry_shots_in_single_precision(bencher: Bencher<'_, '_>, set: &str) {
+    block(bencher, Precision::Single, set, "dry");
+}
+
+#[divan::bench(args = LAWS)]
+fn laws_in_double_precision(bencher: Bencher<'_, '_>, name: &str) {
+    block(bencher, Precision::Double, "", name);
+}
+
+#[divan::bench(args = LAWS)]
+fn laws_in_single_precision(bencher: Bencher<'_, '_>, name: &str) {
+    block(bencher, Precision::Single, "", name);
 }
 
 /// An item is a shot.
-#[divan::bench]
-fn one_dry_shot_alone(bencher: Bencher<'_, '_>) {
+#[divan::bench(args = [Precision::Double, Precision::Single])]
+fn one_dry_shot_alone(bencher: Bencher<'_, '_>, precision: Precision) {
     let system = System::new(&row(40, 0.5, laws("dry"))).unwrap();
     let shot = Shot {
         system: &system,
         step: 0.16,
         duration_s: 5e-3,
+        precision,
     };
     let settings = settings("", 40);
     bencher
@@ -97,6 +114,7 @@ fn one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
         system: &system,
         step: 0.1,
         duration_s: 0.1 * steps as f64 * system.scales().time_s,
+        precision: Precision::Double,
     };
     let settings = Settings {
         sensors: vec![],

@@ -66,7 +66,7 @@ impl Reached {
         let [median, most, worst] = [0.5, 0.99, 1.0].map(|part| self.quantile(part));
         let count = self.0.len();
         println!(
-            "{accuracy:e} {kind}: {count} shots, median {median:.2}, 99 % {most:.2}, max {worst:.2}"
+            "{accuracy:e} {kind}: {count} shots, median {median:.2e}, 99 % {most:.2e}, max {worst:.2e}"
         );
     }
 }
@@ -117,4 +117,44 @@ fn an_accuracy_of_1e_6_is_reached_times_four_by_nine_tenths_of_gentle_chains() {
     let reached = reached(1e-6);
     assert!(reached.quantile(0.5) < 0.5, "{}", reached.quantile(0.5));
     assert!(reached.quantile(0.9) < 4.0, "{}", reached.quantile(0.9));
+}
+
+/// Rounding alone: the same steps in both precisions, over random chains whose
+/// beads are not pressed together. Over the 153 such shots of 1,000 the larger
+/// difference of both times of flight was 1.1e-6 in the middle, below 5.2e-6
+/// for nine tenths, and at most 3.4e-5.
+#[test]
+fn single_precision_moves_times_of_flight_by_less_than_1e_5_in_nine_tenths_of_gentle_chains() {
+    let mut moved = Reached::default();
+    for shot in random_shots(SHOTS) {
+        let system = System::new(&shot.chain).unwrap();
+        if !(shot.suits_equal_steps() && system.flies_free()) {
+            continue;
+        }
+        let settings = Settings {
+            sensors: shot.sensors(),
+            end: End::Reflected,
+            openings: true,
+            ..settings(1)
+        };
+        let duration_s = 3000.0 * system.scales().time_s;
+        let [double, single] = PRECISIONS.map(|precision| {
+            let system = std::slice::from_ref(&system);
+            let flown = fire_all_in(precision, system, (0.1, duration_s), &settings).remove(0);
+            flown
+                .ok()
+                .and_then(|flown| passage(&flown))
+                .map(|p| tofs(&p))
+        });
+        let (Some(double), Some(single)) = (double, single) else {
+            assert_eq!(double.is_some(), single.is_some());
+            continue;
+        };
+        let change = [0, 1].map(|i| (single[i] / double[i] - 1.0).abs());
+        moved.add(change[0].max(change[1]));
+    }
+    moved.print("single", 1.0);
+    assert!(moved.0.len() > SHOTS / 10);
+    assert!(moved.quantile(0.5) < 2e-6, "{:e}", moved.quantile(0.5));
+    assert!(moved.quantile(0.9) < 1e-5, "{:e}", moved.quantile(0.9));
 }

@@ -5,17 +5,22 @@ mod common;
 use allocation_counter::{AllocationInfo, measure};
 use common::ensemble::*;
 use common::*;
-use hertzchain_chain::ensemble::{End, Settings};
+use hertzchain_chain::ensemble::{End, Precision, Settings};
 use hertzchain_chain::laws::{DampingPower, law};
 use hertzchain_chain::*;
 
 /// What firing alike chains allocates, and how many steps it takes.
-fn allocated(systems: &[System], step: (f64, f64), settings: &Settings) -> (AllocationInfo, u64) {
+fn allocated(
+    precision: Precision,
+    systems: &[System],
+    step: (f64, f64),
+    settings: &Settings,
+) -> (AllocationInfo, u64) {
     // What is made once for all shots is made before anything is counted.
-    let _ = fire_all(systems, step, settings);
+    let _ = fire_all_in(precision, systems, step, settings);
     let mut steps = 0;
     let info = measure(|| {
-        let flown = fire_all(systems, step, settings);
+        let flown = fire_all_in(precision, systems, step, settings);
         steps = flown[0].as_ref().unwrap().work.steps;
     });
     (info, steps)
@@ -50,14 +55,22 @@ fn until_the_end(sensors: Vec<Sensor>) -> Settings {
     }
 }
 
+/// One shot alone and full blocks.
+const LANES: [(Precision, usize); 4] = [
+    (Precision::Double, 1),
+    (Precision::Double, 8),
+    (Precision::Single, 1),
+    (Precision::Single, 16),
+];
+
 #[test]
 fn the_number_of_allocations_does_not_depend_on_the_number_of_steps() {
     let settings = until_the_end(vec![]);
     for chain in chains() {
-        for lanes in [1, 8] {
+        for (precision, lanes) in LANES {
             let systems = vec![System::new(&chain).unwrap(); lanes];
-            let (few, steps) = allocated(&systems, (0.1, 1e-3), &settings);
-            let (many, more_steps) = allocated(&systems, (0.05, 4e-3), &settings);
+            let (few, steps) = allocated(precision, &systems, (0.1, 1e-3), &settings);
+            let (many, more_steps) = allocated(precision, &systems, (0.05, 4e-3), &settings);
             assert!(more_steps > 6 * steps, "{steps} {more_steps}");
             assert_eq!(few.count_total, many.count_total, "{lanes} lanes");
             assert_eq!(few.bytes_total, many.bytes_total, "{lanes} lanes");
@@ -68,10 +81,10 @@ fn the_number_of_allocations_does_not_depend_on_the_number_of_steps() {
 #[test]
 fn sensors_allocate_before_and_after_the_steps_but_not_within() {
     let settings = until_the_end(watched(20));
-    for lanes in [1, 8] {
+    for (precision, lanes) in LANES {
         let systems = vec![System::new(&chains()[0]).unwrap(); lanes];
-        let (few, steps) = allocated(&systems, (0.1, 1e-3), &settings);
-        let (many, more_steps) = allocated(&systems, (0.05, 4e-3), &settings);
+        let (few, steps) = allocated(precision, &systems, (0.1, 1e-3), &settings);
+        let (many, more_steps) = allocated(precision, &systems, (0.05, 4e-3), &settings);
         assert!(more_steps > 6 * steps, "{steps} {more_steps}");
         // What a sensor gives, stretches and maxima, is gathered afterwards in
         // vectors that double: 8 times the steps are 3 doublings of each, one

@@ -8,7 +8,7 @@
 mod common;
 use common::ensemble::*;
 use common::*;
-use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
 use hertzchain_chain::laws::{DampingLinear, DampingPower, ElasticPlasticThornton, Law, law};
 use hertzchain_chain::*;
 use std::sync::Arc;
@@ -133,48 +133,59 @@ fn settings_for(systems: &[System], openings: bool) -> Settings {
 
 #[test]
 fn every_number_of_shots_gives_the_bits_of_each_shot_alone() {
-    let systems = rows(17, |v| row(12, v, dry()));
+    let systems = rows(33, |v| row(12, v, dry()));
     let settings = settings_for(&systems, true);
-    let alone: Vec<_> = systems
-        .iter()
-        .map(|system| fire_one(system, (0.1, DURATION_S), &settings))
-        .collect();
-    for count in 1..=systems.len() {
-        let flown = fire_all(&systems[..count], (0.1, DURATION_S), &settings);
-        for (i, (flown, alone)) in flown.into_iter().zip(&alone).enumerate() {
-            same(&flown.unwrap(), alone, || format!("shot {i} of {count}"));
+    for precision in PRECISIONS {
+        let alone: Vec<_> = systems
+            .iter()
+            .map(|system| fire_one_in(precision, system, (0.1, DURATION_S), &settings))
+            .collect();
+        for count in 1..=2 * precision.lanes() + 1 {
+            let systems = &systems[..count];
+            let flown = fire_all_in(precision, systems, (0.1, DURATION_S), &settings);
+            for (i, (flown, alone)) in flown.into_iter().zip(&alone).enumerate() {
+                same(&flown.unwrap(), alone, || {
+                    format!("{precision:?}: shot {i} of {count}")
+                });
+            }
         }
     }
 }
 
 #[test]
 fn every_kind_of_chain_gives_the_same_bits_alone_and_side_by_side_in_any_order() {
-    for (kind, chain) in kinds() {
-        let systems = rows(8, chain);
-        for set in InstructionSet::available() {
-            for openings in [false, true] {
-                let settings = Settings {
-                    set,
-                    ..settings_for(&systems, openings)
-                };
-                let alone: Vec<_> = systems
-                    .iter()
-                    .map(|system| fire_one(system, (0.1, DURATION_S), &settings))
-                    .collect();
-                for turned in [0, 3, 5] {
-                    let mut order: Vec<usize> = (0..8).collect();
-                    order.rotate_left(turned);
-                    order.swap(1, 6);
-                    let turned: Vec<System> = order.iter().map(|&i| systems[i].clone()).collect();
-                    let flown = fire_all(&turned, (0.1, DURATION_S), &settings);
-                    for (flown, &i) in flown.into_iter().zip(&order) {
-                        let name = set.name();
-                        same(&flown.unwrap(), &alone[i], || {
-                            format!("{kind}: shot {i}, {name}, openings {openings}")
-                        });
-                    }
+    for precision in PRECISIONS {
+        for (kind, chain) in kinds() {
+            let systems = rows(precision.lanes(), chain);
+            for set in InstructionSet::available() {
+                for openings in [false, true] {
+                    let settings = Settings {
+                        set,
+                        ..settings_for(&systems, openings)
+                    };
+                    same_in_any_order(precision, &systems, &settings, kind);
                 }
             }
+        }
+    }
+}
+
+fn same_in_any_order(precision: Precision, systems: &[System], settings: &Settings, kind: &str) {
+    let alone: Vec<_> = systems
+        .iter()
+        .map(|system| fire_one_in(precision, system, (0.1, DURATION_S), settings))
+        .collect();
+    for turned in [0, 3, 5] {
+        let mut order: Vec<usize> = (0..systems.len()).collect();
+        order.rotate_left(turned);
+        order.swap(1, 6);
+        let turned: Vec<System> = order.iter().map(|&i| systems[i].clone()).collect();
+        let flown = fire_all_in(precision, &turned, (0.1, DURATION_S), settings);
+        for (flown, &i) in flown.into_iter().zip(&order) {
+            same(&flown.unwrap(), &alone[i], || {
+                let (set, openings) = (settings.set.name(), settings.openings);
+                format!("{kind}, {precision:?}: shot {i}, {set}, openings {openings}")
+            });
         }
     }
 }
@@ -204,14 +215,16 @@ fn shots_of_other_shapes_in_between_change_no_bits() {
 
 #[test]
 fn lanes_with_their_own_steps_and_durations_give_the_bits_of_each_shot_alone() {
-    let systems = rows(8, |v| row(12, v, dry()));
+    let systems = rows(24, |v| row(12, v, dry()));
+    // Eight in double precision and sixteen in single, mixed.
     let shots: Vec<Shot<'_>> = systems
         .iter()
         .enumerate()
         .map(|(i, system)| Shot {
             system,
-            step: 0.06 + 0.015 * i as f64,
-            duration_s: if i % 3 == 0 { 1e-4 } else { DURATION_S },
+            step: 0.06 + 0.005 * i as f64,
+            duration_s: if i % 4 == 0 { 1e-4 } else { DURATION_S },
+            precision: PRECISIONS[usize::from(i % 3 != 1)],
         })
         .collect();
     for end in [End::Duration, End::Passed, End::Reflected] {
@@ -244,20 +257,24 @@ fn a_shot_that_diverges_is_reported_alone_and_its_neighbours_keep_their_bits() {
         let coefficient = if stiff { TOO_STIFF } else { 2.0 };
         System::new(&dashpot(coefficient)).unwrap()
     };
-    let sound = fire_one(&system(false), (0.1, DURATION_S), &settings);
-    for bad in 0..8 {
-        let systems: Vec<System> = (0..8).map(|lane| system(lane == bad)).collect();
-        let flown = fire_all(&systems, (0.1, DURATION_S), &settings);
-        for (lane, flown) in flown.into_iter().enumerate() {
-            match flown {
-                Ok(flown) => same(&flown, &sound, || format!("lane {lane} beside {bad}")),
-                Err(EnsembleError::NotFinite { .. }) => assert_eq!(lane, bad),
-                Err(error) => unreachable!("{error}"),
+    for precision in PRECISIONS {
+        let fired =
+            |systems: &[System]| fire_all_in(precision, systems, (0.1, DURATION_S), &settings);
+        let sound = fired(&[system(false)]).remove(0).unwrap();
+        for bad in 0..precision.lanes() {
+            let lanes = 0..precision.lanes();
+            let systems: Vec<System> = lanes.map(|lane| system(lane == bad)).collect();
+            for (lane, flown) in fired(&systems).into_iter().enumerate() {
+                match flown {
+                    Ok(flown) => same(&flown, &sound, || format!("lane {lane} beside {bad}")),
+                    Err(EnsembleError::NotFinite { .. }) => assert_eq!(lane, bad),
+                    Err(error) => unreachable!("{error}"),
+                }
             }
         }
+        let alone = fired(&[system(true)]);
+        assert!(matches!(alone[0], Err(EnsembleError::NotFinite { .. })));
     }
-    let alone = fire_all(&[system(true)], (0.1, DURATION_S), &settings);
-    assert!(matches!(alone[0], Err(EnsembleError::NotFinite { .. })));
 }
 
 #[test]
@@ -271,6 +288,7 @@ fn a_shot_that_cannot_be_fired_is_refused_alone() {
             system,
             step: if i == 2 { f64::NAN } else { 0.1 },
             duration_s: if i == 5 { -1.0 } else { DURATION_S },
+            precision: Precision::Double,
         })
         .collect();
     for (i, (shot, flown)) in shots.iter().zip(fire(&shots, &settings)).enumerate() {

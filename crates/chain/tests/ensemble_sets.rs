@@ -4,8 +4,9 @@
 mod common;
 use common::ensemble::*;
 use common::*;
-use hertzchain_chain::ensemble::{Flown, Settings};
+use hertzchain_chain::ensemble::{Flown, Precision, Settings};
 use hertzchain_chain::laws::{DampingTsuji, Law, law};
+use hertzchain_chain::observe::Passage;
 use hertzchain_chain::*;
 use std::sync::Arc;
 
@@ -22,7 +23,12 @@ fn tsuji() -> Vec<Arc<dyn Law>> {
 }
 
 /// The same shots with the portable baseline and another set.
-fn both(set: InstructionSet, chain: &Chain, (step, openings): (f64, bool)) -> [Flown; 2] {
+fn both(
+    set: InstructionSet,
+    precision: Precision,
+    chain: &Chain,
+    (step, openings): (f64, bool),
+) -> [Flown; 2] {
     let baseline = InstructionSet::available().pop().unwrap();
     let system = System::new(chain).unwrap();
     [baseline, set].map(|set| {
@@ -31,7 +37,7 @@ fn both(set: InstructionSet, chain: &Chain, (step, openings): (f64, bool)) -> [F
             openings,
             ..settings(40)
         };
-        fire_one(&system, (step, 1e-2), &settings)
+        fire_one_in(precision, &system, (step, 1e-2), &settings)
     })
 }
 
@@ -48,34 +54,47 @@ fn chains() -> [Chain; 4] {
     ]
 }
 
+/// Largest relative differences of times of flight and of peaks, and of
+/// velocities at the end over the shot's.
+fn differences([one, two]: &[Flown; 2]) -> [f64; 3] {
+    let velocity = one.velocity_m_s.iter().zip(&two.velocity_m_s);
+    let velocity = velocity.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / 0.5;
+    let [one, two] = [one, two].map(|flown| passage(flown).unwrap());
+    let peaks = |passage: &Passage| {
+        let reflected = passage.reflected.unwrap().value;
+        vec![passage.incident.value, passage.wall.value, reflected]
+    };
+    let largest = |one: Vec<f64>, two: Vec<f64>| {
+        let pairs = one.iter().zip(&two);
+        pairs.fold(0.0_f64, |most, (a, b)| most.max((b / a - 1.0).abs()))
+    };
+    [
+        largest(tofs(&one).to_vec(), tofs(&two).to_vec()),
+        largest(peaks(&one), peaks(&two)),
+        velocity,
+    ]
+}
+
 #[test]
 fn every_instruction_set_agrees_with_the_baseline() {
+    // Rounding, which each opening that comes a rounding earlier or later
+    // makes larger: measured 4e-14, 2e-13 and 2e-13 in
+    // double precision, 1.3e-6, 7e-6 and 9e-5 in single.
+    let bounds = [
+        (Precision::Double, [1e-12, 1e-11, 1e-11]),
+        (Precision::Single, [5e-6, 5e-5, 5e-4]),
+    ];
     let steps = [(0.14, false), (0.03, true)].into_iter();
     for (step, chain) in steps.flat_map(|step| chains().map(|chain| (step, chain))) {
         for set in InstructionSet::available() {
-            let [baseline, other] = both(set, &chain, step);
-            let name = set.name();
-            assert_eq!(baseline.work.steps, other.work.steps, "{name}");
-            let [one, two] = [&baseline, &other].map(|flown| passage(flown).unwrap());
-            let tof = (0..2)
-                .map(|i| (tofs(&two)[i] / tofs(&one)[i] - 1.0).abs())
-                .fold(0.0, f64::max);
-            let peak = [
-                (one.incident.value, two.incident.value),
-                (one.wall.value, two.wall.value),
-                (one.reflected.unwrap().value, two.reflected.unwrap().value),
-            ];
-            let peak = peak
-                .map(|(a, b)| (b / a - 1.0).abs())
-                .into_iter()
-                .fold(0.0, f64::max);
-            let velocity = baseline.velocity_m_s.iter().zip(&other.velocity_m_s);
-            let velocity = velocity.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / 0.5;
-            // Rounding, which each opening that comes a rounding earlier or
-            // later makes larger: measured 3e-14, 3e-13 and 3e-13.
-            assert!(tof < 1e-12, "{name}: {tof:e}");
-            assert!(peak < 1e-11, "{name}: {peak:e}");
-            assert!(velocity < 1e-11, "{name}: {velocity:e}");
+            for (precision, bounds) in bounds {
+                let both = both(set, precision, &chain, step);
+                let name = set.name();
+                assert_eq!(both[0].work.steps, both[1].work.steps, "{name}");
+                let differences = differences(&both);
+                let within = differences.iter().zip(&bounds).all(|(d, bound)| d < bound);
+                assert!(within, "{name}, {precision:?}: {differences:?}");
+            }
         }
     }
 }

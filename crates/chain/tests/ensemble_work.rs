@@ -8,7 +8,7 @@
 mod common;
 use common::ensemble::*;
 use common::*;
-use hertzchain_chain::ensemble::{End, Flown, Settings};
+use hertzchain_chain::ensemble::{End, Flown, Precision, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::*;
 use std::sync::Arc;
@@ -38,8 +38,19 @@ fn the_dry_shot_costs_this_many_force_passes() {
     }
 }
 
+/// One shot alone and a full block, in both precisions.
+fn every_number_of_lanes() -> impl Iterator<Item = (Precision, usize)> {
+    let lanes = |precision: Precision| [1, precision.lanes()].map(|lanes| (precision, lanes));
+    PRECISIONS.into_iter().flat_map(lanes)
+}
+
 /// Chains at different speeds, until a time at which the wave has gone half way.
-fn pair(lanes: usize, chain: impl Fn(f64) -> Chain, openings: bool) -> [Vec<Flown>; 2] {
+fn pair(
+    precision: Precision,
+    lanes: usize,
+    chain: impl Fn(f64) -> Chain,
+    openings: bool,
+) -> [Vec<Flown>; 2] {
     let speed = |lane: usize| 0.3 + 0.1 * lane as f64;
     let systems: Vec<System> = (0..lanes)
         .map(|lane| System::new(&chain(speed(lane))).unwrap())
@@ -51,21 +62,41 @@ fn pair(lanes: usize, chain: impl Fn(f64) -> Chain, openings: bool) -> [Vec<Flow
             end: End::Duration,
             ..settings(200)
         };
-        let flown = fire_all(&systems, (0.1, 2e-3), &settings);
+        let flown = fire_all_in(precision, &systems, (0.1, 2e-3), &settings);
         flown.into_iter().map(Result::unwrap).collect()
     })
 }
 
 #[test]
 fn without_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
-    for lanes in [1, 8] {
+    for (precision, lanes) in every_number_of_lanes() {
         for openings in [false, true] {
-            let [part, whole] = pair(lanes, |v| row(200, v, dry()), openings);
+            let [part, whole] = pair(precision, lanes, |v| row(200, v, dry()), openings);
             for (part, whole) in part.iter().zip(&whole) {
                 if let Some(difference) = difference(part, whole) {
-                    panic!("{lanes} lanes: {difference}");
+                    panic!("{precision:?}, {lanes} lanes: {difference}");
                 }
                 assert!(part.bodies_looked_at * 10 < whole.bodies_looked_at * 7);
+            }
+        }
+    }
+}
+
+/// Laws that run one by one, over contacts no two of which are alike.
+#[test]
+fn each_contact_keeps_its_own_coefficients_when_others_sleep() {
+    let chain = |speed| {
+        let mut chain = row(200, speed, vec![cubic(), hertz()]);
+        for (i, bead) in chain.beads.iter_mut().enumerate() {
+            bead.radius_m *= 1.0 + 1e-3 * i as f64;
+        }
+        chain
+    };
+    for (precision, lanes) in every_number_of_lanes() {
+        let [part, whole] = pair(precision, lanes, chain, false);
+        for (part, whole) in part.iter().zip(&whole) {
+            if let Some(difference) = difference(part, whole) {
+                panic!("{precision:?}, {lanes} lanes: {difference}");
             }
         }
     }
@@ -80,12 +111,12 @@ fn under_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
         push,
         ..row(200, speed, dry())
     };
-    for lanes in [1, 8] {
+    for (precision, lanes) in every_number_of_lanes() {
         for openings in [false, true] {
-            let [part, whole] = pair(lanes, chain, openings);
+            let [part, whole] = pair(precision, lanes, chain, openings);
             for (part, whole) in part.iter().zip(&whole) {
                 if let Some(difference) = difference(part, whole) {
-                    panic!("{lanes} lanes: {difference}");
+                    panic!("{precision:?}, {lanes} lanes: {difference}");
                 }
                 assert!(part.bodies_looked_at * 2 < whole.bodies_looked_at);
             }

@@ -9,7 +9,7 @@
 //! at 1e-11, over eleven speeds. Force passes are means over these speeds: of a
 //! sweep, those that stayed in the ensemble, without the shots that judge them.
 
-use hertzchain_chain::ensemble::{self, End, Flown};
+use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
@@ -159,6 +159,7 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         system,
         step,
         duration_s: LONGEST_S,
+        precision: Precision::Double,
     };
     let shots: Vec<_> = systems.iter().map(shot).collect();
     let wall = systems[0].contacts() - 1;
@@ -166,6 +167,7 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         sensors: vec![Sensor::Bead(plans[0].sensor_bead), Sensor::Contact(wall)],
         end,
         set: InstructionSet::default(),
+        shapes: false,
         whole_chain: false,
         openings,
     };

@@ -2,6 +2,7 @@
 
 use crate::plan::{Plan, Solver};
 use hertzchain_chain::System;
+use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::wave::{DormandPrince, Method, Rk4, Verlet};
 
 /// Tightest tolerance per step: below it rounding, not the step, decides.
@@ -65,6 +66,19 @@ pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
             .then(|| (shorter * (longer / shorter).powf(share), openings))
     };
     EQUAL_STEPS.windows(2).find_map(between)
+}
+
+/// Accuracies from this on are computed in single precision, whose rounding is
+/// measured in `docs/numerics.md`.
+const SINGLE_FROM: f64 = 5e-5;
+
+/// How long the numbers of the ensemble loop are for a plan: where a load
+/// presses beads together, single precision would lose the wave in it.
+pub(crate) fn precision(plan: &Plan, system: &System) -> Precision {
+    match plan.accuracy >= SINGLE_FROM && system.flies_free() {
+        true => Precision::Single,
+        false => Precision::Double,
+    }
 }
 
 /// The adaptive solver at a tolerance.

@@ -1,7 +1,7 @@
 //! Many plans at once.
 //!
-//! Plans that ask for times of flight alone run in the ensemble loop, eight side
-//! by side on every thread; what that loop does not have, or does not finish
+//! Plans that ask for times of flight alone run in the ensemble loop, side by
+//! side on every thread; what that loop does not have, or does not finish
 //! well, runs one by one in the wave loop.
 
 use crate::accuracy;
@@ -11,7 +11,7 @@ use crate::flight::Flight;
 use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked};
-use hertzchain_chain::ensemble::{self, End, Flown, LANES};
+use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
@@ -60,7 +60,9 @@ fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
             Some(block) => block.push(at),
             None => open.push(vec![at]),
         }
-        let full = open.iter().position(|block| block.len() == LANES);
+        let full = open
+            .iter()
+            .position(|block| block.len() == Precision::Single.lanes());
         blocks.extend(full.map(|at| open.swap_remove(at)));
     }
     blocks.extend(open);
@@ -156,6 +158,7 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Opt
             system,
             step: step * longer,
             duration_s: duration::end(plan, system).longest_s,
+            precision: accuracy::precision(plan, system),
         })
         .collect();
     let wall = system.contacts() - 1;
@@ -167,6 +170,7 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Opt
             End::Duration
         },
         set,
+        shapes: true,
         whole_chain: false,
         openings,
     };

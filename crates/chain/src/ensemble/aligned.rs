@@ -1,6 +1,6 @@
 //! Numbers that begin where a cache line does.
 //!
-//! A chunk of eight is a cache line. Were it to straddle two, each load and
+//! A chunk is a cache line. Were it to straddle two, each load and
 //! store of it would cost two.
 
 use std::ops::{Deref, DerefMut};
@@ -8,23 +8,22 @@ use std::ops::{Deref, DerefMut};
 /// Bytes of a cache line.
 const LINE: usize = 64;
 
-/// Room to move the first number to the beginning of a line.
-const SPARE: usize = LINE / size_of::<f64>();
-
 /// A vector of fixed length, aligned to cache lines.
 #[derive(Debug, Default)]
-pub(super) struct Aligned {
-    values: Vec<f64>,
+pub(super) struct Aligned<T> {
+    values: Vec<T>,
     first: usize,
     length: usize,
 }
 
-impl Aligned {
+impl<T: Copy> Aligned<T> {
     /// That many times a value.
-    pub fn of(value: f64, length: usize) -> Self {
-        let values = vec![value; length + SPARE];
+    pub fn of(value: T, length: usize) -> Self {
+        // Room to move the first number to the beginning of a line.
+        let spare = LINE / size_of::<T>();
+        let values = vec![value; length + spare];
         // Where alignment cannot be told, any place will do.
-        let first = values.as_ptr().align_offset(LINE).min(SPARE);
+        let first = values.as_ptr().align_offset(LINE).min(spare);
         Self {
             values,
             first,
@@ -33,18 +32,18 @@ impl Aligned {
     }
 }
 
-impl Deref for Aligned {
-    type Target = [f64];
+impl<T> Deref for Aligned<T> {
+    type Target = [T];
 
     #[inline(always)]
-    fn deref(&self) -> &[f64] {
+    fn deref(&self) -> &[T] {
         &self.values[self.first..self.first + self.length]
     }
 }
 
-impl DerefMut for Aligned {
+impl<T> DerefMut for Aligned<T> {
     #[inline(always)]
-    fn deref_mut(&mut self) -> &mut [f64] {
+    fn deref_mut(&mut self) -> &mut [T] {
         &mut self.values[self.first..self.first + self.length]
     }
 }

@@ -1,10 +1,11 @@
-//! Eight shots side by side, or one alone: all that changes from step to step.
+//! Shots side by side, or one alone: all that changes from step to step.
 
 use super::aligned::Aligned;
 use super::bodies::{Motion, Scaled};
 use super::changes::{Changes, Opening};
-use super::column::{Column, WIDTH, chunks};
+use super::column::{Column, chunks};
 use super::edge::{Edge, Leading};
+use super::number::Number;
 use super::section::{Place, Sweep, section};
 use super::weights::{Schedule, USED};
 use super::window::{Places, Window};
@@ -36,23 +37,25 @@ macro_rules! places {
 }
 
 /// State of a block of shots.
-pub(super) struct Block<'a> {
+pub(super) struct Block<'a, N, const W: usize> {
     systems: &'a [&'a System],
     lanes: usize,
     set: InstructionSet,
     schedule: &'a Schedule,
     /// Full step of each lane in s.
-    step_s: [f64; WIDTH],
-    weights: Scaled,
-    motion: Motion,
-    offset_m: Column,
+    step_s: [f64; W],
+    weights: Scaled<N, W>,
+    motion: Motion<N, W>,
+    offset_m: Column<N, W>,
+    /// Overlaps up to this are none.
+    slightest_m: [N; W],
     /// Minus the static forces; `None` where there are none.
-    at_rest: Option<Aligned>,
-    sections: Vec<Box<dyn Sweep>>,
+    at_rest: Option<Aligned<N>>,
+    sections: Vec<Box<dyn Sweep<N, W>>>,
     /// Dynamic force of contact c at (c + 1) · lanes; 0 before the first.
-    force_n: Aligned,
+    force_n: Aligned<N>,
     window: Window,
-    changes: Option<Changes>,
+    changes: Option<Changes<W>>,
     /// Edges that still disturb steps: where, the edge, steps since.
     edges: Vec<(usize, Edge, usize)>,
     /// No step has been made yet.
@@ -63,8 +66,8 @@ pub(super) struct Block<'a> {
     pub bodies_looked_at: u64,
 }
 
-impl<'a> Block<'a> {
-    /// Shots of systems that share their shape; one or [`WIDTH`] of them.
+impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
+    /// Shots of systems that share their shape; one or `W` of them.
     pub fn new(
         systems: &'a [&'a System],
         step_s: &[f64],
@@ -73,41 +76,46 @@ impl<'a> Block<'a> {
         (whole_chain, follow_changes): (bool, bool),
     ) -> Self {
         let (lanes, first) = (systems.len(), systems[0]);
-        let (bodies, contacts) = (first.bodies(), first.contacts());
-        let flat = (chunks(bodies, lanes) + 1) * WIDTH;
+        let bodies = first.bodies();
+        let flat = (chunks::<W>(bodies, lanes) + 1) * W;
         let scatter = |of: &dyn Fn(usize, usize) -> f64, count: usize| {
-            let mut values = Aligned::of(0.0, flat);
+            let mut values = Aligned::of(N::default(), flat);
             for j in 0..count {
                 for lane in 0..lanes {
-                    values[j * lanes + lane] = of(j, lane);
+                    values[j * lanes + lane] = N::of(of(j, lane));
                 }
             }
             values
         };
         let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
         let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
-        let loads = scatter(&|c, lane| systems[lane].static_force_n[c], contacts);
-        let loaded = loads.iter().any(|&force| force != 0.0);
+        let loads = systems.iter().flat_map(|system| &system.static_force_n);
+        let loaded = loads.into_iter().any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
         let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {
             let offset = systems[lane].offset_m.get(c).copied();
             offset.unwrap_or(f64::NEG_INFINITY)
         });
         let step_s = std::array::from_fn(|lane| step_s[lane % lanes]);
+        let slightest_m = std::array::from_fn(|lane| {
+            let scales = systems[lane % lanes].scales();
+            N::slightest_m(scales.speed_m_s * scales.time_s)
+        });
         let inverse = |j: usize, lane: usize| systems[lane].inverse_mass[j];
         let mut block = Self {
             edges: Vec::with_capacity(RESERVED),
-            changes: follow_changes.then(|| Changes::new(chunks(bodies, lanes))),
+            changes: follow_changes.then(|| Changes::new(chunks::<W>(bodies, lanes))),
             window: Window::new(systems, (&x, &v), whole_chain),
             motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
             weights: Scaled::new(schedule.row(0), &step_s),
-            at_rest: loaded.then(|| Aligned::of(0.0, flat)),
+            at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
             sections: (0..first.sections.len())
                 .map(|i| section(systems, i))
                 .collect(),
-            force_n: Aligned::of(0.0, flat + WIDTH),
+            force_n: Aligned::of(N::default(), flat + W),
             step_s,
             offset_m,
+            slightest_m,
             systems,
             lanes,
             set,
@@ -128,7 +136,7 @@ impl<'a> Block<'a> {
         if self.at_rest.is_none() {
             return;
         }
-        let still = || Aligned::of(0.0, self.motion.x.len());
+        let still = || Aligned::of(N::default(), self.motion.x.len());
         let (no_x, no_v, whole) = (still(), still(), self.window.whole());
         let x = std::mem::replace(&mut self.motion.x, no_x);
         let v = std::mem::replace(&mut self.motion.v, no_v);
@@ -141,7 +149,7 @@ impl<'a> Block<'a> {
             .flat_map(|at_rest| at_rest.iter_mut())
             .zip(force)
         {
-            *at_rest = -std::mem::take(force);
+            *at_rest = N::of(-std::mem::take(force).into());
         }
         (self.motion.x, self.motion.v, self.window) = (x, v, window);
     }
@@ -161,29 +169,30 @@ impl<'a> Block<'a> {
         );
         self.mend_edges();
         self.close_ring();
-        self.window.follow(places!(self));
+        self.window.follow(self.set, places!(self));
         self.starting = false;
         self.forces();
         self.look_at_changes(true);
         self.steps += 1;
-        self.bodies_looked_at += (self.window.bodies.len() * WIDTH) as u64;
+        self.bodies_looked_at += (self.window.bodies.len() * W) as u64;
     }
 
     /// Forces of all contacts that are awake.
     fn forces(&mut self) {
         let lanes = self.lanes;
         let awake = self.window.contacts.clone();
-        let force = &mut self.force_n[lanes..][..awake.end * WIDTH];
-        let flat = awake.start * WIDTH..awake.end * WIDTH;
-        // With eight lanes and no load each chunk belongs to one section.
-        let fresh = lanes == WIDTH && self.at_rest.is_none();
+        let force = &mut self.force_n[lanes..][..awake.end * W];
+        let flat = awake.start * W..awake.end * W;
+        // With all lanes and no load each chunk belongs to one section.
+        let fresh = lanes == W && self.at_rest.is_none();
         match &self.at_rest {
             Some(at_rest) => force[flat.clone()].copy_from_slice(&at_rest[flat]),
-            None if !fresh => force[flat].fill(0.0),
+            None if !fresh => force[flat].fill(N::default()),
             None => {}
         }
         let place = Place {
             offset_m: &self.offset_m,
+            slightest_m: self.slightest_m,
             lanes,
             awake,
             fresh,
@@ -202,8 +211,8 @@ impl<'a> Block<'a> {
 
     /// Lets sleep what stays as it is for a number of steps.
     pub fn look(&mut self, steps: usize) {
-        let ahead_s = self.step_s.map(|h| (steps + 1) as f64 * h);
-        self.window.look(places!(self), &ahead_s);
+        let ahead_s = self.step_s.map(|h| N::of((steps + 1) as f64 * h));
+        self.window.look(self.set, places!(self), &ahead_s);
     }
 
     /// Finds openings and closings within the last step.
@@ -239,15 +248,18 @@ impl<'a> Block<'a> {
         if !system.has_contact(contact) {
             return None;
         }
-        let (x, v, h) = (&self.motion.x, &self.motion.v, self.step_s[lane]);
+        let h = self.step_s[lane];
+        let [x, v] = [&self.motion.x, &self.motion.v]
+            .map(|values| [values[at], values[at + lanes]].map(Into::<f64>::into));
         let bodies = self.sides(contact);
         let [left, right] = bodies.map(|body| {
-            let (before, after) = (body * lanes + lane, (body + 1) * lanes + lane);
-            (self.force_n[before] - self.force_n[after]) * system.inverse_mass[body]
+            let [before, after] = [body, body + 1]
+                .map(|contact| Into::<f64>::into(self.force_n[contact * lanes + lane]));
+            (before - after) * system.inverse_mass[body]
         });
         let opening = Opening {
-            depth_m: system.offset_m[contact] - (x[at + lanes] - x[at]),
-            rate_m_s: v[at] - v[at + lanes],
+            depth_m: system.offset_m[contact] - (x[1] - x[0]),
+            rate_m_s: v[0] - v[1],
             change_m_s2: left - right,
         };
         let since = opening.since_s(h)?;
@@ -284,8 +296,9 @@ impl<'a> Block<'a> {
         let [sped, moved] = [edge.lacking[age][0] * h, edge.lacking[age][1] * h * h];
         for (body, sign) in self.sides(contact).into_iter().zip([-1.0, 1.0]) {
             let push = sign * self.systems[lane].inverse_mass[body];
-            self.motion.v[body * self.lanes + lane] += push * sped;
-            self.motion.x[body * self.lanes + lane] += push * moved;
+            let at = body * self.lanes + lane;
+            self.motion.v[at] = N::of(self.motion.v[at].into() + push * sped);
+            self.motion.x[at] = N::of(self.motion.x[at].into() + push * moved);
         }
     }
 
@@ -325,27 +338,24 @@ impl<'a> Block<'a> {
             };
             for body in 0..bodies {
                 let at = body * self.lanes + lane;
-                external[at] = system.pushed(body, self.motion.x[at]);
+                external[at] = N::of(system.pushed(body, self.motion.x[at].into()));
             }
         }
     }
 
     /// What a sensor shows now in every lane.
     #[inline(always)]
-    pub fn signals<const LANES: usize>(&self, sensor: Sensor) -> [f64; LANES] {
-        let row = |values: &[f64], at: usize| -> [f64; LANES] {
+    pub fn signals<const LANES: usize>(&self, sensor: Sensor) -> [N; LANES] {
+        let row = |values: &[N], at: usize| -> [N; LANES] {
             let row = values[at * LANES..].first_chunk();
-            row.copied().unwrap_or([f64::NAN; LANES])
+            row.copied().unwrap_or([N::default(); LANES])
         };
         let force = |contact: usize| row(&self.force_n, contact + 1);
         // In a ring the contact before bead 1 is the last, whose force is also
         // kept in the place of contact 0.
         let bead = |n: usize| {
-            let mut mean: [f64; LANES] = force(n - 1);
-            for (left, right) in mean.iter_mut().zip(force(n)) {
-                *left = 0.5 * (*left + right);
-            }
-            mean
+            let (left, right) = (force(n - 1), force(n));
+            std::array::from_fn(|lane| left[lane].middle(right[lane]))
         };
         match sensor {
             Sensor::Bead(n) => bead(n),
@@ -353,51 +363,45 @@ impl<'a> Block<'a> {
             Sensor::Position(i) => row(&self.motion.x, i),
             Sensor::Velocity(i) => row(&self.motion.v, i),
             Sensor::BeadPlusWall(n) => {
-                let mut both = bead(n);
-                let wall: [f64; LANES] = force(self.systems[0].contacts() - 1);
-                for (both, wall) in both.iter_mut().zip(wall) {
-                    *both += wall;
-                }
-                both
+                let (bead, wall) = (bead(n), force(self.systems[0].contacts() - 1));
+                std::array::from_fn(|lane| bead[lane] + wall[lane])
             }
         }
     }
 
     /// Velocities of all bodies of a lane in m/s.
     pub fn velocities(&self, lane: usize) -> impl Iterator<Item = f64> + '_ {
-        (0..self.systems[0].bodies()).map(move |body| self.motion.v[body * self.lanes + lane])
+        let v = &self.motion.v;
+        (0..self.systems[0].bodies()).map(move |body| v[body * self.lanes + lane].into())
     }
 
     /// How much correcting the last step changed any velocity of each lane, in
     /// m/s; NaN where anything is.
-    pub fn corrections(&self) -> [f64; WIDTH] {
+    pub fn corrections(&self) -> [f64; W] {
         let weights = &self.schedule.row(self.steps.saturating_sub(1)).residual;
-        let mut worst = [0.0_f64; WIDTH];
-        for at in (0..self.window.chunks * WIDTH).step_by(WIDTH) {
-            let mut change = [0.0; WIDTH];
+        let mut worst = [0.0_f64; W];
+        for chunk in self.window.bodies.clone() {
+            let mut change = [0.0; W];
             for (age, weight) in weights.iter().enumerate() {
-                let a = &self.motion.accelerations(age)[at..at + WIDTH];
-                for (change, a) in change.iter_mut().zip(a) {
-                    *change += weight * a;
+                let a = &self.motion.accelerations(age)[chunk * W..][..W];
+                for (change, &a) in change.iter_mut().zip(a) {
+                    *change += weight * a.into();
                 }
             }
-            for (worst, change) in worst.iter_mut().zip(change) {
-                // Also keeps a NaN, which `max` would not.
-                *worst = if change.abs() <= *worst {
-                    *worst
-                } else {
-                    change.abs()
-                };
-            }
+            worst = std::array::from_fn(|lane| larger_or_nan(worst[lane], change[lane].abs()));
         }
-        self.per_lane(worst)
-    }
-
-    /// The largest of what belongs to a lane, in units of its step.
-    fn per_lane(&self, worst: [f64; WIDTH]) -> [f64; WIDTH] {
         std::array::from_fn(|lane| {
-            let own = (lane..WIDTH).step_by(self.lanes).map(|at| worst[at]);
-            self.step_s[lane] * own.fold(0.0, |a, b| if b <= a { a } else { b })
+            let own = (lane..W).step_by(self.lanes).map(|at| worst[at]);
+            self.step_s[lane] * own.fold(0.0, larger_or_nan)
         })
+    }
+}
+
+/// The larger of two; NaN, which `max` would lose, if either is.
+fn larger_or_nan(one: f64, other: f64) -> f64 {
+    if other <= one || one.is_nan() {
+        one
+    } else {
+        other
     }
 }

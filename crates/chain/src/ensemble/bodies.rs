@@ -2,52 +2,55 @@
 //! and velocities.
 
 use super::aligned::Aligned;
-use super::column::{Column, WIDTH};
+use super::column::Column;
+use super::number::Number;
 use super::weights::{EARLIER, USED, Weights};
 use super::window::Window;
 use crate::instruction_set::InstructionSet;
-use fearless_simd::{dispatch, f64x8, prelude::*};
+use fearless_simd::{dispatch, prelude::*};
 use std::ops::Range;
 
 /// Motion of all bodies of all lanes.
 #[derive(Debug)]
-pub(super) struct Motion {
+pub(super) struct Motion<N, const W: usize> {
     /// Predicted positions and velocities, with a chunk to spare.
-    pub x: Aligned,
-    pub v: Aligned,
+    pub x: Aligned<N>,
+    pub v: Aligned<N>,
     /// Accelerations of the last steps: the newest at `newest`, older ones
     /// after it, round the ring.
-    accelerations: [Aligned; USED],
+    accelerations: [Aligned<N>; USED],
     newest: usize,
-    pub inverse_mass: Column,
+    pub inverse_mass: Column<N, W>,
     /// Accelerations by what is not a contact, if anything is.
-    pub external: Option<Aligned>,
+    pub external: Option<Aligned<N>>,
 }
 
 /// Weights times powers of each lane's step.
 #[derive(Clone, Debug)]
-pub(super) struct Scaled {
-    drift: [f64; WIDTH],
-    velocity: [[f64; WIDTH]; USED],
-    position: [[f64; WIDTH]; USED],
+pub(super) struct Scaled<N, const W: usize> {
+    drift: [N; W],
+    velocity: [[N; W]; USED],
+    position: [[N; W]; USED],
 }
 
-impl Scaled {
-    pub fn new(weights: &Weights, step_s: &[f64; WIDTH]) -> Self {
+impl<N: Number<W>, const W: usize> Scaled<N, W> {
+    pub fn new(weights: &Weights, step_s: &[f64; W]) -> Self {
         Self {
-            drift: step_s.map(|h| h * weights.drift),
-            velocity: weights.velocity.map(|weight| step_s.map(|h| h * weight)),
+            drift: step_s.map(|h| N::of(h * weights.drift)),
+            velocity: weights
+                .velocity
+                .map(|weight| step_s.map(|h| N::of(h * weight))),
             position: weights
                 .position
-                .map(|weight| step_s.map(|h| h * h * weight)),
+                .map(|weight| step_s.map(|h| N::of(h * h * weight))),
         }
     }
 }
 
-impl Motion {
+impl<N: Number<W>, const W: usize> Motion<N, W> {
     /// From positions and velocities, with nothing accelerated yet.
-    pub fn new(x: Aligned, v: Aligned, inverse_mass: Column, external: bool) -> Self {
-        let zeros = || Aligned::of(0.0, x.len());
+    pub fn new(x: Aligned<N>, v: Aligned<N>, inverse_mass: Column<N, W>, external: bool) -> Self {
+        let zeros = || Aligned::of(N::default(), x.len());
         Self {
             accelerations: std::array::from_fn(|_| zeros()),
             newest: 0,
@@ -59,12 +62,12 @@ impl Motion {
     }
 
     /// Accelerations of a step, 0 the newest.
-    pub fn accelerations(&self, age: usize) -> &[f64] {
+    pub fn accelerations(&self, age: usize) -> &[N] {
         &self.accelerations[(self.newest + age) % USED]
     }
 
     /// The newest accelerations.
-    pub fn newest_mut(&mut self) -> &mut [f64] {
+    pub fn newest_mut(&mut self) -> &mut [N] {
         &mut self.accelerations[self.newest]
     }
 
@@ -75,8 +78,8 @@ impl Motion {
         set: InstructionSet,
         window: &Window,
         lanes: usize,
-        force: &[f64],
-        scaled: &Scaled,
+        force: &[N],
+        scaled: &Scaled<N, W>,
     ) {
         self.newest = (self.newest + USED - 1) % USED;
         let mut now = std::mem::take(&mut self.accelerations[self.newest]);
@@ -94,44 +97,50 @@ impl Motion {
 }
 
 #[inline(always)]
-fn chunks_of(values: &[f64], count: usize) -> &[[f64; WIDTH]] {
-    values[..count * WIDTH].as_chunks().0
+fn chunks_of<N, const W: usize>(values: &[N], count: usize) -> &[[N; W]] {
+    values[..count * W].as_chunks().0
 }
 
 /// Bodies that no force has moved of late: what [`sweep`] does to them, but for
 /// adding zeros.
 #[inline(always)]
-fn fly<S: Simd>(simd: S, motion: &mut Motion, asleep: Range<usize>, scaled: &Scaled) {
-    let drift: f64x8<S> = scaled.drift.simd_into(simd);
-    let v = chunks_of(&motion.v, asleep.end);
-    let x = motion.x[..asleep.end * WIDTH].as_chunks_mut::<WIDTH>().0;
+fn fly<S: Simd, N: Number<W>, const W: usize>(
+    simd: S,
+    motion: &mut Motion<N, W>,
+    asleep: Range<usize>,
+    scaled: &Scaled<N, W>,
+) {
+    let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+    let drift = load(&scaled.drift);
+    let v = chunks_of::<N, W>(&motion.v, asleep.end);
+    let x = motion.x[..asleep.end * W].as_chunks_mut::<W>().0;
     for i in asleep {
-        let (x0, v0): (f64x8<S>, f64x8<S>) = (x[i].simd_into(simd), v[i].simd_into(simd));
-        x[i] = drift.mul_add(v0, x0).into();
+        let (x0, v0) = (load(&x[i]), load(&v[i]));
+        drift.mul_add(v0, x0).store_array(&mut x[i]);
     }
 }
 
 #[inline(always)]
-fn sweep<S: Simd>(
+fn sweep<S: Simd, N: Number<W>, const W: usize>(
     simd: S,
-    motion: &mut Motion,
-    now: &mut [f64],
+    motion: &mut Motion<N, W>,
+    now: &mut [N],
     (awake, lanes): (Range<usize>, usize),
-    force: &[f64],
-    scaled: &Scaled,
+    force: &[N],
+    scaled: &Scaled<N, W>,
 ) {
     let count = awake.end;
-    let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
+    let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
     let drift = load(&scaled.drift);
-    let velocity: [f64x8<S>; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
-    let position: [f64x8<S>; USED] = std::array::from_fn(|k| load(&scaled.position[k]));
+    let velocity: [_; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
+    let position: [_; USED] = std::array::from_fn(|k| load(&scaled.position[k]));
     let (left, right) = (chunks_of(force, count), chunks_of(&force[lanes..], count));
-    let earlier: [&[[f64; WIDTH]]; EARLIER] = std::array::from_fn(|k| {
+    let earlier: [&[[N; W]]; EARLIER] = std::array::from_fn(|k| {
         chunks_of(&motion.accelerations[(motion.newest + 1 + k) % USED], count)
     });
-    let x = motion.x[..count * WIDTH].as_chunks_mut().0;
-    let v = motion.v[..count * WIDTH].as_chunks_mut().0;
-    let now = now[..count * WIDTH].as_chunks_mut().0;
+    let x = motion.x[..count * W].as_chunks_mut::<W>().0;
+    let v = motion.v[..count * W].as_chunks_mut::<W>().0;
+    let now = now[..count * W].as_chunks_mut::<W>().0;
     let external = motion.external.as_ref().map(|a| chunks_of(a, count));
     let inverse_mass = motion.inverse_mass.reader();
     for i in awake {
@@ -139,7 +148,7 @@ fn sweep<S: Simd>(
         if let Some(external) = external {
             a += load(&external[i]);
         }
-        now[i] = a.into();
+        a.store_array(&mut now[i]);
         let (x0, v0) = (load(&x[i]), load(&v[i]));
         // Two chains of sums each, so that one need not wait for the other.
         let a1 = load(&earlier[0][i]);
@@ -153,7 +162,7 @@ fn sweep<S: Simd>(
             sped[k % 2] = velocity[k].mul_add(a, sped[k % 2]);
             moved[k % 2] = position[k].mul_add(a, moved[k % 2]);
         }
-        v[i] = (sped[0] + sped[1]).into();
-        x[i] = (moved[0] + moved[1]).into();
+        (sped[0] + sped[1]).store_array(&mut v[i]);
+        (moved[0] + moved[1]).store_array(&mut x[i]);
     }
 }

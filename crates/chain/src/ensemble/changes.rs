@@ -1,32 +1,34 @@
 //! Openings and closings between two steps.
 
-use super::column::{Column, WIDTH};
+use super::column::Column;
+use super::number::Number;
 use crate::instruction_set::InstructionSet;
-use fearless_simd::{dispatch, f64x8, prelude::*};
+use fearless_simd::{dispatch, prelude::*};
 use std::ops::Range;
 
 /// Which contacts are open, and those that have changed.
 #[derive(Clone, Debug)]
-pub(super) struct Changes {
-    open: Vec<[bool; WIDTH]>,
+pub(super) struct Changes<const W: usize> {
+    /// A bit for each contact of a chunk.
+    open: Vec<u64>,
     changed: Vec<usize>,
 }
 
-impl Changes {
+impl<const W: usize> Changes<W> {
     pub fn new(chunks: usize) -> Self {
         Self {
-            open: vec![[false; WIDTH]; chunks],
-            changed: Vec::with_capacity(chunks * WIDTH),
+            open: vec![0; chunks],
+            changed: Vec::with_capacity(chunks * W),
         }
     }
 
     /// Notes what has changed since the last look.
-    pub fn look(
+    pub fn look<N: Number<W>>(
         &mut self,
         set: InstructionSet,
         (awake, lanes): (Range<usize>, usize),
-        offset_m: &Column,
-        x: &[f64],
+        offset_m: &Column<N, W>,
+        x: &[N],
     ) -> &[usize] {
         self.changed.clear();
         dispatch!(set.level(), simd => simd.vectorize(
@@ -37,25 +39,26 @@ impl Changes {
     }
 
     #[inline(always)]
-    fn compare<S: Simd>(
+    fn compare<S: Simd, N: Number<W>>(
         &mut self,
         simd: S,
         (awake, lanes): (Range<usize>, usize),
-        offset_m: &Column,
-        x: &[f64],
+        offset_m: &Column<N, W>,
+        x: &[N],
     ) {
-        let left = x[..awake.end * WIDTH].as_chunks::<WIDTH>().0;
-        let right = x[lanes..][..awake.end * WIDTH].as_chunks::<WIDTH>().0;
+        let left = x[..awake.end * W].as_chunks::<W>().0;
+        let right = x[lanes..][..awake.end * W].as_chunks::<W>().0;
         let offset_m = offset_m.reader();
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let zero = N::Wide::<S>::simd_from(simd, N::default());
         for i in awake {
-            let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
             let depth = load(offset_m.at(i)) - (load(&right[i]) - load(&left[i]));
-            let depth: [f64; WIDTH] = depth.into();
-            let open = depth.map(|depth| depth < 0.0);
-            if open != self.open[i] {
-                let lanes = (0..WIDTH).filter(|&lane| open[lane] != self.open[i][lane]);
-                self.changed.extend(lanes.map(|lane| i * WIDTH + lane));
-                self.open[i] = open;
+            let open = depth.simd_lt(zero).to_bitmask();
+            let mut changed = open ^ self.open[i];
+            self.open[i] = open;
+            while changed != 0 {
+                self.changed.push(i * W + changed.trailing_zeros() as usize);
+                changed &= changed - 1;
             }
         }
     }

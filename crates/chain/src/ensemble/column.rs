@@ -1,37 +1,36 @@
-//! Numbers of all lanes, laid out in chunks of eight.
+//! Numbers of all lanes, laid out in chunks as long as a cache line.
 //!
-//! Element j of lane l sits at flat index j · lanes + l. With eight lanes a
-//! chunk is one body (or contact) of every lane; with one lane it is eight
-//! neighbours. Either way the right neighbour is `lanes` further on.
+//! Element j of lane l sits at flat index j · lanes + l. With as many lanes as
+//! a chunk is wide a chunk is one body (or contact) of every lane; with one
+//! lane it is that many neighbours. Either way the right neighbour is `lanes`
+//! further on.
 
 use super::aligned::Aligned;
-
-/// Numbers in a chunk.
-pub(super) const WIDTH: usize = 8;
+use super::number::Number;
 
 /// Chunks that a quantity of `count` elements a lane takes.
-pub(super) fn chunks(count: usize, lanes: usize) -> usize {
-    (count * lanes).div_ceil(WIDTH)
+pub(super) fn chunks<const W: usize>(count: usize, lanes: usize) -> usize {
+    (count * lanes).div_ceil(W)
 }
 
 /// A constant quantity: one chunk for all if all are equal, so that the nearest
 /// cache holds what changes.
 #[derive(Debug)]
-pub(super) struct Column {
-    values: Aligned,
+pub(super) struct Column<N, const W: usize> {
+    values: Aligned<N>,
     stride: usize,
 }
 
-impl Column {
+impl<N: Number<W>, const W: usize> Column<N, W> {
     /// From values of element `j` of lane `l`; `rest` fills the last chunk up.
     pub fn new(count: usize, lanes: usize, rest: f64, value: impl Fn(usize, usize) -> f64) -> Self {
-        let mut values = Aligned::of(rest, chunks(count, lanes) * WIDTH);
+        let mut values = Aligned::of(N::of(rest), chunks::<W>(count, lanes) * W);
         for j in 0..count {
             for lane in 0..lanes {
-                values[j * lanes + lane] = value(j, lane);
+                values[j * lanes + lane] = N::of(value(j, lane));
             }
         }
-        let all = values.as_chunks::<WIDTH>().0;
+        let all = values.as_chunks::<W>().0;
         let equal = all.windows(2).all(|pair| pair[0] == pair[1]);
         Self {
             stride: usize::from(!equal),
@@ -41,7 +40,7 @@ impl Column {
 
     /// A reader of chunks.
     #[inline(always)]
-    pub fn reader(&self) -> Reader<'_> {
+    pub fn reader(&self) -> Reader<'_, N, W> {
         Reader {
             chunks: self.values.as_chunks().0,
             stride: self.stride,
@@ -51,15 +50,15 @@ impl Column {
 
 /// Reads the chunks of a column.
 #[derive(Clone, Copy)]
-pub(super) struct Reader<'a> {
-    chunks: &'a [[f64; WIDTH]],
+pub(super) struct Reader<'a, N, const W: usize> {
+    chunks: &'a [[N; W]],
     stride: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a, N, const W: usize> Reader<'a, N, W> {
     /// Chunk `i`.
     #[inline(always)]
-    pub fn at(self, i: usize) -> &'a [f64; WIDTH] {
+    pub fn at(&self, i: usize) -> &'a [N; W] {
         &self.chunks[i * self.stride]
     }
 }

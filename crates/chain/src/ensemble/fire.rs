@@ -1,9 +1,9 @@
 //! Firing shots: blocks of lanes, each lane to its own end.
 
-use super::LANES;
 use super::block::Block;
+use super::number::Number;
 use super::passing::{End, Passing};
-use super::peaks::{Clock, signal};
+use super::peaks::{Clock, Trace};
 use super::record::Recorder;
 use super::weights::Schedule;
 use crate::instruction_set::InstructionSet;
@@ -21,11 +21,34 @@ pub struct Shot<'a> {
     pub step: f64,
     /// Longest duration in s.
     pub duration_s: f64,
+    /// How long numbers are.
+    pub precision: Precision,
 }
 
 impl Shot<'_> {
     fn step_s(&self) -> f64 {
         self.step * self.system.scales().time_s
+    }
+}
+
+/// How long the numbers of a shot are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// f64: rounding is never seen.
+    Double,
+    /// f32, twice as fast: rounding moves times of flight by some 1e-6, and
+    /// by more where a chain is pressed.
+    Single,
+}
+
+impl Precision {
+    /// Shots that run side by side.
+    #[must_use]
+    pub fn lanes(self) -> usize {
+        match self {
+            Self::Double => 8,
+            Self::Single => 16,
+        }
     }
 }
 
@@ -41,6 +64,9 @@ pub struct Settings {
     pub set: InstructionSet,
     /// Step also what nothing has reached.
     pub whole_chain: bool,
+    /// Keep the shape of signals too, for widths and levels, not their maxima
+    /// alone.
+    pub shapes: bool,
     /// Find openings between steps and integrate the forces that end there as
     /// they are: for accuracies that equal steps alone do not give.
     pub openings: bool,
@@ -111,30 +137,54 @@ const CORRECTION_EVERY: usize = 64;
 /// Most rows that are reserved before a shot; longer shots allocate as they go.
 const RESERVED: usize = 1 << 16;
 
-/// Fires shots: eight side by side where the chains have the same shape, one
-/// alone otherwise. Results are in order; a shot that fails stops no other.
+/// Fires shots: side by side where the chains have the same shape, one alone
+/// otherwise. Results are in order; a shot that fails stops no other.
 #[must_use]
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
-    let schedule = Schedule::shared();
     let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; shots.len()];
-    let mut ready = Vec::new();
+    let mut ready = Vec::with_capacity(shots.len());
     for (shot, fired) in shots.iter().enumerate() {
         match check(fired, settings) {
             Ok(()) => ready.push(shot),
             Err(error) => flown[shot] = Some(Err(error)),
         }
     }
-    while let Some(&first) = ready.first() {
-        let alike = |shot: &&usize| shots[first].system.has_shape_of(shots[**shot].system);
-        let block: Vec<usize> = ready.iter().filter(alike).take(LANES).copied().collect();
-        ready.retain(|shot| !block.contains(shot));
+    for block in blocks(shots, &ready) {
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
-        let results = fire_block(&side_by_side, settings, schedule);
+        let results = match side_by_side[0].precision {
+            Precision::Double => fire_block::<f64, 8>(&side_by_side, settings),
+            Precision::Single => fire_block::<f32, 16>(&side_by_side, settings),
+        };
         for (shot, result) in block.into_iter().zip(results) {
             flown[shot] = Some(result);
         }
     }
     flown.into_iter().flatten().collect()
+}
+
+/// Shots alike in precision and in the shape of their chains, as many together
+/// as there are lanes.
+fn blocks(shots: &[Shot<'_>], ready: &[usize]) -> Vec<Vec<usize>> {
+    let mut blocks: Vec<Vec<usize>> = Vec::new();
+    // The last block of each kind.
+    let mut open: Vec<usize> = Vec::new();
+    for &shot in ready {
+        let fired = &shots[shot];
+        let alike = |at: &&mut usize| {
+            let first = &shots[blocks[**at][0]];
+            first.precision == fired.precision && first.system.has_shape_of(fired.system)
+        };
+        match open.iter_mut().find(alike) {
+            Some(at) if blocks[*at].len() < fired.precision.lanes() => {
+                blocks[*at].push(shot);
+                continue;
+            }
+            Some(at) => *at = blocks.len(),
+            None => open.push(blocks.len()),
+        }
+        blocks.push(vec![shot]);
+    }
+    blocks
 }
 
 fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), EnsembleError> {
@@ -169,14 +219,14 @@ enum State {
     Failed { step: usize },
 }
 
-/// Fires up to eight alike shots.
-fn fire_block(
+/// Fires alike shots, one or up to `W`.
+fn fire_block<N: Number<W>, const W: usize>(
     shots: &[Shot<'_>],
     settings: &Settings,
-    schedule: &Schedule,
 ) -> Vec<Result<Flown, EnsembleError>> {
+    let schedule = Schedule::shared();
     // One shot runs alone; several fill the lanes, the last ones idly.
-    let lanes = if shots.len() == 1 { 1 } else { LANES };
+    let lanes = if shots.len() == 1 { 1 } else { W };
     let of = |lane: usize| &shots[lane.min(shots.len() - 1)];
     let fired: Vec<&System> = (0..lanes).map(|lane| of(lane).system).collect();
     let steps_s: Vec<f64> = (0..lanes).map(|lane| of(lane).step_s()).collect();
@@ -186,7 +236,7 @@ fn fire_block(
     });
     let mut flying: Vec<Lane> = begun.collect();
     let most = flying.iter().map(|lane| lane.last_step).max().unwrap_or(0);
-    let mut recorder = Recorder::new(&settings.sensors, lanes, most.min(RESERVED));
+    let mut recorder = Recorder::<N, W>::new(&settings.sensors, lanes, most.min(RESERVED));
     let mut block = Block::new(
         &fired,
         &steps_s,
@@ -194,7 +244,7 @@ fn fire_block(
         settings.set,
         (settings.whole_chain, settings.openings),
     );
-    fly(&mut block, &mut recorder, &mut flying, settings.end, &fired);
+    fly(&mut block, &mut recorder, &mut flying, settings, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
     let looked_at = block.bodies_looked_at / lanes as u64;
     let result = |(at, lane): (usize, Lane)| {
@@ -208,32 +258,30 @@ fn fire_block(
 }
 
 /// What the sensors showed, lane by lane.
-fn signals(
-    recorder: &Recorder,
+fn signals<N: Number<W>, const W: usize>(
+    recorder: &Recorder<N, W>,
     lanes: &[Lane],
     (systems, steps_s): (&[&System], &[f64]),
     settings: &Settings,
     schedule: &Schedule,
 ) -> Vec<Vec<Signal>> {
-    let of_lane = |(at, lane): (usize, &Lane)| {
-        let sensors = settings.sensors.iter().enumerate();
-        let signal = |(index, &sensor): (usize, &Sensor)| {
-            let silent = systems[at].silence(sensor);
-            let clock = Clock {
-                schedule,
-                step_s: steps_s[at],
+    let mut signals: Vec<Vec<Signal>> = vec![Vec::new(); lanes.len()];
+    for (index, &sensor) in settings.sensors.iter().enumerate() {
+        let extremes = recorder.extremes(index, settings.set);
+        for (at, lane) in lanes.iter().enumerate() {
+            let trace = Trace {
+                samples: recorder.samples(index, at),
+                last_step: lane.ended(),
+                clock: Clock {
+                    schedule,
+                    step_s: steps_s[at],
+                },
+                silent: systems[at].silence(sensor),
             };
-            signal(
-                sensor,
-                recorder.samples(index, at),
-                lane.ended(),
-                clock,
-                silent,
-            )
-        };
-        sensors.map(signal).collect()
-    };
-    lanes.iter().enumerate().map(of_lane).collect()
+            signals[at].push(trace.signal(sensor, &extremes[at], settings.shapes));
+        }
+    }
+    signals
 }
 
 /// Steps until a duration is over, at the next look.
@@ -243,17 +291,17 @@ fn last_step(duration_s: f64, step_s: f64) -> usize {
 }
 
 /// Steps until every lane has come to its end. Nothing is allocated here.
-fn fly(
-    block: &mut Block<'_>,
-    recorder: &mut Recorder,
+fn fly<N: Number<W>, const W: usize>(
+    block: &mut Block<'_, N, W>,
+    recorder: &mut Recorder<N, W>,
     lanes: &mut [Lane],
-    end: End,
+    settings: &Settings,
     systems: &[&System],
 ) {
     while lanes.iter().any(|lane| lane.state == State::Flying) {
         for _ in 0..LOOK_EVERY {
             block.step();
-            recorder.add(block);
+            recorder.add(settings.set, block);
         }
         if block.steps.is_multiple_of(CORRECTION_EVERY) {
             let corrections = block.corrections();
@@ -264,7 +312,7 @@ fn fly(
         }
         for (at, lane) in lanes.iter_mut().enumerate() {
             if lane.state == State::Flying {
-                lane.look(block, recorder, at, end, systems[at]);
+                lane.look(block, recorder, at, settings.end, systems[at]);
             }
         }
         recorder.looked();
@@ -293,10 +341,10 @@ impl Lane {
         }
     }
 
-    fn look(
+    fn look<N: Number<W>, const W: usize>(
         &mut self,
-        block: &Block<'_>,
-        recorder: &Recorder,
+        block: &Block<'_, N, W>,
+        recorder: &Recorder<N, W>,
         at: usize,
         end: End,
         system: &System,

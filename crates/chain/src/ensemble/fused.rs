@@ -4,37 +4,37 @@
 //! [`fuse`] run faster, because nothing is stored between one law and the
 //! next. A law needs no line here.
 
-use super::column::{Column, WIDTH};
+use super::column::Column;
+use super::number::Number;
 use super::section::{Place, Sweep};
 use super::touch::{Sides, Touch};
 use crate::instruction_set::InstructionSet;
-use crate::laws::{Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Term};
-use fearless_simd::{dispatch, f64x8, prelude::*};
+use crate::laws::{Arithmetic, Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Wide};
+use fearless_simd::{dispatch, prelude::*};
 use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Most coefficients of a fused sum.
-const MOST: usize = 4;
+const MOST: usize = 3;
 
 /// A sum of terms known when compiling.
 pub(super) trait Sum: Send + Sync + 'static {
     /// Coefficients of all terms.
     const COEFFICIENTS: usize;
 
-    /// The force of one lane.
-    fn force(k: &[[f64; WIDTH]], lane: usize, contact: Closed) -> f64;
+    /// The force of as many contacts as a number stands for.
+    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N;
 }
 
 /// A sum of one.
 struct One<T, const C: usize>(PhantomData<fn() -> T>);
 
-impl<T: Term<C>, const C: usize> Sum for One<T, C> {
+impl<T: Wide<C>, const C: usize> Sum for One<T, C> {
     const COEFFICIENTS: usize = C;
 
     #[inline(always)]
-    fn force(k: &[[f64; WIDTH]], lane: usize, contact: Closed) -> f64 {
-        let row: [f64; C] = std::array::from_fn(|j| k[j][lane]);
-        T::force(&row, contact)
+    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N {
+        T::wide_force(std::array::from_fn(|j| k[j]), contact)
     }
 }
 
@@ -42,9 +42,9 @@ impl<A: Sum, B: Sum> Sum for (A, B) {
     const COEFFICIENTS: usize = A::COEFFICIENTS + B::COEFFICIENTS;
 
     #[inline(always)]
-    fn force(k: &[[f64; WIDTH]], lane: usize, contact: Closed) -> f64 {
+    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N {
         let (a, b) = k.split_at(A::COEFFICIENTS);
-        A::force(a, lane, contact) + B::force(b, lane, contact)
+        A::force(a, contact) + B::force(b, contact)
     }
 }
 
@@ -53,35 +53,37 @@ type Viscoelastic = (Hertz, One<DampingViscoelastic, 1>);
 type Dry = (Viscoelastic, One<DampingCubic, 1>);
 
 /// The fast sweep over a section with these laws, in this order, if there is one.
-pub(super) fn fuse(
+pub(super) fn fuse<N: Number<W>, const W: usize>(
     laws: &[&str],
     contacts: Range<usize>,
     lanes: usize,
-    coefficients: Vec<Column>,
-) -> Option<Box<dyn Sweep>> {
-    let first = contacts.start * lanes / WIDTH;
+    coefficients: Vec<Column<N, W>>,
+) -> Option<Box<dyn Sweep<N, W>>> {
+    let first = contacts.start * lanes / W;
     let section = (contacts, first, coefficients);
     Some(match laws {
-        ["elastic_hertz"] => Box::new(Fused::<Hertz>::new(section)),
-        ["elastic_hertz", "damping_viscoelastic"] => Box::new(Fused::<Viscoelastic>::new(section)),
+        ["elastic_hertz"] => Box::new(Fused::<Hertz, N, W>::new(section)),
+        ["elastic_hertz", "damping_viscoelastic"] => {
+            Box::new(Fused::<Viscoelastic, N, W>::new(section))
+        }
         ["elastic_hertz", "damping_viscoelastic", "damping_cubic"] => {
-            Box::new(Fused::<Dry>::new(section))
+            Box::new(Fused::<Dry, N, W>::new(section))
         }
         _ => return None,
     })
 }
 
 /// A section whose laws are a fused sum.
-struct Fused<T> {
+struct Fused<T, N, const W: usize> {
     contacts: Range<usize>,
     /// Chunk in which the section and its coefficients begin.
     first: usize,
-    coefficients: Vec<Column>,
+    coefficients: Vec<Column<N, W>>,
     sum: PhantomData<fn() -> T>,
 }
 
-impl<T: Sum> Fused<T> {
-    fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<Column>)) -> Self {
+impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
+    fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<Column<N, W>>)) -> Self {
         Self {
             contacts,
             first,
@@ -91,14 +93,21 @@ impl<T: Sum> Fused<T> {
     }
 
     #[inline(always)]
-    fn sweep<S: Simd>(&self, simd: S, place: &Place<'_>, chunks: Range<usize>, force: &mut [f64]) {
+    fn sweep<S: Simd>(
+        &self,
+        simd: S,
+        place: &Place<'_, N, W>,
+        chunks: Range<usize>,
+        force: &mut [N],
+    ) {
         let sides = Sides::new(
-            place.offset_m,
+            (place.offset_m, place.slightest_m),
             (chunks.end, place.lanes),
             (place.x, place.v),
             place.starting,
         );
-        let force = force[..chunks.end * WIDTH].as_chunks_mut::<WIDTH>().0;
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let force = force[..chunks.end * W].as_chunks_mut::<W>().0;
         // Places beyond the sum's own coefficients are never read.
         let last = T::COEFFICIENTS - 1;
         let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].reader());
@@ -109,34 +118,25 @@ impl<T: Sum> Fused<T> {
                 rate,
                 ..
             } = sides.touch(simd, i);
-            // Copies, so that the compiler sees that nothing overlaps.
-            let k: [[f64; WIDTH]; MOST] = std::array::from_fn(|j| match j < T::COEFFICIENTS {
-                true => *columns[j].at(i - self.first),
-                false => [0.0; WIDTH],
-            });
-            let sum: [f64; WIDTH] = std::array::from_fn(|lane| {
-                let contact = Closed {
-                    overlap: overlap[lane],
-                    root: root[lane],
-                    rate: rate[lane],
-                    largest: overlap[lane],
-                };
-                T::force(&k, lane, contact)
-            });
-            let sum: f64x8<S> = sum.simd_into(simd);
-            // Added even to nothing: with the addition left out the compiler
-            // scrambles the lanes of the sum.
-            let before: f64x8<S> = match place.fresh {
-                true => f64x8::splat(simd, 0.0),
-                false => force[i].simd_into(simd),
+            let k: [_; MOST] = std::array::from_fn(|j| load(columns[j].at(i - self.first)));
+            let contact = Closed {
+                overlap,
+                root,
+                rate,
+                largest: overlap,
             };
-            force[i] = (before + sum).into();
+            let sum = T::force(&k, contact);
+            let sum = match place.fresh {
+                true => sum,
+                false => load(&force[i]) + sum,
+            };
+            sum.store_array(&mut force[i]);
         }
     }
 }
 
-impl<T: Sum> Sweep for Fused<T> {
-    fn add(&mut self, set: InstructionSet, place: &Place<'_>, force: &mut [f64]) {
+impl<T: Sum, N: Number<W>, const W: usize> Sweep<N, W> for Fused<T, N, W> {
+    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]) {
         let chunks = place.chunks(&self.contacts);
         if chunks.is_empty() {
             return;

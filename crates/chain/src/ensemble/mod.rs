@@ -3,9 +3,9 @@
 //! Where [`crate::wave`] follows one shot with steps that end at every
 //! opening and closing, this loop takes equal steps through everything, with
 //! a multistep method that needs one force pass a step. Eight shots run side
-//! by side, each in a lane of its own with its own laws and step; or one shot
-//! alone, eight bodies at a time. A shot's bits depend on neither its lane
-//! nor its neighbours.
+//! by side, or sixteen in single precision, each in a lane of its own with its
+//! own laws and step; or one shot alone, as many bodies at a time. A shot's
+//! bits depend on neither its lane nor its neighbours.
 //!
 //! Its accuracy is a property of the step: see `docs/numerics.md`.
 
@@ -17,17 +17,14 @@ mod column;
 mod edge;
 mod fire;
 mod fused;
+mod number;
 mod passing;
 mod peaks;
 mod record;
-mod root;
 mod section;
 mod touch;
 mod weights;
 mod window;
 
-pub use fire::{EnsembleError, Flown, Settings, Shot, fire};
+pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire};
 pub use passing::End;
-
-/// Lanes of a block: shots that run side by side.
-pub const LANES: usize = column::WIDTH;

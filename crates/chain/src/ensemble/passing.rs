@@ -1,5 +1,6 @@
 //! Whether the reflected pulse has passed, from samples alone.
 
+use super::number::Number;
 use super::record::Samples;
 use crate::observe::RETURN_WITHIN;
 use std::ops::Range;
@@ -63,7 +64,12 @@ pub(super) struct Passing {
 
 impl Passing {
     /// Looks at the samples up to a step, closely where any is the largest yet.
-    pub fn look(&mut self, sensor: Samples<'_>, wall: Samples<'_>, step: usize) {
+    pub fn look<N: Number<W>, const W: usize>(
+        &mut self,
+        sensor: Samples<'_, N, W>,
+        wall: Samples<'_, N, W>,
+        step: usize,
+    ) {
         let unseen = self.seen + 1..step + 1;
         if wall.crest() > self.wall.value {
             for at in unseen.clone() {
@@ -80,7 +86,11 @@ impl Passing {
 
     /// Before the wall's peak the largest sample is that of the pulse going
     /// in, long after it that of the pulse coming back.
-    fn look_at_sensor(&mut self, sensor: Samples<'_>, unseen: Range<usize>) {
+    fn look_at_sensor<N: Number<W>, const W: usize>(
+        &mut self,
+        sensor: Samples<'_, N, W>,
+        unseen: Range<usize>,
+    ) {
         let back = self.wall.step as f64 + SOONEST * self.way();
         for at in unseen {
             let value = sensor.at(at);

@@ -1,5 +1,6 @@
 //! From samples to a signal with its maxima.
 
+use super::number::Number;
 use super::record::Samples;
 use super::weights::Schedule;
 use crate::observe::{KEPT, Maximum, Signal, Stretch};
@@ -23,86 +24,76 @@ impl Clock<'_> {
     }
 }
 
-/// The signal of a sensor from its samples up to a step; what is not above
-/// `silent` is none.
-pub(super) fn signal(
-    sensor: Sensor,
-    samples: Samples<'_>,
-    last_step: usize,
-    clock: Clock<'_>,
-    silent: f64,
-) -> Signal {
-    let values = samples.until(last_step);
-    let trace = Trace {
-        values: &values,
-        clock,
-    };
-    let mut largest = 0.0_f64;
-    let mut maxima = Vec::with_capacity(8);
-    for (i, around) in values.windows(3).enumerate() {
-        let [rise, fall] = [around[1] - around[0], around[1] - around[2]];
-        // Between extremes nothing is the largest yet.
-        if rise * fall < 0.0 {
-            continue;
-        }
-        let value = around[1];
-        largest = largest.max(value.abs());
-        if rise >= 0.0 && fall > 0.0 && value > silent.max(KEPT * largest) {
-            maxima.push(trace.maximum(i + 1));
-        }
-    }
-    let stretches = trace.stretches(silent.max(KEPT * largest));
-    Signal::assembled(sensor, stretches, maxima)
-}
-
-/// The samples of a lane from step 1 on, with their times.
+/// What a lane's sensor showed until its last step.
 #[derive(Clone, Copy)]
-struct Trace<'a> {
-    values: &'a [f64],
-    clock: Clock<'a>,
+pub(super) struct Trace<'a, N, const W: usize> {
+    pub samples: Samples<'a, N, W>,
+    pub last_step: usize,
+    pub clock: Clock<'a>,
+    /// What is not above this is no signal.
+    pub silent: f64,
 }
 
-impl Trace<'_> {
+impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
+    /// The signal: its maxima, from steps whose samples are above both
+    /// neighbours or below both, and with `shape` all that is above its floor.
+    pub fn signal(self, sensor: Sensor, extremes: &[usize], shape: bool) -> Signal {
+        let mut largest = 0.0_f64;
+        let mut maxima = Vec::with_capacity(8);
+        let extremes = extremes.iter().copied();
+        for step in extremes.take_while(|&step| step < self.last_step) {
+            let value = self.samples.at(step);
+            largest = largest.max(value.abs());
+            let high = value > self.samples.at(step + 1);
+            if high && value > self.silent.max(KEPT * largest) {
+                maxima.push(self.maximum(step));
+            }
+        }
+        let stretches = match shape {
+            true => self.stretches(self.silent.max(KEPT * largest)),
+            false => Vec::new(),
+        };
+        Signal::assembled(sensor, stretches, maxima)
+    }
+
     /// Quartics through five samples each, where steps are equal and anything
     /// is seen.
     fn stretches(self, floor: f64) -> Vec<Stretch> {
         let first = self.clock.schedule.first_full_step();
-        let full = self.values.get(first - 1..).unwrap_or_default();
-        let mut stretches = Vec::with_capacity(full.len() / 4);
-        for (i, five) in full.windows(5).step_by(4).enumerate() {
-            if five.iter().any(|value| value.abs() > floor) {
-                stretches.push(Stretch {
-                    start_s: self.clock.time_s(first + 4 * i),
-                    length_s: 4.0 * self.clock.step_s,
-                    values: [five[0], five[1], five[2], five[3], five[4]],
-                });
-            }
-        }
-        stretches
+        let starts = (first..self.last_step.saturating_sub(3)).step_by(4);
+        let stretch = |start: usize| Stretch {
+            start_s: self.clock.time_s(start),
+            length_s: 4.0 * self.clock.step_s,
+            values: std::array::from_fn(|i| self.samples.at(start + i)),
+        };
+        let seen = |stretch: &Stretch| stretch.values.iter().any(|value| value.abs() > floor);
+        starts.map(stretch).filter(seen).collect()
     }
 
     /// The maximum near the highest of neighbouring samples: of the polynomial
     /// of degree six through seven samples, between the neighbours. Too few
     /// samples are their own maximum.
-    fn maximum(self, at: usize) -> Maximum {
-        let step = at + 1;
-        if self.values.len() < POINTS {
+    fn maximum(self, step: usize) -> Maximum {
+        let schedule = self.clock.schedule;
+        if self.last_step < POINTS {
             return Maximum {
                 time_s: self.clock.time_s(step),
-                value: self.values[at],
+                value: self.samples.at(step),
             };
         }
-        let from = at.saturating_sub(REACH).min(self.values.len() - POINTS);
-        let schedule = self.clock.schedule;
+        let from = (step - 1)
+            .saturating_sub(REACH)
+            .min(self.last_step - POINTS)
+            + 1;
         let middle = schedule.time(step);
-        let nodes: [f64; POINTS] = std::array::from_fn(|i| schedule.time(from + 1 + i) - middle);
-        let values = std::array::from_fn(|i| self.values[from + i]);
-        let equidistant = from + 1 >= schedule.first_full_step() && at == from + REACH;
+        let nodes: [f64; POINTS] = std::array::from_fn(|i| schedule.time(from + i) - middle);
+        let values = std::array::from_fn(|i| self.samples.at(from + i));
+        let equidistant = from >= schedule.first_full_step() && step == from + REACH;
         let polynomial = match equidistant {
             true => through_equidistant(values),
             false => through(nodes, values),
         };
-        let at = at - from;
+        let at = step - from;
         let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
         let (value, ..) = derivatives(&polynomial, at);
         Maximum {

@@ -1,56 +1,38 @@
 //! What sensors showed, one row of lanes a step.
 
 use super::block::Block;
-use super::column::WIDTH;
+use super::number::Number;
+use crate::instruction_set::InstructionSet;
 use crate::sensor::Sensor;
+use fearless_simd::{dispatch, prelude::*};
 
-/// What one sensor showed, from step 1 on: groups of eight steps, lane by
-/// lane, so that a lane's samples lie together.
+/// What one sensor showed, from step 1 on.
 #[derive(Clone, Debug)]
-struct Rows {
-    values: Vec<f64>,
+struct Rows<N, const W: usize> {
+    values: Vec<N>,
     /// Largest of each lane since the last look.
-    crest: [f64; WIDTH],
+    crest: [N; W],
 }
 
 /// Records sensors of all lanes.
 #[derive(Clone, Debug)]
-pub(super) struct Recorder {
+pub(super) struct Recorder<N, const W: usize> {
     lanes: usize,
     sensors: Vec<Sensor>,
-    rows: Vec<Rows>,
+    rows: Vec<Rows<N, W>>,
     /// Steps recorded.
     steps: usize,
 }
 
-/// Steps of a group.
-const GROUP: usize = 8;
+/// Extremes of a sensor and shot for which room is made.
+const EXPECTED: usize = 32;
 
-/// Where a lane's sample of a step is.
-#[inline(always)]
-fn place(step: usize, lane: usize, lanes: usize) -> usize {
-    let at = step - 1;
-    (at / GROUP * lanes + lane) * GROUP + at % GROUP
-}
-
-impl Rows {
-    #[inline(always)]
-    fn put<const LANES: usize>(&mut self, step: usize, row: &[f64; LANES]) {
-        if (step - 1).is_multiple_of(GROUP) {
-            self.values.resize(self.values.len() + GROUP * LANES, 0.0);
-        }
-        for (lane, value) in row.iter().enumerate() {
-            self.values[place(step, lane, LANES)] = *value;
-        }
-    }
-}
-
-impl Recorder {
+impl<N: Number<W>, const W: usize> Recorder<N, W> {
     /// With room for `steps` samples, so that the loop allocates nothing.
     pub fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
         let rows = |_: &Sensor| Rows {
-            values: Vec::with_capacity((steps + 1).next_multiple_of(GROUP) * lanes),
-            crest: [0.0; WIDTH],
+            values: Vec::with_capacity((steps + 1) * lanes),
+            crest: [N::default(); W],
         };
         Self {
             lanes,
@@ -62,30 +44,32 @@ impl Recorder {
 
     /// Adds what all sensors show now.
     #[inline]
-    pub fn add(&mut self, block: &Block<'_>) {
-        match self.lanes {
-            WIDTH => self.add_row::<WIDTH>(block),
-            _ => self.add_row::<1>(block),
-        }
+    pub fn add(&mut self, set: InstructionSet, block: &Block<'_, N, W>) {
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || match self.lanes == W {
+                true => self.add_row::<W>(block),
+                false => self.add_row::<1>(block),
+            }
+        ));
     }
 
     #[inline(always)]
-    fn add_row<const LANES: usize>(&mut self, block: &Block<'_>) {
+    fn add_row<const LANES: usize>(&mut self, block: &Block<'_, N, W>) {
         self.steps += 1;
         for (sensor, rows) in self.sensors.iter().zip(&mut self.rows) {
-            let row: [f64; LANES] = block.signals(*sensor);
+            let row: [N; LANES] = block.signals(*sensor);
             for (crest, value) in rows.crest.iter_mut().zip(row) {
                 *crest = if value > *crest { value } else { *crest };
             }
-            rows.put::<LANES>(self.steps, &row);
+            rows.values.extend_from_slice(&row);
         }
     }
 
     /// Samples of a sensor, by its place in the list, in a lane.
-    pub fn samples(&self, sensor: usize, lane: usize) -> Samples<'_> {
+    pub fn samples(&self, sensor: usize, lane: usize) -> Samples<'_, N, W> {
         Samples {
             rows: &self.rows[sensor],
-            steps: self.steps,
             lanes: self.lanes,
             lane,
         }
@@ -94,40 +78,65 @@ impl Recorder {
     /// Begins a new stretch between looks.
     pub fn looked(&mut self) {
         for rows in &mut self.rows {
-            rows.crest = [0.0; WIDTH];
+            rows.crest = [N::default(); W];
+        }
+    }
+
+    /// Lane by lane the steps at which a sensor's samples are above both
+    /// neighbours, or below both.
+    pub fn extremes(&self, sensor: usize, set: InstructionSet) -> Vec<Vec<usize>> {
+        let mut found = vec![Vec::with_capacity(EXPECTED); self.lanes];
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.find_extremes(simd, &self.rows[sensor].values, &mut found)
+        ));
+        found
+    }
+
+    #[inline(always)]
+    fn find_extremes<S: Simd>(&self, simd: S, values: &[N], found: &mut [Vec<usize>]) {
+        let lanes = self.lanes;
+        let load = |from: usize| N::Wide::<S>::from_slice(simd, &values[from..from + W]);
+        let last = values.len().saturating_sub(lanes);
+        let mut at = lanes;
+        while at + W <= last {
+            let (before, now, after) = (load(at - lanes), load(at), load(at + lanes));
+            let high = now.simd_ge(before) & now.simd_gt(after);
+            let low = now.simd_le(before) & now.simd_lt(after);
+            let mut extremes = (high | low).to_bitmask();
+            while extremes != 0 {
+                let place = at + extremes.trailing_zeros() as usize;
+                found[place % lanes].push(place / lanes + 1);
+                extremes &= extremes - 1;
+            }
+            at += W;
+        }
+        for at in at..last {
+            let (before, now, after) = (values[at - lanes], values[at], values[at + lanes]);
+            if (now >= before && now > after) || (now <= before && now < after) {
+                found[at % lanes].push(at / lanes + 1);
+            }
         }
     }
 }
 
 /// Samples of one sensor in one lane, from step 1 on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Samples<'a> {
-    rows: &'a Rows,
-    steps: usize,
+pub(super) struct Samples<'a, N, const W: usize> {
+    rows: &'a Rows<N, W>,
     lanes: usize,
     lane: usize,
 }
 
-impl Samples<'_> {
+impl<N: Number<W>, const W: usize> Samples<'_, N, W> {
     /// The largest since the last look.
     pub fn crest(self) -> f64 {
-        self.rows.crest[self.lane]
-    }
-
-    /// The samples of steps 1 to `last`, as far as there are any.
-    pub fn until(self, last: usize) -> Vec<f64> {
-        let mut samples = Vec::with_capacity(self.steps.next_multiple_of(GROUP));
-        let first = self.lane * GROUP;
-        for group in self.rows.values.chunks_exact(GROUP * self.lanes) {
-            samples.extend_from_slice(&group[first..first + GROUP]);
-        }
-        samples.truncate(last.min(self.steps));
-        samples
+        self.rows.crest[self.lane].into()
     }
 
     /// The sample of a step from 1 to the latest.
     #[inline]
     pub fn at(self, step: usize) -> f64 {
-        self.rows.values[place(step, self.lane, self.lanes)]
+        self.rows.values[(step - 1) * self.lanes + self.lane].into()
     }
 }

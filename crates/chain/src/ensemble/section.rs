@@ -1,19 +1,22 @@
 //! Sections of a chain, for all lanes at once.
 
-use super::column::{Column, WIDTH, chunks};
+use super::column::{Column, chunks};
 use super::fused::fuse;
+use super::number::Number;
 use super::touch::Sides;
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
 use crate::laws::{Columns, Contacts};
 use crate::system::{SectionColumns, System, TermColumns};
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::{Simd, dispatch, prelude::*};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Where all bodies are, and which of them move.
-pub(super) struct Place<'a> {
-    pub offset_m: &'a Column,
+pub(super) struct Place<'a, N, const W: usize> {
+    pub offset_m: &'a Column<N, W>,
+    /// Overlaps of this size and less are none.
+    pub slightest_m: [N; W],
     pub lanes: usize,
     /// Chunks whose forces are to be computed.
     pub awake: Range<usize>,
@@ -21,27 +24,30 @@ pub(super) struct Place<'a> {
     pub fresh: bool,
     /// No step has been made yet.
     pub starting: bool,
-    pub x: &'a [f64],
-    pub v: &'a [f64],
+    pub x: &'a [N],
+    pub v: &'a [N],
 }
 
-impl Place<'_> {
+impl<N, const W: usize> Place<'_, N, W> {
     /// The chunks that are awake among some contacts.
     pub fn chunks(&self, contacts: &Range<usize>) -> Range<usize> {
-        let end = chunks(contacts.end, self.lanes).min(self.awake.end);
-        let start = (contacts.start * self.lanes / WIDTH).max(self.awake.start);
+        let end = chunks::<W>(contacts.end, self.lanes).min(self.awake.end);
+        let start = (contacts.start * self.lanes / W).max(self.awake.start);
         start.min(end)..end
     }
 }
 
 /// Sets, or adds to, the forces of a section's contacts.
-pub(super) trait Sweep: Send {
+pub(super) trait Sweep<N, const W: usize>: Send {
     /// The first element of `force` is contact 0 of lane 0.
-    fn add(&mut self, set: InstructionSet, place: &Place<'_>, force: &mut [f64]);
+    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]);
 }
 
 /// The sweep over section `index` of systems that share their shape.
-pub(super) fn section(systems: &[&System], index: usize) -> Box<dyn Sweep> {
+pub(super) fn section<N: Number<W>, const W: usize>(
+    systems: &[&System],
+    index: usize,
+) -> Box<dyn Sweep<N, W>> {
     let sections: Vec<&SectionColumns> = systems.iter().map(|s| &s.sections[index]).collect();
     let plain = systems[0].tension == Tension::Allowed && sections[0].ungated.is_empty();
     let names: Vec<&str> = sections[0]
@@ -53,14 +59,14 @@ pub(super) fn section(systems: &[&System], index: usize) -> Box<dyn Sweep> {
     plain
         .then(|| fuse(&names, contacts, systems.len(), coefficients(&sections)))
         .flatten()
-        .unwrap_or_else(|| Box::new(Unfused::new(systems, &sections)))
+        .unwrap_or_else(|| Box::new(Unfused::new(systems, &sections, W)))
 }
 
 /// Coefficients of all gated terms from the chunk on in which the section
 /// begins; 0 before it.
-fn coefficients(sections: &[&SectionColumns]) -> Vec<Column> {
+fn coefficients<N: Number<W>, const W: usize>(sections: &[&SectionColumns]) -> Vec<Column<N, W>> {
     let (lanes, contacts) = (sections.len(), &sections[0].contacts);
-    let first = contacts.start * lanes / WIDTH * WIDTH / lanes;
+    let first = contacts.start * lanes / W * W / lanes;
     let column = |term: usize, j: usize| {
         Column::new(contacts.end - first, lanes, 0.0, |c, lane| {
             let inside = (first + c).checked_sub(contacts.start);
@@ -74,13 +80,13 @@ fn coefficients(sections: &[&SectionColumns]) -> Vec<Column> {
         .collect()
 }
 
-/// A section that runs law by law, through columns.
+/// A section that runs law by law, through columns in double precision.
 struct Unfused {
     contacts: Range<usize>,
     gated: Vec<TermColumns>,
     ungated: Vec<TermColumns>,
     clipped: bool,
-    /// Chunk in which the section begins.
+    /// Flat index of the chunk in which the section begins.
     first: usize,
     overlap: Vec<f64>,
     root: Vec<f64>,
@@ -102,15 +108,16 @@ fn merged<'a>(of: impl Fn(usize) -> &'a [TermColumns], lanes: usize) -> Vec<Term
 }
 
 impl Unfused {
-    fn new(systems: &[&System], sections: &[&SectionColumns]) -> Self {
+    /// For chunks of `width`.
+    fn new(systems: &[&System], sections: &[&SectionColumns], width: usize) -> Self {
         let (lanes, contacts) = (sections.len(), sections[0].contacts.clone());
-        let first = contacts.start * lanes / WIDTH;
-        let count = (chunks(contacts.end, lanes) - first) * WIDTH;
+        let first = contacts.start * lanes / width * width;
+        let count = (contacts.end * lanes).next_multiple_of(width) - first;
         let numbers = || vec![0.0; count];
         let mut largest = numbers();
         for c in contacts.clone() {
             for (lane, system) in systems.iter().enumerate() {
-                largest[c * lanes + lane - first * WIDTH] = system.offset_m[c].max(0.0);
+                largest[c * lanes + lane - first] = system.offset_m[c].max(0.0);
             }
         }
         Self {
@@ -129,41 +136,38 @@ impl Unfused {
     }
 
     #[inline(always)]
-    fn touch<S: Simd>(&mut self, simd: S, place: &Place<'_>, part: Range<usize>) {
+    fn touch<S: Simd, N: Number<W>, const W: usize>(
+        &mut self,
+        simd: S,
+        place: &Place<'_, N, W>,
+        part: Range<usize>,
+    ) {
         let sides = Sides::new(
-            place.offset_m,
+            (place.offset_m, place.slightest_m),
             (part.end, place.lanes),
             (place.x, place.v),
             place.starting,
         );
         for i in part {
             let touch = sides.touch(simd, i);
-            let at = (i - self.first) * WIDTH..(i - self.first + 1) * WIDTH;
-            self.overlap[at.clone()].copy_from_slice(&touch.overlap);
-            self.root[at.clone()].copy_from_slice(&touch.root);
-            self.rate[at.clone()].copy_from_slice(&touch.rate);
-            self.across[at.clone()].copy_from_slice(&touch.across);
-            for (largest, overlap) in self.largest[at].iter_mut().zip(touch.overlap) {
-                *largest = largest.max(overlap);
+            let at = i * W - self.first..(i + 1) * W - self.first;
+            let keep = |values: &mut [f64], now: N::Wide<S>| {
+                for (value, &now) in values[at.clone()].iter_mut().zip(now.as_slice()) {
+                    *value = now.into();
+                }
+            };
+            keep(&mut self.overlap, touch.overlap);
+            keep(&mut self.root, touch.root);
+            keep(&mut self.rate, touch.rate);
+            keep(&mut self.across, touch.across);
+            for at in at.clone() {
+                self.largest[at] = self.largest[at].max(self.overlap[at]);
             }
         }
     }
-}
 
-impl Sweep for Unfused {
-    fn add(&mut self, set: InstructionSet, place: &Place<'_>, force: &mut [f64]) {
-        let part = place.chunks(&self.contacts);
-        if part.is_empty() {
-            return;
-        }
-        dispatch!(set.level(), simd => simd.vectorize(
-            #[inline(always)]
-            || self.touch(simd, place, part.clone())
-        ));
-        // The section's own contacts among those of its chunks.
-        let flat = (self.contacts.start * place.lanes).max(part.start * WIDTH)
-            ..(part.end * WIDTH).min(self.contacts.end * place.lanes);
-        let here = flat.start - self.first * WIDTH..flat.end - self.first * WIDTH;
+    /// Forces of some contacts, of which `row` is the first's among the section's.
+    fn sum(&mut self, set: InstructionSet, here: Range<usize>, row: usize) {
         let sum = &mut self.sum[here.clone()];
         sum.fill(0.0);
         for (terms, rate) in [(&self.gated, &self.rate), (&self.ungated, &self.across)] {
@@ -174,12 +178,31 @@ impl Sweep for Unfused {
                 largest: &self.largest[here.clone()],
             };
             for term in terms {
-                term.law.add_forces(set, &term.columns, 0, seen, sum);
+                term.law.add_forces(set, &term.columns, row, seen, sum);
             }
         }
-        for (force, sum) in force[flat].iter_mut().zip(sum) {
-            let before = if place.fresh { 0.0 } else { *force };
-            *force = before + if self.clipped { sum.max(0.0) } else { *sum };
+    }
+}
+
+impl<N: Number<W>, const W: usize> Sweep<N, W> for Unfused {
+    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]) {
+        let part = place.chunks(&self.contacts);
+        if part.is_empty() {
+            return;
+        }
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.touch(simd, place, part.clone())
+        ));
+        // The section's own contacts among those of its chunks.
+        let flat = (self.contacts.start * place.lanes).max(part.start * W)
+            ..(part.end * W).min(self.contacts.end * place.lanes);
+        let here = flat.start - self.first..flat.end - self.first;
+        let row = flat.start - self.contacts.start * place.lanes;
+        self.sum(set, here.clone(), row);
+        for (force, &sum) in force[flat].iter_mut().zip(&self.sum[here]) {
+            let before = if place.fresh { 0.0 } else { (*force).into() };
+            *force = N::of(before + if self.clipped { sum.max(0.0) } else { sum });
         }
     }
 }

@@ -1,43 +1,45 @@
 //! Overlaps, their roots and their rates, chunk by chunk.
 
-use super::column::{Column, Reader, WIDTH};
-use super::root::roots;
-use crate::system::FLUSH;
-use fearless_simd::{f64x8, prelude::*};
+use super::column::{Column, Reader};
+use super::number::Number;
+use fearless_simd::prelude::*;
 
 /// One chunk of contacts as laws see them.
-pub(super) struct Touch {
-    pub overlap: [f64; WIDTH],
-    pub root: [f64; WIDTH],
+pub(super) struct Touch<V> {
+    pub overlap: V,
+    pub root: V,
     /// Overlap rate; 0 where open, so that gated laws give no force there.
-    pub rate: [f64; WIDTH],
+    pub rate: V,
     /// Overlap rate whether open or not.
-    pub across: [f64; WIDTH],
+    pub across: V,
 }
 
 /// Positions and velocities of the bodies left and right of each contact.
-pub(super) struct Sides<'a> {
-    offset_m: Reader<'a>,
+pub(super) struct Sides<'a, N, const W: usize> {
+    offset_m: Reader<'a, N, W>,
+    /// Overlaps of this size and less are none.
+    slightest_m: [N; W],
     starting: bool,
-    x: [&'a [[f64; WIDTH]]; 2],
-    v: [&'a [[f64; WIDTH]]; 2],
+    x: [&'a [[N; W]]; 2],
+    v: [&'a [[N; W]]; 2],
 }
 
-impl<'a> Sides<'a> {
+impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     /// Of the first `count` chunks of contacts.
     #[inline(always)]
     pub fn new(
-        offset_m: &'a Column,
+        (offset_m, slightest_m): (&'a Column<N, W>, [N; W]),
         (count, lanes): (usize, usize),
-        (x, v): (&'a [f64], &'a [f64]),
+        (x, v): (&'a [N], &'a [N]),
         starting: bool,
     ) -> Self {
-        let pair = |values: &'a [f64]| {
-            let right = &values[lanes..][..count * WIDTH];
-            [values[..count * WIDTH].as_chunks().0, right.as_chunks().0]
+        let pair = |values: &'a [N]| {
+            let right = &values[lanes..][..count * W];
+            [values[..count * W].as_chunks().0, right.as_chunks().0]
         };
         Self {
             offset_m: offset_m.reader(),
+            slightest_m,
             starting,
             x: pair(x),
             v: pair(v),
@@ -47,22 +49,22 @@ impl<'a> Sides<'a> {
     /// Chunk `i`: closed ⇔ δ > 0, or δ = 0 and approaching. The latter can only
     /// be at the start: whatever approaches from contact overlaps a step later.
     #[inline(always)]
-    pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch {
-        let load = |chunk: &[f64; WIDTH]| -> f64x8<S> { (*chunk).simd_into(simd) };
-        let zero = f64x8::splat(simd, 0.0);
+    pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let zero = N::Wide::<S>::simd_from(simd, N::default());
         let depth = load(self.offset_m.at(i)) - (load(&self.x[1][i]) - load(&self.x[0][i]));
-        let rate = load(&self.v[0][i]) - load(&self.v[1][i]);
-        let deep = depth.simd_gt(f64x8::splat(simd, FLUSH));
+        let across = load(&self.v[0][i]) - load(&self.v[1][i]);
+        let deep = depth.simd_gt(load(&self.slightest_m));
         let overlap = deep.select(depth, zero);
         let closed = match self.starting {
-            true => deep | (depth.simd_ge(zero) & rate.simd_gt(zero)),
+            true => deep | (depth.simd_ge(zero) & across.simd_gt(zero)),
             false => deep,
         };
         Touch {
-            overlap: overlap.into(),
-            root: roots(simd, overlap).into(),
-            rate: closed.select(rate, zero).into(),
-            across: rate.into(),
+            overlap,
+            root: N::roots(simd, overlap),
+            rate: closed.select(across, zero),
+            across,
         }
     }
 }

@@ -4,39 +4,48 @@
 //! stay open until the next look give no force, and bodies between such
 //! contacts fly on. Leaving out what they would add changes no bit.
 
-use super::column::{Reader, WIDTH, chunks};
+use super::column::{Reader, chunks};
+use super::number::Number;
+use crate::instruction_set::InstructionSet;
 use crate::system::System;
+use fearless_simd::{dispatch, prelude::*};
 use std::ops::Range;
+
+/// Rounding of a position over the steps between looks, in roundings of one.
+const ROUNDINGS: f64 = 32.0;
 
 /// Positions, velocities and how contacts hang on them.
 #[derive(Clone, Copy)]
-pub(super) struct Places<'a> {
-    pub offset_m: Reader<'a>,
-    pub x: &'a [f64],
-    pub v: &'a [f64],
+pub(super) struct Places<'a, N, const W: usize> {
+    pub offset_m: Reader<'a, N, W>,
+    pub x: &'a [N],
+    pub v: &'a [N],
     pub lanes: usize,
 }
 
-impl Places<'_> {
-    /// Whether a chunk of contacts is open and stays so for a time, unless a
-    /// force moves its bodies.
-    #[inline]
-    fn stays_open(&self, chunk: usize, ahead_s: &[f64; WIDTH]) -> bool {
-        let side = |values: &[f64], from: usize| -> [f64; WIDTH] {
-            let side = values[from..].first_chunk();
-            side.copied().unwrap_or([f64::NAN; WIDTH])
-        };
-        let (left, right) = (chunk * WIDTH, chunk * WIDTH + self.lanes);
-        let (x, beyond) = (side(self.x, left), side(self.x, right));
-        let (v, ahead) = (side(self.v, left), side(self.v, right));
-        let offset_m = self.offset_m.at(chunk);
-        let mut open = true;
-        for i in 0..WIDTH {
-            let now = offset_m[i] - (beyond[i] - x[i]);
-            let then = now + (v[i] - ahead[i]) * ahead_s[i];
-            open &= now < 0.0 && then < 0.0;
-        }
-        open
+impl<N: Number<W>, const W: usize> Places<'_, N, W> {
+    /// Whether a chunk of contacts is open and stays so for a time, whatever
+    /// rounding does, unless a force moves its bodies.
+    #[inline(always)]
+    fn stays_open<S: Simd>(&self, simd: S, chunk: usize, ahead_s: &[N; W]) -> bool {
+        let load =
+            |values: &[N], from: usize| N::Wide::<S>::from_slice(simd, &values[from..from + W]);
+        let (left, right) = (chunk * W, chunk * W + self.lanes);
+        let (x, beyond) = (load(self.x, left), load(self.x, right));
+        let rate = load(self.v, left) - load(self.v, right);
+        let now = load(self.offset_m.at(chunk), 0) - (beyond - x);
+        let rounded = (x.abs() + beyond.abs()) * N::of(ROUNDINGS * N::ROUNDING);
+        let then = rate.mul_add(load(ahead_s, 0), now) + rounded;
+        let zero = N::Wide::<S>::simd_from(simd, N::default());
+        (now.simd_lt(zero) & then.simd_lt(zero)).all_true()
+    }
+
+    /// Whether any body of a chunk moves.
+    #[inline(always)]
+    fn moves<S: Simd>(&self, simd: S, chunk: usize) -> bool {
+        let v = N::Wide::<S>::from_slice(simd, &self.v[chunk * W..(chunk + 1) * W]);
+        v.simd_ne(N::Wide::<S>::simd_from(simd, N::default()))
+            .any_true()
     }
 }
 
@@ -58,16 +67,21 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub fn new(systems: &[&System], (x, v): (&[f64], &[f64]), whole_chain: bool) -> Self {
+    pub fn new<N: Number<W>, const W: usize>(
+        systems: &[&System],
+        (x, v): (&[N], &[N]),
+        whole_chain: bool,
+    ) -> Self {
         let lanes = systems.len();
-        let all = chunks(systems[0].bodies(), lanes);
-        let with_contacts = chunks(systems[0].contacts(), lanes);
-        let moves = |at: &usize| x[*at] != 0.0 || v[*at] != 0.0;
-        let last = (0..all * WIDTH).rev().find(moves).unwrap_or(0);
+        let all = chunks::<W>(systems[0].bodies(), lanes);
+        let with_contacts = chunks::<W>(systems[0].contacts(), lanes);
+        let rest = N::default();
+        let moves = |at: &usize| x[*at] != rest || v[*at] != rest;
+        let last = (0..all * W).rev().find(moves).unwrap_or(0);
         let pulled = systems.iter().any(|s| s.slope_m_s2 != 0.0 || s.periodic);
         let reached = match whole_chain || pulled {
             true => all,
-            false => (last / WIDTH + 2).min(all),
+            false => (last / W + 2).min(all),
         };
         Self {
             chunks: reached,
@@ -81,23 +95,36 @@ impl Window {
 
     /// Takes in what the last step has reached: the next chunk once the last
     /// one moves, and sleeping contacts next to what is awake once they close.
-    pub fn follow(&mut self, places: Places<'_>) {
-        if self.chunks < self.all {
-            let edge = &places.v[(self.chunks - 1) * WIDTH..self.chunks * WIDTH];
-            if edge.iter().any(|&v| v != 0.0) {
-                self.grow();
-            }
+    pub fn follow<N: Number<W>, const W: usize>(
+        &mut self,
+        set: InstructionSet,
+        places: Places<'_, N, W>,
+    ) {
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.follow_with(simd, places)
+        ));
+        self.wake_bodies();
+    }
+
+    #[inline(always)]
+    fn follow_with<S: Simd, N: Number<W>, const W: usize>(
+        &mut self,
+        simd: S,
+        places: Places<'_, N, W>,
+    ) {
+        if self.chunks < self.all && places.moves(simd, self.chunks - 1) {
+            self.grow();
         }
-        let now = [0.0; WIDTH];
-        while self.contacts.start > 0 && !places.stays_open(self.contacts.start - 1, &now) {
+        let now = [N::default(); W];
+        while self.contacts.start > 0 && !places.stays_open(simd, self.contacts.start - 1, &now) {
             self.contacts.start -= 1;
         }
         while self.contacts.end < self.reached_contacts()
-            && !places.stays_open(self.contacts.end, &now)
+            && !places.stays_open(simd, self.contacts.end, &now)
         {
             self.contacts.end += 1;
         }
-        self.wake_bodies();
     }
 
     /// Chunks of contacts that the wave has reached.
@@ -122,21 +149,46 @@ impl Window {
 
     /// Lets sleep what stays open for a time from here; contacts that have
     /// slept since the last look have let their bodies forget all forces.
-    pub fn look(&mut self, places: Places<'_>, ahead_s: &[f64; WIDTH]) {
+    pub fn look<N: Number<W>, const W: usize>(
+        &mut self,
+        set: InstructionSet,
+        places: Places<'_, N, W>,
+        ahead_s: &[N; W],
+    ) {
         if !self.may_sleep {
             return;
         }
         let slept = self.contacts.clone();
-        let awake = |chunk: &usize| !places.stays_open(*chunk, ahead_s);
-        let first = (0..self.reached_contacts()).find(awake).unwrap_or(0);
-        let last = (first..self.reached_contacts())
-            .rev()
-            .find(awake)
-            .unwrap_or(first);
         // Ahead of the wave contacts touch: nothing there is open.
-        self.contacts = first..(last + 1).min(self.reached_contacts());
+        self.contacts = dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.awake(simd, places, ahead_s)
+        ));
         self.bodies = slept.start..(slept.end + 1).min(self.chunks);
         self.wake_bodies();
+    }
+
+    /// From the first to the last contact that does not stay open.
+    #[inline(always)]
+    fn awake<S: Simd, N: Number<W>, const W: usize>(
+        &self,
+        simd: S,
+        places: Places<'_, N, W>,
+        ahead_s: &[N; W],
+    ) -> Range<usize> {
+        let reached = self.reached_contacts();
+        let mut first = 0;
+        while first < reached && places.stays_open(simd, first, ahead_s) {
+            first += 1;
+        }
+        let mut end = reached;
+        while end > first && places.stays_open(simd, end - 1, ahead_s) {
+            end -= 1;
+        }
+        match first < end {
+            true => first..end,
+            false => 0..reached.min(1),
+        }
     }
 
     /// All chunks.

@@ -1,4 +1,4 @@
-use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
 use crate::material::Pair;
 
 /// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ while in contact.
@@ -35,7 +35,14 @@ impl Term<1> for DampingCubic {
         Ok([self.coefficient_kg_s_m2])
     }
 
-    fn force(&[coefficient]: &[f64; 1], contact: Closed) -> f64 {
+    fn force(k: &[f64; 1], contact: Closed) -> f64 {
+        Self::wide_force(*k, contact)
+    }
+}
+
+impl Wide<1> for DampingCubic {
+    #[inline(always)]
+    fn wide_force<N: Arithmetic>([coefficient]: [N; 1], contact: Closed<N>) -> N {
         coefficient * contact.rate * contact.rate * contact.rate
     }
 }

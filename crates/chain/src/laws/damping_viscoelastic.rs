@@ -1,4 +1,4 @@
-use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
 use crate::material::{Material, Pair};
 
 /// Viscoelastic spheres [Goldobin2015]: F = (3/2) A K √δ δ̇.
@@ -50,7 +50,14 @@ impl Term<1> for DampingViscoelastic {
         Ok([1.5 * time * self.stiffness.unwrap_or_else(|| pair.hertz_stiffness())])
     }
 
-    fn force(&[damping]: &[f64; 1], contact: Closed) -> f64 {
+    fn force(k: &[f64; 1], contact: Closed) -> f64 {
+        Self::wide_force(*k, contact)
+    }
+}
+
+impl Wide<1> for DampingViscoelastic {
+    #[inline(always)]
+    fn wide_force<N: Arithmetic>([damping]: [N; 1], contact: Closed<N>) -> N {
         damping * contact.root * contact.rate
     }
 }

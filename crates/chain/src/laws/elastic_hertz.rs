@@ -1,4 +1,4 @@
-use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
 use crate::material::Pair;
 
 /// Elastic spheres [Hertz1881]: F = K δ^{3/2}, K in N/m^{3/2}.
@@ -36,11 +36,18 @@ impl Term<1> for ElasticHertz {
         Ok([stiffness])
     }
 
-    fn force(&[stiffness]: &[f64; 1], contact: Closed) -> f64 {
-        stiffness * contact.overlap * contact.root
+    fn force(k: &[f64; 1], contact: Closed) -> f64 {
+        Self::wide_force(*k, contact)
     }
 
     fn energy(&[stiffness]: &[f64; 1], overlap: f64, _largest: f64) -> f64 {
         0.4 * stiffness * overlap * overlap * overlap.sqrt()
+    }
+}
+
+impl Wide<1> for ElasticHertz {
+    #[inline(always)]
+    fn wide_force<N: Arithmetic>([stiffness]: [N; 1], contact: Closed<N>) -> N {
+        stiffness * contact.overlap * contact.root
     }
 }

@@ -5,19 +5,21 @@ use crate::instruction_set::InstructionSet;
 use crate::material::Pair;
 use fearless_simd::{dispatch, prelude::*};
 use std::fmt::Debug;
+use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-/// One closed contact, as a law sees it.
+/// One closed contact, as a law sees it; or, as [`Wide`] laws see them, as
+/// many as a vector register holds.
 #[derive(Clone, Copy, Debug)]
-pub struct Closed {
+pub struct Closed<N = f64> {
     /// Overlap δ ≥ 0 in m.
-    pub overlap: f64,
+    pub overlap: N,
     /// √δ, given by the loop so that laws need no square root of their own.
-    pub root: f64,
+    pub root: N,
     /// Overlap rate δ̇ in m/s, positive while approaching.
-    pub rate: f64,
+    pub rate: N,
     /// Largest overlap so far, in m; never below `overlap`.
-    pub largest: f64,
+    pub largest: N,
 }
 
 impl Closed {
@@ -123,6 +125,19 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     fn energy(_k: &[f64; C], _overlap: f64, _largest: f64) -> f64 {
         0.0
     }
+}
+
+/// What sums and products can be made of: a number, or a register of them.
+pub trait Arithmetic: Copy + Add<Output = Self> + Mul<Output = Self> {}
+
+impl<N: Copy + Add<Output = N> + Mul<Output = N>> Arithmetic for N {}
+
+/// A law whose force is sums and products alone, so that the same line serves
+/// whole registers in either precision. Nothing needs it but the fastest path
+/// of the ensemble loop.
+pub trait Wide<const C: usize>: Term<C> {
+    /// Force in N, positive when it pushes the bodies apart.
+    fn wide_force<N: Arithmetic>(k: [N; C], contact: Closed<N>) -> N;
 }
 
 /// Coefficients of one law over consecutive contacts: column `j` holds

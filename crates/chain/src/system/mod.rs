@@ -159,13 +159,13 @@ impl System {
     /// by side.
     #[must_use]
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        let names = |terms: &[TermColumns]| -> Vec<&str> {
-            terms.iter().map(|term| term.law.info().name).collect()
-        };
+        fn names(terms: &[TermColumns]) -> impl Iterator<Item = &str> {
+            terms.iter().map(|term| term.law.info().name)
+        }
         let alike = |(one, two): (&SectionColumns, &SectionColumns)| {
             one.contacts == two.contacts
-                && names(&one.gated) == names(&two.gated)
-                && names(&one.ungated) == names(&two.ungated)
+                && names(&one.gated).eq(names(&two.gated))
+                && names(&one.ungated).eq(names(&two.ungated))
         };
         self.bodies() == other.bodies()
             && self.sections.len() == other.sections.len()

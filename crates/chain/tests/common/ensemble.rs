@@ -1,7 +1,7 @@
 //! Shots of the ensemble loop, for its tests.
 
 use super::*;
-use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
 
 /// What the paper's rig watches: a bead (the seventh, or the last of a shorter
 /// row) and the wall.
@@ -15,13 +15,27 @@ pub fn settings(beads: usize) -> Settings {
         sensors: watched(beads),
         end: End::Passed,
         set: InstructionSet::default(),
+        shapes: true,
         whole_chain: false,
         openings: false,
     }
 }
 
-/// Fires systems with one step and one duration.
+/// Both lengths of numbers.
+pub const PRECISIONS: [Precision; 2] = [Precision::Double, Precision::Single];
+
+/// Fires systems with one step and one duration, in double precision.
 pub fn fire_all(
+    systems: &[System],
+    step: (f64, f64),
+    settings: &Settings,
+) -> Vec<Result<Flown, EnsembleError>> {
+    fire_all_in(Precision::Double, systems, step, settings)
+}
+
+/// Fires systems with one step and one duration.
+pub fn fire_all_in(
+    precision: Precision,
     systems: &[System],
     (step, duration_s): (f64, f64),
     settings: &Settings,
@@ -30,14 +44,25 @@ pub fn fire_all(
         system,
         step,
         duration_s,
+        precision,
     };
     let shots: Vec<Shot<'_>> = systems.iter().map(shot).collect();
     fire(&shots, settings)
 }
 
-/// Fires one system alone.
+/// Fires one system alone, in double precision.
 pub fn fire_one(system: &System, step: (f64, f64), settings: &Settings) -> Flown {
-    let mut flown = fire_all(std::slice::from_ref(system), step, settings);
+    fire_one_in(Precision::Double, system, step, settings)
+}
+
+/// Fires one system alone.
+pub fn fire_one_in(
+    precision: Precision,
+    system: &System,
+    step: (f64, f64),
+    settings: &Settings,
+) -> Flown {
+    let mut flown = fire_all_in(precision, std::slice::from_ref(system), step, settings);
     flown.remove(0).unwrap()
 }
 

@@ -1,0 +1,148 @@
+//! What lanes are made of: double precision, eight numbers to a cache line, or
+//! single, sixteen.
+
+use crate::system::FLUSH;
+use fearless_simd::{SimdFloatElement, f32x16, f64x8, prelude::*};
+use std::fmt::Debug;
+use std::ops::Add;
+
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::{Avx512, Level};
+
+/// A floating-point number, `W` of which fill a cache line.
+pub(super) trait Number<const W: usize>:
+    SimdFloatElement
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Debug
+    + Into<f64>
+    + Send
+    + Sync
+    + 'static
+{
+    /// A chunk of them.
+    type Wide<S: Simd>: SimdFloat<S, Element = Self, Array = [Self; W]>;
+
+    /// Half the distance from 1 to the next number.
+    const ROUNDING: f64;
+
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+
+    /// Half the sum.
+    fn middle(self, other: Self) -> Self;
+
+    /// Overlaps up to this are none: they would make forces too small for
+    /// normal numbers. From an overlap of the shot's own size.
+    fn slightest_m(overlap_m: f64) -> Self;
+
+    /// √d of numbers that are 0 or normal.
+    fn roots<S: Simd>(simd: S, d: Self::Wide<S>) -> Self::Wide<S>;
+}
+
+impl Number<8> for f64 {
+    type Wide<S: Simd> = f64x8<S>;
+
+    const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn middle(self, other: Self) -> Self {
+        0.5 * (self + other)
+    }
+
+    fn slightest_m(_overlap_m: f64) -> Self {
+        FLUSH
+    }
+
+    /// AVX-512 has a reciprocal root of 14 bits. A Goldschmidt step
+    /// [Goldschmidt1964] makes a root of 28 bits of it and a step on the
+    /// residual one of 42, 2e-13; elsewhere the hardware's root is as fast.
+    #[inline(always)]
+    fn roots<S: Simd>(simd: S, d: f64x8<S>) -> f64x8<S> {
+        match simd.level() {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512(avx512) => double_roots(avx512, d.into()).simd_into(simd),
+            _ => d.sqrt(),
+        }
+    }
+}
+
+impl Number<16> for f32 {
+    type Wide<S: Simd> = f32x16<S>;
+
+    const ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
+
+    #[inline(always)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "single precision is what is asked for"
+    )]
+    fn of(value: f64) -> Self {
+        value as f32
+    }
+
+    #[inline(always)]
+    fn middle(self, other: Self) -> Self {
+        0.5 * (self + other)
+    }
+
+    /// A force of 1e-18 of the largest adds nothing to what is single.
+    fn slightest_m(overlap_m: f64) -> Self {
+        Self::of(1e-12 * overlap_m)
+    }
+
+    /// As in double precision; one step leaves rounding alone.
+    #[inline(always)]
+    fn roots<S: Simd>(simd: S, d: f32x16<S>) -> f32x16<S> {
+        match simd.level() {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512(avx512) => single_roots(avx512, d.into()).simd_into(simd),
+            _ => d.sqrt(),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fearless_simd::kernel!(
+    #[inline(always)]
+    fn double_roots(avx512: Avx512, d: [f64; 8]) -> [f64; 8] {
+        use std::arch::x86_64::{
+            _mm512_castpd_si512, _mm512_maskz_rsqrt14_pd, _mm512_test_epi64_mask,
+        };
+        let d: f64x8<Avx512> = d.simd_into(avx512);
+        let bits = _mm512_castpd_si512(d.into());
+        // Where d is 0 the seed is 0, and so is the root.
+        let seed = _mm512_maskz_rsqrt14_pd(_mm512_test_epi64_mask(bits, bits), d.into());
+        let seed: f64x8<Avx512> = seed.simd_into(avx512);
+        let half = f64x8::splat(avx512, 0.5);
+        let (root, reciprocal) = (d * seed, half * seed);
+        let error = (-root).mul_add(reciprocal, half);
+        let root = root.mul_add(error, root);
+        let residual = (-root).mul_add(root, d);
+        residual.mul_add(reciprocal, root).into()
+    }
+);
+
+#[cfg(target_arch = "x86_64")]
+fearless_simd::kernel!(
+    #[inline(always)]
+    fn single_roots(avx512: Avx512, d: [f32; 16]) -> [f32; 16] {
+        use std::arch::x86_64::{
+            _mm512_castps_si512, _mm512_maskz_rsqrt14_ps, _mm512_test_epi32_mask,
+        };
+        let d: f32x16<Avx512> = d.simd_into(avx512);
+        let bits = _mm512_castps_si512(d.into());
+        let seed = _mm512_maskz_rsqrt14_ps(_mm512_test_epi32_mask(bits, bits), d.into());
+        let seed: f32x16<Avx512> = seed.simd_into(avx512);
+        let half = f32x16::splat(avx512, 0.5);
+        let (root, reciprocal) = (d * seed, half * seed);
+        let error = (-root).mul_add(reciprocal, half);
+        root.mul_add(error, root).into()
+    }
+);
