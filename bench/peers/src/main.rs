@@ -161,8 +161,9 @@ impl Session {
             if !self.rows.iter().any(|r| r.is_ours(case, accuracy)) {
                 let set = ours::instruction_set();
                 let version = env!("CARGO_PKG_VERSION").into();
+                let setting = ours::setting(case, accuracy);
                 self.rows
-                    .push(row("hertzchain", version, of_us, 1.0, ours::METHOD, set));
+                    .push(row("hertzchain", version, of_us, 1.0, &setting, set));
             }
             let version = tool.version(&self.worker)?;
             self.rows.push(row(

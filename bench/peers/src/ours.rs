@@ -4,7 +4,7 @@ use crate::case::{BEADS, Case, SENSOR};
 use crate::converged::errors;
 use crate::watch::{FALLEN, SOONEST};
 use cpu_time::ProcessTime;
-use hertzchain_chain::ensemble;
+use hertzchain_chain::ensemble::{self, Precision};
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Maximum, Passages};
 use hertzchain_chain::wave::{DormandPrince, Flow, Limits, Observer, Piece, run};
@@ -21,31 +21,44 @@ pub fn ours(case: Case, speeds_m_s: &[f64], accuracy: f64) -> Vec<(f64, f64)> {
 }
 
 /// How the rows of the tables call what `ours` does.
-pub const METHOD: &str = "ensemble::fire, eight shots side by side";
+pub fn setting(case: Case, accuracy: f64) -> String {
+    let (precision, step, openings) = tune(case, accuracy);
+    let precision = match precision {
+        Precision::Single => "single",
+        Precision::Double => "double",
+    };
+    let openings = if openings { ", openings mended" } else { "" };
+    format!("ensemble, {precision} precision, step {step}{openings}")
+}
 
-/// A step in contact times and whether openings are mended.
-type Setting = (f64, bool);
+/// Precision, a step in contact times and whether openings are mended.
+type Setting = (Precision, f64, bool);
 
 /// Settings to choose from, the cheapest first.
-const SETTINGS: [Setting; 18] = [
-    (0.21, false),
-    (0.2, false),
-    (0.19, false),
-    (0.18, false),
-    (0.17, false),
-    (0.16, false),
-    (0.15, false),
-    (0.14, false),
-    (0.12, false),
-    (0.1, false),
-    (0.1, true),
-    (0.08, true),
-    (0.065, true),
-    (0.05, true),
-    (0.04, true),
-    (0.03, true),
-    (0.02, true),
-    (0.01, true),
+const SETTINGS: [Setting; 23] = [
+    (Precision::Single, 0.21, false),
+    (Precision::Single, 0.2, false),
+    (Precision::Single, 0.19, false),
+    (Precision::Single, 0.18, false),
+    (Precision::Single, 0.17, false),
+    (Precision::Single, 0.16, false),
+    (Precision::Single, 0.15, false),
+    (Precision::Single, 0.14, false),
+    (Precision::Single, 0.13, false),
+    (Precision::Single, 0.12, false),
+    (Precision::Single, 0.11, false),
+    (Precision::Single, 0.1, false),
+    (Precision::Double, 0.17, false),
+    (Precision::Double, 0.15, false),
+    (Precision::Double, 0.12, false),
+    (Precision::Double, 0.1, true),
+    (Precision::Double, 0.08, true),
+    (Precision::Double, 0.065, true),
+    (Precision::Double, 0.05, true),
+    (Precision::Double, 0.04, true),
+    (Precision::Double, 0.03, true),
+    (Precision::Double, 0.02, true),
+    (Precision::Double, 0.01, true),
 ];
 
 /// The cheapest setting that meets an accuracy at forty speeds between those
@@ -75,7 +88,7 @@ pub fn tune(case: Case, accuracy: f64) -> Setting {
 }
 
 /// Shots by the ensemble loop.
-fn fly(case: Case, speeds_m_s: &[f64], (step, openings): Setting) -> Vec<(f64, f64)> {
+fn fly(case: Case, speeds_m_s: &[f64], (precision, step, openings): Setting) -> Vec<(f64, f64)> {
     let systems = systems(case, speeds_m_s);
     let shots: Vec<ensemble::Shot<'_>> = systems
         .iter()
@@ -83,12 +96,14 @@ fn fly(case: Case, speeds_m_s: &[f64], (step, openings): Setting) -> Vec<(f64, f
             system,
             step,
             duration_s: 400.0 * system.scales().time_s,
+            precision,
         })
         .collect();
     let settings = ensemble::Settings {
         sensors: vec![Sensor::Bead(SENSOR), Sensor::Contact(BEADS)],
         end: ensemble::End::Passed,
         set: InstructionSet::default(),
+        shapes: false,
         whole_chain: false,
         openings,
     };
@@ -133,6 +148,7 @@ pub fn ns_per_bead_and_step(beads: usize) -> Option<f64> {
         sensors: vec![],
         end: ensemble::End::Duration,
         set: InstructionSet::default(),
+        shapes: false,
         whole_chain: true,
         openings: false,
     };
@@ -143,6 +159,7 @@ pub fn ns_per_bead_and_step(beads: usize) -> Option<f64> {
             system: &system,
             step,
             duration_s,
+            precision: Precision::Double,
         };
         let begin = ProcessTime::now();
         let made = ensemble::fire(&[shot], &settings)[0]
