@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hertzchain_figures::{
-    Animation, Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, Series,
+    Animation, Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series,
     Verdict, VerdictMatrix,
 };
 
@@ -31,9 +31,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                 beads: 1000,
                 sensor_bead: Some(500),
                 wet_contacts: None,
-                preload_n: None,
+                springs: String::new(),
                 incline_deg: 0.0,
-                stop_mass_kg: None,
+                end_structure: String::new(),
+                stop: String::new(),
                 ..paper_rig()
             }
             .figure(),
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "rig_bare",
             RigDrawing {
                 beads: 6,
-                bead_radius_m: 0.005,
+                bead_label: "$R$ = 5 mm".into(),
                 ..RigDrawing::default()
             }
             .figure(),
@@ -351,21 +352,24 @@ fn claims_table(columns: &[&str]) -> Figure {
 fn paper_rig() -> RigDrawing {
     RigDrawing {
         beads: 40,
-        bead_radius_m: 6.35e-3,
-        bead_material: "AISI 316".into(),
-        striker_radius_m: Some(6.35e-3),
+        bead_label: "AISI 316, $R$ = 6.35 mm".into(),
+        striker_ratio: Some(1.0),
         striker_label: "speed $v_0$".into(),
         sensor_bead: Some(7),
+        sensor_label: "piezo disc".into(),
         wet_contacts: Some((7, 40)),
         liquid: "motor oil".into(),
-        preload_n: Some(0.24),
         incline_deg: 0.5,
+        far_end: FarEnd::HalfBead,
         wall_sensor: true,
-        stop_mass_kg: Some(4.5),
-        actuator: true,
-        photogate: true,
+        actuator: "voice-coil actuator".into(),
+        repositioner: "ball repositioner".into(),
+        photogate: "photogate".into(),
+        springs: "springs, $F$ = 0.24 N".into(),
         recorder: "charge amplifiers, summed; 16-bit ADC".into(),
-        ..RigDrawing::default()
+        stop: "steel stop".into(),
+        end_structure: "end structure, 4.5 kg".into(),
+        bar: "bar, 6 kg".into(),
     }
 }
 

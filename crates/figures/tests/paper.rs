@@ -2,12 +2,17 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod covered;
+mod type_size;
 
 use covered::covered;
-use hertzchain_figures::paper;
-use hertzchain_study::reproduce::{Options, Silent, reproduce};
+use hertzchain_experiment::Reading;
+use hertzchain_figures::{Figure, paper};
+use hertzchain_study::claims::{Claim, Verdict, claims};
+use hertzchain_study::readings::{Row, Scan};
+use hertzchain_study::reproduce::{Options, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
 use std::fs;
+use type_size::smallest_type;
 
 const TABLES: [&str; 8] = [
     "claims.json",
@@ -29,18 +34,64 @@ const FIGURES: [&str; 6] = [
     "space_time",
 ];
 
+/// All figures, with a scan in which so many readings move some verdicts.
+fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Figure)> {
+    let claims: Vec<Claim> = claims()
+        .unwrap()
+        .into_iter()
+        .map(|judge| judge.claim)
+        .collect();
+    let row = |reading: Reading, moved: usize| Row {
+        reading,
+        verdicts: (0..claims.len())
+            .map(|claim| match moved > 0 && claim % (moved + 2) == 1 {
+                true => Verdict::Fails,
+                false => Verdict::Holds,
+            })
+            .collect(),
+        values: vec![0.0; claims.len()],
+    };
+    let default = row(Reading::default(), 0);
+    let switches = Reading::switches().iter();
+    let changed = switches.flat_map(|switch| {
+        let options = switch.options.iter().skip(1);
+        options.map(|option| Reading::default().with(switch.name, option).unwrap())
+    });
+    let single = changed.enumerate();
+    let single = single.map(|(i, reading)| row(reading, if i < moving { i + 1 } else { 0 }));
+    computed.scan = Some(Scan {
+        single: single.collect(),
+        default,
+        claims,
+        product_of: Vec::new(),
+        left_out: Vec::new(),
+        product: Vec::new(),
+        search: Vec::new(),
+    });
+    paper::figures(computed).unwrap()
+}
+
 #[test]
-fn a_reproduction_writes_all_its_tables_and_figures_and_its_legends_hide_nothing() {
+fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column() {
     let coarse = Options {
         accuracy: 1e-4,
         draws: 0,
         ..Options::default()
     };
-    let computed = reproduce(&coarse, &Silent).unwrap();
-    for (name, figure) in paper::figures(&computed).unwrap() {
+    let mut computed = reproduce(&coarse, &Silent).unwrap();
+    for (name, figure) in pictures(&mut computed, 3) {
         assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");
+        let (smallest, width_mm) = smallest_type(&figure.svg());
+        // Scales of some 0.006 are written with six decimals, page sizes with two.
+        assert!(smallest > 6.0 - 5e-3, "{name}: type of {smallest} points");
+        assert_eq!(width_mm, 85.0, "{name} is not as wide as a column");
         assert!(figure.caption_text().len() > 40, "{name} has no caption");
     }
+    // A scan in which every switch moves something takes two columns at most.
+    let (_, wide) = pictures(&mut computed, 100).pop().unwrap();
+    let (smallest, width_mm) = smallest_type(&wide.svg());
+    assert!(smallest > 6.0 - 5e-3 && width_mm == 175.0, "{width_mm} mm");
+    computed.scan = None;
     let folder = std::env::temp_dir().join(format!("hertzchain-paper-{}", std::process::id()));
     computed.write_tables(&folder).unwrap();
     paper::write(&computed, &folder).unwrap();

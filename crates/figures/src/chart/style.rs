@@ -33,8 +33,8 @@ impl Style {
 
     /// For a chart inside a chart.
     pub(crate) const INSET: Self = Self {
-        small: 5.8,
-        label: 6.2,
+        small: 6.4,
+        label: 7.0,
         tick: 2.6,
         frame: 0.5,
         marker: 1.4,

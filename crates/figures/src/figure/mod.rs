@@ -13,9 +13,9 @@ use crate::rig::RigDrawing;
 use crate::text::{Anchor, TextLine};
 
 /// Width of a single journal column in millimetres.
-pub const SINGLE_COLUMN_MM: f64 = 86.0;
+pub const SINGLE_COLUMN_MM: f64 = 85.0;
 /// Width of a journal page of two columns in millimetres.
-pub const DOUBLE_COLUMN_MM: f64 = 178.0;
+pub const DOUBLE_COLUMN_MM: f64 = 175.0;
 
 /// What can be put into a figure.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub enum Panel {
     /// Verdicts on claims.
     Matrix(VerdictMatrix),
     /// A drawing of the apparatus.
-    Rig(RigDrawing),
+    Rig(Box<RigDrawing>),
 }
 
 impl From<Chart> for Panel {
@@ -43,7 +43,7 @@ impl From<VerdictMatrix> for Panel {
 
 impl From<RigDrawing> for Panel {
     fn from(rig: RigDrawing) -> Self {
-        Self::Rig(rig)
+        Self::Rig(Box::new(rig))
     }
 }
 

@@ -5,7 +5,7 @@ mod symbol;
 use symbol::draw_symbol;
 
 use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
-use crate::figure::{DOUBLE_COLUMN_MM, Figure};
+use crate::figure::{DOUBLE_COLUMN_MM, Figure, SINGLE_COLUMN_MM};
 use crate::text::{Anchor, TextLine, wrap};
 
 /// What was found about a claim.
@@ -46,18 +46,28 @@ impl Verdict {
 
 const FONT: f64 = 7.0;
 const LEADING: f64 = 8.8;
+/// Widest and narrowest room for the names of claims.
 const LABELS: f64 = 190.0;
-const SMALLEST_CELL: f64 = 10.0;
+const NARROWEST: f64 = 66.0;
+const SMALLEST_CELL: f64 = 9.0;
 const LARGEST_CELL: f64 = 40.0;
 const TALLEST_HEADER: f64 = 130.0;
 const PADDING: f64 = 4.0;
 const KEY: f64 = 18.0;
+/// Room that an entry of the key needs beside its name.
+const KEY_ROOM: f64 = 26.0;
+/// Room left of a line that holds throughout, for its symbol.
+const INDENT: f64 = 16.0;
+/// Margins of the page, left and right together.
+const MARGINS: f64 = 6.0;
 
 /// Rows are claims, columns readings, cells verdicts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct VerdictMatrix {
     columns: Vec<String>,
     rows: Vec<(String, Vec<Verdict>)>,
+    throughout: Vec<(Verdict, String)>,
+    notes: Vec<String>,
 }
 
 impl VerdictMatrix {
@@ -67,7 +77,7 @@ impl VerdictMatrix {
         let columns = columns.iter().map(|c| (*c).to_owned()).collect();
         Self {
             columns,
-            rows: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -79,26 +89,47 @@ impl VerdictMatrix {
         self
     }
 
-    /// The table as a figure of its own, as high as it needs to be and a
-    /// double column wide unless it has very many columns.
+    /// Adds claims that have one verdict in all columns, as a line of text
+    /// below the rows.
+    #[must_use]
+    pub fn throughout(mut self, verdict: Verdict, claims: &str) -> Self {
+        self.throughout.push((verdict, claims.into()));
+        self
+    }
+
+    /// Adds a remark below everything.
+    #[must_use]
+    pub fn note(mut self, text: &str) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// The table as a figure of its own, as high as it needs to be: one column
+    /// wide if that holds its cells, else two, or wider if it has very many.
     #[must_use]
     pub fn figure(self) -> Figure {
-        let layout = Layout::new(&self);
+        let narrow = Layout::new(&self, SINGLE_COLUMN_MM);
+        let (page_mm, layout) = if narrow.fits(SINGLE_COLUMN_MM) {
+            (SINGLE_COLUMN_MM, narrow)
+        } else {
+            (DOUBLE_COLUMN_MM, Layout::new(&self, DOUBLE_COLUMN_MM))
+        };
         let (width, height) = layout.size();
-        let mm = |points: f64| (points + 6.0) / PT_PER_MM;
-        Figure::new(mm(width), mm(height)).panel(self)
+        let mm = |points: f64| (points + MARGINS) / PT_PER_MM;
+        Figure::new(mm(width).max(page_mm), mm(height)).panel(self)
     }
 
     /// Draws the table, shrunk to fit the frame.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
-        let layout = Layout::new(self);
+        let layout = Layout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
         let (width, height) = layout.size();
-        let scale = (frame.width() / width)
-            .min(frame.height() / height)
-            .min(1.0);
+        let fit = (frame.width() / width).min(frame.height() / height);
+        // The page was made for it up to rounding.
+        let scale = if fit > 0.999 { 1.0 } else { fit };
         svg.open_scaled(Point::new(frame.x0, frame.y0), scale);
         layout.draw_header(svg, self);
-        layout.draw_rows(svg, self);
+        let y = layout.draw_rows(svg, self);
+        layout.draw_below(svg, y);
         layout.draw_key(svg);
         svg.close();
     }
@@ -107,6 +138,7 @@ impl VerdictMatrix {
 struct Layout {
     claims: Vec<Vec<TextLine>>,
     headers: Vec<TextLine>,
+    below: Vec<(Option<Verdict>, Vec<TextLine>)>,
     labels: f64,
     cell: f64,
     header: f64,
@@ -114,20 +146,20 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(matrix: &VerdictMatrix) -> Self {
+    /// For a page of this width.
+    fn new(matrix: &VerdictMatrix, page_mm: f64) -> Self {
+        let page = page_mm * PT_PER_MM - MARGINS;
+        let columns = matrix.columns.len().max(1) as f64;
+        let room = page - columns * SMALLEST_CELL - 2.0 * PADDING;
         let claims: Vec<Vec<TextLine>> = matrix
             .rows
             .iter()
-            .map(|(claim, _)| wrap(claim, FONT, LABELS, 4))
+            .map(|(claim, _)| wrap(claim, FONT, room.clamp(NARROWEST, LABELS), 4))
             .collect();
-        let widest = claims
-            .iter()
-            .flatten()
-            .map(TextLine::width)
-            .fold(40.0, f64::max);
+        let lines = claims.iter().flatten();
+        let widest = lines.map(TextLine::width).fold(40.0, f64::max);
         let labels = widest + 2.0 * PADDING;
-        let room = DOUBLE_COLUMN_MM * PT_PER_MM - 6.0 - labels;
-        let cell = (room / matrix.columns.len().max(1) as f64).clamp(SMALLEST_CELL, LARGEST_CELL);
+        let cell = ((page - labels) / columns).clamp(SMALLEST_CELL, LARGEST_CELL);
         let headers: Vec<TextLine> = matrix
             .columns
             .iter()
@@ -136,20 +168,47 @@ impl Layout {
         let longest = headers.iter().map(TextLine::width).fold(0.0, f64::max);
         let upright = longest <= cell - 3.0;
         let header = if upright { 1.3 * FONT } else { longest } + PADDING;
-        Self {
+        let mut layout = Self {
             claims,
             headers,
+            below: Vec::new(),
             labels,
             cell,
             header,
             upright,
-        }
+        };
+        layout.below = layout.lines_below(matrix, page);
+        layout
+    }
+
+    /// What stands below the rows, as wide as the page.
+    fn lines_below(
+        &self,
+        matrix: &VerdictMatrix,
+        page: f64,
+    ) -> Vec<(Option<Verdict>, Vec<TextLine>)> {
+        let width = page.max(self.size().0);
+        let same = matrix.throughout.iter().map(|(verdict, claims)| {
+            let lines = wrap(claims, FONT, width - INDENT, 30);
+            (Some(*verdict), lines)
+        });
+        let notes = matrix.notes.iter();
+        let notes = notes.map(|note| (None, wrap(note, FONT, width, 30)));
+        same.chain(notes).collect()
+    }
+
+    /// Whether everything is legible on a page of this width.
+    fn fits(&self, page_mm: f64) -> bool {
+        // Cells that fill the page may exceed it by rounding.
+        self.size().0 <= page_mm * PT_PER_MM - MARGINS + 1e-6
     }
 
     fn size(&self) -> (f64, f64) {
         let rows: f64 = (0..self.claims.len()).map(|i| self.row_height(i)).sum();
         let width = self.labels + self.cell * self.headers.len() as f64;
-        (width.max(self.key_width()), self.header + rows + KEY)
+        let below = self.below.iter().map(|(_, lines)| below_height(lines));
+        let height = self.header + rows + below.sum::<f64>() + KEY;
+        (width.max(self.key_width()), height)
     }
 
     fn row_height(&self, row: usize) -> f64 {
@@ -172,7 +231,8 @@ impl Layout {
         }
     }
 
-    fn draw_rows(&self, svg: &mut Svg, matrix: &VerdictMatrix) {
+    /// Returns where the last row ends.
+    fn draw_rows(&self, svg: &mut Svg, matrix: &VerdictMatrix) -> f64 {
         let (mut y, mut rules) = (self.header, PathData::new());
         let right = self.labels + self.cell * self.headers.len() as f64;
         for (row, (_, cells)) in matrix.rows.iter().enumerate() {
@@ -191,6 +251,23 @@ impl Layout {
         }
         rules.segment(Point::new(0.0, y), Point::new(right, y));
         svg.path(&rules, &Paint::line(Colour::grey(190), 0.4));
+        y
+    }
+
+    /// Claims with one verdict, and remarks.
+    fn draw_below(&self, svg: &mut Svg, mut y: f64) {
+        for (verdict, lines) in &self.below {
+            let middle = y + PADDING + 0.5 * LEADING;
+            let x = if verdict.is_some() { INDENT } else { 0.0 };
+            if let Some(verdict) = verdict {
+                draw_symbol(svg, *verdict, &Rect::sized(0.0, middle - 4.5, 11.0, 9.0));
+            }
+            for (i, line) in lines.iter().enumerate() {
+                let at = Point::new(x, middle + LEADING * i as f64);
+                line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+            }
+            y += below_height(lines);
+        }
     }
 
     fn draw_claim(&self, svg: &mut Svg, row: usize, middle: f64) {
@@ -205,7 +282,7 @@ impl Layout {
     fn key_width(&self) -> f64 {
         let widths = Verdict::ALL
             .iter()
-            .map(|v| TextLine::new(v.name(), FONT).width() + 32.0);
+            .map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
         widths.sum()
     }
 
@@ -221,9 +298,14 @@ impl Layout {
                 Anchor::LEFT_MIDDLE,
                 Colour::BLACK,
             );
-            x += name.width() + 32.0;
+            x += name.width() + KEY_ROOM;
         }
     }
+}
+
+/// Height of a line of text below the rows, however often it breaks.
+fn below_height(lines: &[TextLine]) -> f64 {
+    PADDING + LEADING * lines.len().max(1) as f64
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use super::Verdict;
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
-use crate::text::{Anchor, TextLine};
+use crate::text::{Anchor, LEAST_SIZE, TextLine};
 
 /// Fills `cell` and draws the symbol of a verdict in its middle.
 pub(super) fn draw_symbol(svg: &mut Svg, verdict: Verdict, cell: &Rect) {
@@ -27,7 +27,7 @@ pub(super) fn draw_symbol(svg: &mut Svg, verdict: Verdict, cell: &Rect) {
         }
         Verdict::InPart => draw_half_circle(svg, c, 0.8 * r),
         Verdict::NotDecidable => {
-            let mark = TextLine::bold("?", 2.6 * r);
+            let mark = TextLine::bold("?", (2.6 * r).max(LEAST_SIZE));
             mark.draw(svg, c, Anchor::MIDDLE, Colour::grey(90));
         }
     }

@@ -56,7 +56,11 @@ fn parts(budgets: &[Budget]) -> Vec<(String, Colour, Vec<f64>)> {
     let column = |of: &dyn Fn(&Budget) -> f64| budgets.iter().map(of).collect::<Vec<f64>>();
     let mut parts = vec![
         ("kinetic".to_owned(), Colour::SKY, column(&|b| b.kinetic_j)),
-        ("elastic".to_owned(), Colour::BLUE, column(&|b| b.elastic_j)),
+        (
+            "elastic".to_owned(),
+            Colour::GREEN,
+            column(&|b| b.elastic_j),
+        ),
     ];
     let colours = [Colour::OCHRE, Colour::VERMILION, Colour::PURPLE];
     let laws = budgets.first().map_or(&[][..], |first| &first.dissipated);

@@ -1,66 +1,167 @@
-//! The rig, drawn from an experiment.
+//! The rig, drawn from an experiment: what the simulation uses, and around it
+//! what the file's `[rig]` describes.
 
 use super::PaperError;
 use crate::{FarEnd, Figure, RigDrawing};
-use hertzchain_chain::{Chain, FarEnd as ChainEnd, Push, Start};
-use hertzchain_experiment::Experiment;
-use hertzchain_experiment::reading::{PRELOAD_N, STOP_MASS_KG};
+use hertzchain_chain::{Bead, Chain, FarEnd as ChainEnd, Push, Start};
+use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
 use hertzchain_study::reproduce::{Cases, ReproduceError};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
 pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {
     let missing = || ReproduceError::NoCase("motor".to_owned());
     let experiment = cases.get("motor").ok_or_else(missing)?;
-    let drawing = rig(experiment)?;
-    // What the rig has, whatever a reading of the model leaves out.
-    let complete = RigDrawing {
-        bead_material: "AISI 316".to_owned(),
+    let drawing = RigDrawing {
+        // The figures that follow have many speeds.
         striker_label: "$v_0$".to_owned(),
-        liquid: "oil".to_owned(),
-        preload_n: Some(PRELOAD_N),
-        stop_mass_kg: Some(STOP_MASS_KG),
-        actuator: true,
-        photogate: true,
-        recorder: "charge amplifier, 16-bit ADC".to_owned(),
-        ..drawing
+        ..rig(experiment)?
     };
-    Ok(complete.figure().title("The rig").caption(
-        "The paper's rig, drawn from the experiment file of the motor oil: what moves, what is \
-         wet, where forces are measured. Not to scale.",
-    ))
+    let caption = format!(
+        "The rig as the experiment file of the motor oil has it: what moves, what is wet, where \
+         forces are measured.{} Not to scale.",
+        beside_the_model(experiment)?
+    );
+    Ok(drawing.figure().title("The rig").caption(&caption))
 }
 
 /// A drawing of what an experiment file describes.
+///
+/// Where both the model and `[rig]` give a number, the model's is drawn.
 ///
 /// # Errors
 /// A chain that can't be set up.
 pub fn rig(experiment: &Experiment) -> Result<RigDrawing, PaperError> {
     let (chain, _warnings) = experiment.chain(None).map_err(ReproduceError::from)?;
     let beads = chain.beads.len();
-    let liquid = experiment.liquid().map(|liquid| liquid.name.clone());
+    let liquid = experiment.liquid().map(|liquid| unbroken(&liquid.name));
+    let named = |kind| part(experiment, kind).map_or(String::new(), |part| label(experiment, part));
     Ok(RigDrawing {
         beads,
-        bead_radius_m: chain.beads.first().map_or(0.0, |bead| bead.radius_m),
-        striker_radius_m: striker(&chain),
-        striker_label: experiment
-            .speed_m_s()
-            .map_or(String::new(), |v| format!("{v} m/s")),
+        bead_label: bead_label(experiment, &chain.beads),
+        striker_ratio: striker_ratio(&chain),
+        striker_label: striker_label(experiment),
         sensor_bead: Some(experiment.sensor_bead()),
+        sensor_label: named(RigPartKind::Sensor),
         wet_contacts: wet_contacts(experiment, beads),
         liquid: liquid.unwrap_or_default(),
-        preload_n: preload(&chain.push),
         incline_deg: chain.incline_rad.to_degrees(),
         far_end: far_end(&chain.far),
         wall_sensor: experiment.has_wall(),
-        stop_mass_kg: stop_mass(&chain.far),
-        ..RigDrawing::default()
+        actuator: named(RigPartKind::Actuator),
+        repositioner: named(RigPartKind::Repositioner),
+        photogate: named(RigPartKind::Photogate),
+        springs: springs(experiment, &chain.push),
+        recorder: named(RigPartKind::Recorder),
+        stop: named(RigPartKind::Stop),
+        end_structure: end_structure(experiment, &chain.far),
+        bar: named(RigPartKind::Bar),
     })
 }
 
-fn striker(chain: &Chain) -> Option<f64> {
+/// A part of the file's `[rig]`.
+fn part(experiment: &Experiment, kind: RigPartKind) -> Option<&RigPart> {
+    experiment.rig().and_then(|rig| rig.part(kind))
+}
+
+/// What of the rig the model leaves out, as a sentence of a caption.
+fn beside_the_model(experiment: &Experiment) -> Result<String, PaperError> {
+    let (chain, _warnings) = experiment.chain(None).map_err(ReproduceError::from)?;
+    let name = |kind| part(experiment, kind).map(|part| part.name.clone());
+    let pushed = chain.push.force_n() > 0.0;
+    let absent = [
+        name(RigPartKind::Springs).filter(|_| !pushed),
+        name(RigPartKind::EndStructure).filter(|_| stop_mass(&chain.far).is_none()),
+        name(RigPartKind::Bar),
+    ];
+    let absent: Vec<String> = absent.into_iter().flatten().collect();
+    Ok(match absent.split_last() {
+        None => String::new(),
+        Some((only, [])) => format!(" The model computes without the {only}."),
+        Some((last, others)) => {
+            let others = others.join(", the ");
+            format!(" The model computes without the {others} and the {last}.")
+        }
+    })
+}
+
+/// A part's name and numbers.
+fn label(experiment: &Experiment, part: &RigPart) -> String {
+    let recorded = match (part.bits, part.rate_hz) {
+        (Some(bits), Some(rate)) => Some(format!("{bits}-bit ADC at {}", kilohertz(rate))),
+        (Some(bits), None) => Some(format!("{bits}-bit ADC")),
+        (None, Some(rate)) => Some(kilohertz(rate)),
+        (None, None) => None,
+    };
+    let numbers = [
+        part.mass_kg.map(|mass| format!("{}\u{a0}kg", digits(mass))),
+        part.length_m
+            .map(|length| format!("{}\u{a0}mm", digits(length * 1e3))),
+        part.force_n.map(force),
+        recorded.map(|words| unbroken(&words)),
+    ];
+    let numbers = match experiment.units() {
+        Units::Si => numbers.into_iter().flatten().collect(),
+        Units::Dimensionless => Vec::new(),
+    };
+    let words: Vec<String> = std::iter::once(part.name.clone()).chain(numbers).collect();
+    words.join(", ")
+}
+
+fn kilohertz(hertz: f64) -> String {
+    format!("{} kHz", digits(hertz * 1e-3))
+}
+
+/// Words that stay on one line.
+fn unbroken(words: &str) -> String {
+    words.replace(' ', "\u{a0}")
+}
+
+fn force(newtons: f64) -> String {
+    format!("$F$\u{a0}=\u{a0}{}\u{a0}N", digits(newtons))
+}
+
+/// A number with at most five digits.
+fn digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+/// Radius and mass where all beads have the same.
+fn bead_label(experiment: &Experiment, beads: &[Bead]) -> String {
+    let words = experiment.rig().and_then(|rig| rig.beads.clone());
+    let words = words.map(|words| unbroken(&words));
+    let alike = |of: fn(&Bead) -> f64| {
+        let first = beads.first().map(of)?;
+        beads.iter().all(|bead| of(bead) == first).then_some(first)
+    };
+    let si = experiment.units() == Units::Si;
+    let radius = alike(|bead| bead.radius_m).filter(|_| si);
+    let mass = alike(|bead| bead.mass_kg).filter(|_| si);
+    let numbers = [
+        radius.map(|m| format!("$R$\u{a0}=\u{a0}{}\u{a0}mm", digits(m * 1e3))),
+        mass.map(|kg| format!("$m$\u{a0}=\u{a0}{}\u{a0}g", digits(kg * 1e3))),
+    ];
+    let all: Vec<String> = words
+        .into_iter()
+        .chain(numbers.into_iter().flatten())
+        .collect();
+    all.join(", ")
+}
+
+fn striker_ratio(chain: &Chain) -> Option<f64> {
+    let first = chain.beads.first()?;
     match &chain.start {
-        Start::Striker { bead, .. } => Some(bead.radius_m),
+        Start::Striker { bead, .. } => Some(bead.radius_m / first.radius_m),
         Start::Driven { .. } | Start::Free => None,
+    }
+}
+
+fn striker_label(experiment: &Experiment) -> String {
+    let speed = experiment.speed_m_s().map(digits);
+    match (speed, experiment.units()) {
+        (Some(speed), Units::Si) => format!("$v_0$\u{a0}=\u{a0}{speed}\u{a0}m/s"),
+        (Some(speed), Units::Dimensionless) => format!("$v_0$\u{a0}=\u{a0}{speed}"),
+        (None, _) => String::new(),
     }
 }
 
@@ -70,8 +171,19 @@ fn wet_contacts(experiment: &Experiment, beads: usize) -> Option<(usize, usize)>
     spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-fn preload(push: &Push) -> Option<f64> {
-    (push.force_n() > 0.0).then(|| push.force_n())
+/// The push of the model, or the springs of the rig.
+fn springs(experiment: &Experiment, push: &Push) -> String {
+    let described = part(experiment, RigPartKind::Springs);
+    let acting = Some(push.force_n()).filter(|newtons| *newtons > 0.0);
+    let name = described.map_or("push", |part| &part.name);
+    match (acting, described) {
+        (Some(newtons), _) if experiment.units() == Units::Si => {
+            format!("{name}, {}", force(newtons))
+        }
+        (Some(_), _) => name.to_owned(),
+        (None, Some(part)) => label(experiment, part),
+        (None, None) => String::new(),
+    }
 }
 
 fn far_end(far: &ChainEnd) -> FarEnd {
@@ -79,6 +191,20 @@ fn far_end(far: &ChainEnd) -> FarEnd {
         ChainEnd::HalfBead { .. } | ChainEnd::Stop { .. } => FarEnd::HalfBead,
         ChainEnd::Plane { .. } | ChainEnd::PlaneStop { .. } => FarEnd::Plane,
         ChainEnd::Periodic { .. } | ChainEnd::Free => FarEnd::Open,
+    }
+}
+
+/// The stop of the model, or the structure of the rig.
+fn end_structure(experiment: &Experiment, far: &ChainEnd) -> String {
+    let described = part(experiment, RigPartKind::EndStructure);
+    let name = described.map_or("stop", |part| &part.name);
+    match (stop_mass(far), described) {
+        (Some(mass_kg), _) if experiment.units() == Units::Si => {
+            format!("{name}, {}\u{a0}kg", digits(mass_kg))
+        }
+        (Some(_), _) => name.to_owned(),
+        (None, Some(part)) => label(experiment, part),
+        (None, None) => String::new(),
     }
 }
 

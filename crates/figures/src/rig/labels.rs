@@ -1,33 +1,34 @@
-//! Labels with leader lines that keep clear of each other.
+//! Labels with upright leaders that keep clear of each other.
 
+use super::stack::{Stack, stacked};
 use super::{FONT, INK, WIDTH};
 use crate::draw::{Colour, Paint, PathData, Point, Svg};
 use crate::text::{Anchor, TextLine, wrap};
 
-const LEADING: f64 = 8.4;
-const GAP: f64 = 6.0;
-const WIDEST: f64 = 74.0;
-
-/// Lowest line of labels above the row; leaders bend here.
-const ABOVE: f64 = 34.0;
-/// First line of labels below the row.
-const BELOW: f64 = 140.0;
-/// Leaders below the row run straight down to here.
-const ELBOW: f64 = 126.0;
+/// Distance of the lines of one label.
+const LEADING: f64 = 8.2;
+/// From the lower edge of a line's room to its baseline.
+const FOOT: f64 = 2.1;
+/// Widest line.
+const WIDEST: f64 = 122.0;
 
 struct Label {
     anchor: Point,
     lines: Vec<TextLine>,
-    centre: f64,
+    colour: Colour,
 }
 
 impl Label {
     fn width(&self) -> f64 {
         self.lines.iter().map(TextLine::width).fold(0.0, f64::max)
     }
+
+    fn height(&self) -> f64 {
+        LEADING * self.lines.len() as f64
+    }
 }
 
-/// The labels of a drawing, in two rows.
+/// The labels of a drawing, above and below the row.
 #[derive(Default)]
 pub(super) struct Labels {
     above: Vec<Label>,
@@ -36,88 +37,83 @@ pub(super) struct Labels {
 
 impl Labels {
     pub(super) fn above(&mut self, anchor: Point, text: &str) {
-        self.above.push(label(anchor, text));
+        self.above.push(label(anchor, text, Colour::BLACK));
     }
 
     pub(super) fn below(&mut self, anchor: Point, text: &str) {
-        self.below.push(label(anchor, text));
+        self.coloured(anchor, text, Colour::BLACK);
     }
 
-    pub(super) fn draw(mut self, svg: &mut Svg) {
-        arrange(&mut self.above);
-        arrange(&mut self.below);
-        for label in &self.above {
-            let top = ABOVE - LEADING * (label.lines.len() as f64 - 1.0);
-            let bend = Point::new(label.centre, ABOVE + 4.0);
-            draw_label(svg, label, top, &[bend, label.anchor]);
-        }
-        for label in &self.below {
-            let bend = Point::new(label.centre, BELOW - 7.5);
-            let elbow = Point::new(label.anchor.x, ELBOW.max(label.anchor.y));
-            draw_label(svg, label, BELOW, &[bend, elbow, label.anchor]);
+    pub(super) fn coloured(&mut self, anchor: Point, text: &str, colour: Colour) {
+        self.below.push(label(anchor, text, colour));
+    }
+
+    /// The labels with their places.
+    pub(super) fn arranged(self) -> Arranged {
+        Arranged {
+            upper: arranged(&self.above),
+            lower: arranged(&self.below),
+            labels: self,
         }
     }
 }
 
-fn label(anchor: Point, text: &str) -> Label {
+/// Labels with their places.
+pub(super) struct Arranged {
+    labels: Labels,
+    upper: Stack,
+    lower: Stack,
+}
+
+impl Arranged {
+    /// Room that the labels take above and below the row.
+    pub(super) fn heights(&self) -> (f64, f64) {
+        (self.upper.height, self.lower.height)
+    }
+
+    /// Draws the labels beyond the two lines that bound the row.
+    pub(super) fn draw(&self, svg: &mut Svg, upper: f64, lower: f64) {
+        for (label, place) in self.labels.above.iter().zip(&self.upper.places) {
+            let edge = upper - place.offset;
+            draw_label(svg, label, place.left, edge - label.height(), edge);
+        }
+        for (label, place) in self.labels.below.iter().zip(&self.lower.places) {
+            let edge = lower + place.offset;
+            draw_label(svg, label, place.left, edge, edge);
+        }
+    }
+}
+
+fn arranged(labels: &[Label]) -> Stack {
+    let sizes = |label: &Label| (label.anchor.x, label.width(), label.height());
+    stacked(&labels.iter().map(sizes).collect::<Vec<_>>(), WIDTH)
+}
+
+fn label(anchor: Point, text: &str, colour: Colour) -> Label {
     Label {
         anchor,
         lines: wrap(text, FONT, WIDEST, 3),
-        centre: anchor.x,
+        colour,
     }
 }
 
-fn draw_label(svg: &mut Svg, label: &Label, top: f64, leader: &[Point]) {
+/// A label whose text begins at `left` and `top`, its leader ending at `edge`.
+fn draw_label(svg: &mut Svg, label: &Label, left: f64, top: f64, edge: f64) {
     let mut path = PathData::new();
-    path.polyline(leader);
+    path.segment(label.anchor, Point::new(label.anchor.x, edge));
     svg.path(&path, &Paint::line(INK, 0.45));
     svg.circle(label.anchor, 0.9, &Paint::fill(INK));
+    let width = label.width();
+    // Lines stand on the side of the leader.
+    let across = ((label.anchor.x - left) / width.max(1.0)).clamp(0.0, 1.0);
+    let across = match across {
+        share if share < 0.25 => 0.0,
+        share if share > 0.75 => 1.0,
+        _ => 0.5,
+    };
     for (i, line) in label.lines.iter().enumerate() {
-        let at = Point::new(label.centre, top + LEADING * i as f64);
-        line.draw(svg, at, Anchor::CENTRE, Colour::BLACK);
-    }
-}
-
-/// Moves labels sideways, in the order of what they name, until none overlap.
-fn arrange(labels: &mut [Label]) {
-    labels.sort_by(|a, b| a.anchor.x.total_cmp(&b.anchor.x));
-    let widths: Vec<f64> = labels.iter().map(Label::width).collect();
-    let mut centres: Vec<f64> = labels.iter().map(|l| l.anchor.x).collect();
-    spread(&mut centres, &widths);
-    labels
-        .iter_mut()
-        .zip(centres)
-        .for_each(|(label, x)| label.centre = x);
-}
-
-/// Moves texts of the given widths apart, keeping their order, and onto the page.
-pub(super) fn spread(centres: &mut [f64], widths: &[f64]) {
-    let mut left = 0.0;
-    for (centre, width) in centres.iter_mut().zip(widths) {
-        *centre = centre.max(left + 0.5 * width);
-        left = *centre + 0.5 * width + GAP;
-    }
-    let mut right = WIDTH;
-    for (centre, width) in centres.iter_mut().zip(widths).rev() {
-        *centre = centre.min(right - 0.5 * width);
-        right = *centre - 0.5 * width - GAP;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn crowded_labels_are_spread_without_overlap() {
-        let at = |x: f64| label(Point::new(x, 50.0), "steel stop");
-        let mut labels = vec![at(490.0), at(480.0), at(485.0), at(10.0)];
-        arrange(&mut labels);
-        for pair in labels.windows(2) {
-            let gap = pair[1].centre - pair[0].centre;
-            // Rounding of a sum of a few lengths.
-            assert!(gap >= 0.5 * (pair[0].width() + pair[1].width()) + GAP - 1e-9);
-        }
-        assert!(labels[3].centre + 0.5 * labels[3].width() <= WIDTH);
+        let baseline = top + LEADING * (i + 1) as f64 - FOOT;
+        let at = Point::new(left + across * width, baseline);
+        line.draw(svg, at, Anchor { across, up: 0.0 }, label.colour);
     }
 }

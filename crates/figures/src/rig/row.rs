@@ -1,10 +1,11 @@
 //! The row of beads with its contacts and the sensor bead.
 
-use super::labels::{Labels, spread};
-use super::layout::Layout;
-use super::{AXIS, FONT, INK, RigDrawing, millimetres};
-use crate::draw::{Colour, Paint, PathData, Point, Svg};
-use crate::text::{Anchor, TextLine};
+use super::labels::Labels;
+use super::launcher::after_comma;
+use super::layout::{Layout, NUMBER};
+use super::{INK, RigDrawing};
+use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
+use crate::text::{Anchor, LEAST_SIZE, TextLine};
 
 /// Polished steel.
 pub(super) const STEEL: Colour = Colour(176, 184, 194);
@@ -12,10 +13,6 @@ pub(super) const STEEL: Colour = Colour(176, 184, 194);
 const OIL: Colour = Colour(224, 160, 30);
 /// A piezoelectric disc.
 pub(super) const PIEZO: Colour = Colour(150, 40, 110);
-/// Height of the line that groups dry and wet contacts.
-const BRACE: f64 = 111.0;
-/// Widest text of one such group.
-const WIDEST: f64 = 150.0;
 
 /// Draws oil, beads and elisions, and labels them.
 pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
@@ -23,11 +20,11 @@ pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mu
         draw_oil_beside(svg, rig, layout, contact);
     }
     for (number, x) in &layout.beads {
-        draw_bead(svg, Point::new(*x, AXIS), layout.radius());
+        draw_bead(svg, Point::new(*x, 0.0), layout.radius());
         if rig.sensor() == Some(*number) {
-            draw_sensor(svg, layout, *x, *number, labels);
+            draw_sensor(svg, rig, layout, (*number, *x), labels);
         } else {
-            draw_number(svg, Point::new(*x, AXIS), layout, *number);
+            draw_number(svg, Point::new(*x, 0.0), layout, *number);
         }
     }
     for x in &layout.elisions {
@@ -45,7 +42,7 @@ fn draw_oil_beside(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, index: usiz
     let neighbours = next.is_none_or(|n| n == contact + 1);
     let touched = contact > 0 && neighbours;
     if touched && rig.is_wet(contact) {
-        draw_oil(svg, Point::new(x, AXIS), layout.radius());
+        draw_oil(svg, Point::new(x, 0.0), layout.radius());
     }
 }
 
@@ -74,136 +71,105 @@ pub(super) fn draw_bead(svg: &mut Svg, centre: Point, radius: f64) {
     );
 }
 
+/// The bead's number, where it is legible inside.
 fn draw_number(svg: &mut Svg, centre: Point, layout: &Layout, number: usize) {
-    let line = TextLine::new(&number.to_string(), 6.4).fitted(1.4 * layout.radius());
-    line.draw(svg, centre, Anchor::MIDDLE, Colour::BLACK);
+    let line = TextLine::new(&number.to_string(), LEAST_SIZE);
+    // What rounding of the layout leaves over still fits.
+    if line.width() <= NUMBER * layout.diameter * 1.001 {
+        line.draw(svg, centre, Anchor::MIDDLE, Colour::BLACK);
+    }
 }
 
 /// A bead cut in two with a sensor disc between the halves.
-fn draw_sensor(svg: &mut Svg, layout: &Layout, x: f64, number: usize, labels: &mut Labels) {
+fn draw_sensor(
+    svg: &mut Svg,
+    rig: &RigDrawing,
+    layout: &Layout,
+    (number, x): (usize, f64),
+    labels: &mut Labels,
+) {
     let r = layout.radius();
-    let disc = crate::draw::Rect::sized(x - 1.5, AXIS - 0.97 * r, 3.0, 1.94 * r);
-    svg.rect(&disc.grown(0.7), &Paint::fill(Colour::WHITE));
+    let disc = Rect::sized(x - 1.3, -0.97 * r, 2.6, 1.94 * r);
+    svg.rect(&disc.grown(0.6), &Paint::fill(Colour::WHITE));
     svg.rect(&disc, &Paint::fill(PIEZO));
-    let text = format!("sensor bead $n$ = {number}, split, with piezo disc");
-    labels.below(Point::new(x, AXIS + 0.9 * r), &text);
+    let with = match rig.sensor_label.as_str() {
+        "" => String::new(),
+        label => format!(" with {label}"),
+    };
+    let text = format!("split bead $n$ = {number}{with}");
+    labels.below(Point::new(x, 0.9 * r), &text);
 }
 
 fn draw_dots(svg: &mut Svg, x: f64, radius: f64) {
-    for offset in [-0.5, 0.0, 0.5] {
-        svg.circle(
-            Point::new(x + offset * radius, AXIS),
-            0.9,
-            &Paint::fill(INK),
-        );
+    for offset in [-0.55, 0.0, 0.55] {
+        let at = Point::new(x + offset * radius, 0.0);
+        svg.circle(at, 0.75, &Paint::fill(INK));
     }
 }
 
 fn label_beads(rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
-    let Some((_, x)) = layout
+    let mut others = layout
         .beads
         .iter()
-        .find(|(n, _)| Some(*n) != rig.sensor() && *n > 1)
-    else {
+        .filter(|(n, _)| Some(*n) != rig.sensor());
+    let Some((_, x)) = others.find(|(n, _)| *n > 1) else {
         return;
     };
-    let mut text = format!("{} beads", rig.beads);
-    if !rig.bead_material.is_empty() {
-        let material = rig.bead_material.replace(' ', "\u{a0}");
-        text.push_str(&format!(" of {material}"));
-    }
-    if rig.bead_radius_m > 0.0 && rig.bead_radius_m.is_finite() {
-        text.push_str(&format!(", $R$ = {}", millimetres(rig.bead_radius_m)));
-    }
-    labels.above(Point::new(*x, AXIS - 0.8 * layout.radius()), &text);
-}
-
-/// A line under a group of contacts with its text.
-struct Brace {
-    from: f64,
-    to: f64,
-    text: TextLine,
-    colour: Colour,
+    let noun = if rig.beads == 1 { "bead" } else { "beads" };
+    let text = format!("{} {noun}{}", rig.beads, after_comma(&rig.bead_label));
+    labels.above(Point::new(*x, -0.8 * layout.radius()), &text);
 }
 
 /// Lines under the row that say which contacts are dry and which wet.
-pub(super) fn draw_braces(svg: &mut Svg, rig: &RigDrawing, layout: &Layout) {
-    let leader = rig.sensor().and_then(|n| layout.bead(n));
-    let braces: Vec<Brace> = groups(rig)
-        .into_iter()
-        .map(|g| brace(rig, layout, g))
-        .collect();
-    let widths: Vec<f64> = braces.iter().map(|b| b.text.width()).collect();
-    let mut centres: Vec<f64> = braces
-        .iter()
-        .map(|b| brace_text(b.from, b.to, 0.5 * b.text.width(), leader))
-        .collect();
-    spread(&mut centres, &widths);
-    for (brace, centre) in braces.iter().zip(centres) {
-        draw_brace(svg, brace, centre);
+pub(super) fn draw_braces(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
+    for (first, last, wet) in groups(rig) {
+        let from = layout.contact(first) - 0.22 * layout.diameter;
+        let to = layout.contact(last) + 0.22 * layout.diameter;
+        let colour = if wet {
+            OIL.mixed(Colour::BLACK, 0.35)
+        } else {
+            INK
+        };
+        draw_brace(svg, layout.brace(), (from, to), colour);
+        let leader = rig.sensor().and_then(|n| layout.bead(n));
+        let at = Point::new(brace_label(from, to, leader), layout.brace());
+        labels.coloured(at, &brace_text(rig, (first, last, wet)), colour);
     }
 }
 
-fn brace(rig: &RigDrawing, layout: &Layout, (first, last, wet): (usize, usize, bool)) -> Brace {
+fn brace_text(rig: &RigDrawing, (first, last, wet): (usize, usize, bool)) -> String {
     let contacts = if first == last {
         format!("contact {first}")
     } else {
         format!("contacts {first}–{last}")
     };
-    let text = match (wet, rig.liquid.is_empty()) {
+    match (wet, rig.liquid.is_empty()) {
         (false, _) => format!("{contacts} dry"),
         (true, true) => format!("{contacts} wet"),
         (true, false) => format!("{contacts} wet: {}", rig.liquid),
-    };
-    Brace {
-        from: layout.contact(first) - 0.22 * layout.diameter,
-        to: layout.contact(last) + 0.22 * layout.diameter,
-        text: TextLine::new(&text, FONT).fitted(WIDEST),
-        colour: if wet {
-            OIL.mixed(Colour::BLACK, 0.3)
-        } else {
-            INK
-        },
     }
 }
 
-fn draw_brace(svg: &mut Svg, brace: &Brace, centre: f64) {
-    let Brace {
-        from,
-        to,
-        text,
-        colour,
-    } = brace;
-    let corners = [
-        (*from, BRACE - 4.0),
-        (*from, BRACE),
-        (*to, BRACE),
-        (*to, BRACE - 4.0),
-    ];
+fn draw_brace(svg: &mut Svg, y: f64, (from, to): (f64, f64), colour: Colour) {
+    let corners = [(from, y - 3.0), (from, y), (to, y), (to, y - 3.0)];
     let mut path = PathData::new();
     path.polyline(&corners.map(|(x, y)| Point::new(x, y)));
-    svg.path(&path, &Paint::line(*colour, 0.9));
-    text.draw(
-        svg,
-        Point::new(centre, BRACE + 8.5),
-        Anchor::CENTRE,
-        *colour,
-    );
+    svg.path(&path, &Paint::line(colour, 0.9));
 }
 
-/// Middle of a brace's text: the middle, or off the leader that runs through it.
-fn brace_text(from: f64, to: f64, half: f64, leader: Option<f64>) -> f64 {
+/// Where the leader of a brace's label begins: its middle, or beside the
+/// sensor's leader if that runs through there.
+fn brace_label(from: f64, to: f64, sensor: Option<f64>) -> f64 {
     let middle = 0.5 * (from + to);
-    match leader.filter(|x| (x - middle).abs() < half + 4.0) {
-        Some(x) if x - from > to - x => x - half - 4.0,
-        Some(x) => x + half + 4.0,
+    match sensor.filter(|x| (x - middle).abs() < 8.0) {
+        Some(x) => (x + 8.0).min(0.5 * (middle + to)),
         None => middle,
     }
 }
 
 /// Neighbouring contacts of one kind: first, last, wet.
 fn groups(rig: &RigDrawing) -> Vec<(usize, usize, bool)> {
-    let begin = usize::from(rig.striker_radius_m.is_none());
+    let begin = usize::from(rig.striker_ratio.is_none());
     let end = if rig.far_end == super::FarEnd::Open {
         rig.beads.saturating_sub(1)
     } else {
@@ -242,7 +208,7 @@ mod tests {
         ] {
             let rig = RigDrawing {
                 beads: 40,
-                striker_radius_m: Some(1.0),
+                striker_ratio: Some(1.0),
                 wet_contacts,
                 ..RigDrawing::default()
             };

@@ -12,5 +12,5 @@ mod markup;
 mod wrap;
 
 pub(crate) use font::GlyphId;
-pub(crate) use line::{Anchor, TextLine};
+pub(crate) use line::{Anchor, LEAST_SIZE, TextLine};
 pub(crate) use wrap::wrap;

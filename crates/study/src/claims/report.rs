@@ -50,6 +50,7 @@ fn row(judged: &Judged) -> Value {
             "draws": rounded.draws,
             "verdicts": counts,
             "within_accuracy": rounded.open,
+            "draws_with_value": rounded.with_value,
             "value_range": rounded.range.map(|(low, high)| [low, high]),
         });
         row.insert("rounding".to_owned(), rounding);
@@ -153,7 +154,14 @@ fn rounding(page: &mut String, judged: &Judged, rounded: &Rounded) {
         0 => String::new(),
         open => format!(" ({open} of them by less than their accuracy)"),
     };
-    let range = rounded_text(judged).map_or(String::new(), |range| format!("; computed: {range}"));
+    let in_some = match rounded.with_value < rounded.draws {
+        true => format!(" in the {} that have it", rounded.with_value),
+        false => String::new(),
+    };
+    let range = rounded_text(judged);
+    let range = range.map_or(String::new(), |range| {
+        format!("; computed: {range}{in_some}")
+    });
     let _ = writeln!(
         page,
         "- Rounding of the printed constants, {} draws: {}{open}{range}. The constants as printed give: {}.",

@@ -13,7 +13,9 @@ pub struct Rounded {
     pub verdicts: [usize; 4],
     /// Draws whose numbers lie on their side by less than their accuracy.
     pub open: usize,
-    /// Smallest and largest deciding number of the draws that had one.
+    /// Draws that had a deciding number: a passage of 1 may be missing.
+    pub with_value: usize,
+    /// Smallest and largest deciding number of these.
     pub range: Option<(f64, f64)>,
 }
 
@@ -22,7 +24,7 @@ impl Rounded {
     fn of(findings: &[Finding]) -> Self {
         let count = |verdict| findings.iter().filter(|f| f.leaning == verdict).count();
         let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
-        let range = values.fold(None, |range: Option<(f64, f64)>, v| {
+        let range = values.clone().fold(None, |range: Option<(f64, f64)>, v| {
             let (low, high) = range.unwrap_or((v, v));
             Some((low.min(v), high.max(v)))
         });
@@ -30,6 +32,7 @@ impl Rounded {
             draws: findings.len(),
             verdicts: Verdict::ALL.map(count),
             open: findings.iter().filter(|f| f.is_open()).count(),
+            with_value: values.count(),
             range,
         }
     }

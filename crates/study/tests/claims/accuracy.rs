@@ -16,7 +16,7 @@ fn all_evidence() -> Vec<Evidence> {
 }
 
 #[test]
-fn only_counts_that_no_reading_is_near_to_changing_are_exact() {
+fn only_what_is_counted_far_from_a_change_is_exact() {
     for evidence in all_evidence() {
         for judge in claims().unwrap() {
             let finding = judge.decide(&evidence);
@@ -44,6 +44,27 @@ fn a_count_that_a_reading_could_change_is_as_unsure_as_that() {
     assert_eq!((finding.value, finding.accuracy), (1.0, 1.0));
     let nearest = finding.nearest_change.unwrap();
     assert!(nearest.margin < nearest.accuracy, "{nearest:?}");
+}
+
+#[test]
+fn a_ratio_of_1_at_the_only_passage_leaves_the_count_exact() {
+    let mut evidence = agreeing();
+    // Whichever side these lie on: one of them alone makes no other passage, both
+    // together may pass 1 back and forth.
+    let near_1 = |evidence: &mut Evidence, speed: f64| {
+        each(evidence, "pump", |p| {
+            if p.speed_m_s == speed {
+                p.tof_incident_s = dry(speed).0;
+                p.accuracy_reached = 1e-6;
+            }
+        });
+    };
+    near_1(&mut evidence, 1.0);
+    let one = decide("pump-crosses-once", &evidence);
+    assert_eq!((one.verdict, one.accuracy), (Verdict::Holds, 0.0));
+    near_1(&mut evidence, 1.152);
+    let two = decide("pump-crosses-once", &evidence);
+    assert_eq!((two.verdict, two.accuracy), (Verdict::NotDecidable, 1.0));
 }
 
 /// Signs from a counter, without pattern enough to matter.

@@ -267,6 +267,20 @@ fn a_draw_on_the_other_side_flips_however_coarse_it_is() {
 }
 
 #[test]
+fn the_page_tells_the_range_of_what_rounding_flips_and_how_many_draws_have_a_value() {
+    let printed = agreeing();
+    let mut draw = printed.clone();
+    each(&mut draw, "pump", |p| p.tof_incident_s *= 1.1);
+    let judged = judge_all_rounded(&claims().unwrap(), &printed, &[printed.clone(), draw]);
+    let crossing = judged.iter().find(|j| j.claim.id == "pump-crossing");
+    assert_eq!(crossing.unwrap().verdict, Verdict::NotDecidable);
+    let page = claims_markdown(&judged, "as made up");
+    let line =
+        "2 draws: holds in 1, fails in 1; computed: 1.09999 to 1.09999 m/s in the 1 that have it.";
+    assert!(page.contains(line), "{page}");
+}
+
+#[test]
 fn there_are_more_than_fifteen_claims_and_each_says_why() {
     let all = claims().unwrap();
     assert!(all.len() > 15);

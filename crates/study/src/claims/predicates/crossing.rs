@@ -43,10 +43,15 @@ fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<Ratio> {
     case.map_or(Vec::new(), |case| evidence.ratios(case))
 }
 
+/// An upward passage counts 1, a downward one −2: the sum is 1 for one upward
+/// passage alone.
+const UPWARD: f64 = 1.0;
+const DOWNWARD: f64 = -2.0;
+
 /// Upward passages less twice the downward ones.
 fn count(ratios: &[Ratio]) -> f64 {
     let (up, down) = crossings(ratios);
-    up.len() as f64 - 2.0 * down.len() as f64
+    up.len() as f64 * UPWARD + down.len() as f64 * DOWNWARD
 }
 
 /// Absolute accuracy of a ratio of two ToFs.
@@ -59,25 +64,36 @@ fn is_open(ratio: &Ratio) -> bool {
     (ratio.incident - 1.0).abs() <= unsure(ratio)
 }
 
-/// By how much the count may be wrong: what it changes, summed over all ratios,
-/// when a ratio that is 1 within its accuracy is put below or above it. 0 when
-/// there is none, for then the count is that of the exact ratios.
+/// The smallest or largest count when every ratio that is 1 within its accuracy
+/// may lie below or above it: of all ways to end below and above 1, the best
+/// is carried from ratio to ratio.
+fn extreme_count(ratios: &[Ratio], pick: fn(f64, f64) -> f64) -> f64 {
+    // What is impossible is not a number, which `pick` passes over.
+    let possible = |r: &Ratio, below: bool| match is_open(r) || (r.incident < 1.0) == below {
+        true => 0.0,
+        false => f64::NAN,
+    };
+    let sides = |r: &Ratio| (possible(r, true), possible(r, false));
+    let mut all = ratios.iter().map(sides);
+    let first = all.next().unwrap_or_default();
+    let (below, above) = all.fold(first, |(was_below, was_above), (below, above)| {
+        (
+            below + pick(was_below, was_above + DOWNWARD),
+            above + pick(was_above, was_below + UPWARD),
+        )
+    });
+    pick(below, above)
+}
+
+/// By how much the count may be wrong. 0 when no ratio is so near to 1 that its
+/// side matters, for then the count is that of the exact ratios.
 fn count_accuracy(ratios: &[Ratio]) -> f64 {
-    let mut moved = ratios.to_vec();
-    let mut accuracy = 0.0;
-    for (i, ratio) in ratios.iter().enumerate().filter(|(_, r)| is_open(r)) {
-        let changes = [-1.0, 1.0].map(|side| {
-            if let Some(reading) = moved.get_mut(i) {
-                reading.incident = 1.0 + side * unsure(ratio);
-            }
-            (count(&moved) - count(ratios)).abs()
-        });
-        if let Some(reading) = moved.get_mut(i) {
-            *reading = *ratio;
-        }
-        accuracy += changes.into_iter().fold(0.0, f64::max);
-    }
-    accuracy
+    let value = count(ratios);
+    let (least, most) = (
+        extreme_count(ratios, f64::min),
+        extreme_count(ratios, f64::max),
+    );
+    (value - least).max(most - value)
 }
 
 /// The ratio that is nearest to 1, by its accuracies.
@@ -88,9 +104,9 @@ fn nearest_to_1(ratios: &[Ratio]) -> Option<&Ratio> {
 }
 
 /// The ratio passes 1 once, upward. The number is that of upward passages less
-/// twice that of downward ones, which is 1 in no other case; not decidable
-/// where a ratio is 1 within its accuracy. A passage is one between
-/// neighbouring speeds.
+/// twice that of downward ones, which is 1 in no other case; not decidable where
+/// ratios that are 1 within their accuracy could change it. A passage is one
+/// between neighbouring speeds.
 pub(super) fn once_upward(claim: &Claim, evidence: &Evidence) -> Finding {
     let ratios = ratios(claim, evidence);
     let (Some(nearest), Some(expected)) = (nearest_to_1(&ratios), claim.expected.first()) else {
@@ -98,14 +114,9 @@ pub(super) fn once_upward(claim: &Claim, evidence: &Evidence) -> Finding {
     };
     let (value, accuracy) = (count(&ratios), count_accuracy(&ratios));
     let mut tally = Tally::default();
-    tally.margin(claim.threshold - (value - expected).abs(), 0.0);
-    let open = ratios.iter().any(is_open);
+    tally.margin(claim.threshold - (value - expected).abs(), accuracy);
     Finding {
-        verdict: if open {
-            Verdict::NotDecidable
-        } else {
-            tally.verdict()
-        },
+        verdict: tally.verdict(),
         leaning: tally.leaning(),
         value,
         accuracy,
