@@ -89,12 +89,14 @@ fn suits(plan: &Plan) -> bool {
         && accuracy::equal_steps(plan).is_some()
 }
 
-/// The second, longer step by which a shot is judged, over its own.
-const LONGER: f64 = 1.3;
+/// Steps by which a shot is judged, over its own. Two: one alone agrees by
+/// chance with what is wrong in one row of a hundred.
+const LONGER: [f64; 2] = [1.3, 1.69];
 
-/// The accuracy reached is what the longer step changes, times this: an error
-/// of order 1, which closings leave now and then, is three times the change.
-const OF_CHANGE: f64 = 3.0;
+/// The accuracy reached is what the longer steps change, times these: an error
+/// of order 1, which closings leave now and then, is three times the change by
+/// the first and once and a half that by the second.
+const OF_CHANGE: [f64; 2] = [3.0, 1.5];
 
 /// Shots of plans that go together, or of one that goes alone.
 fn shoot_block(
@@ -128,8 +130,11 @@ fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
         .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
         .collect();
     let shots = fire(&ready, set, 1.0).into_iter();
-    let judges = fire(&ready, set, LONGER);
-    let mut kept = shots.zip(judges).map(|(shot, judge)| kept(shot?, &judge?));
+    let [near, far] = LONGER.map(|longer| fire(&ready, set, longer));
+    let judges = near.into_iter().zip(far);
+    let mut kept = shots
+        .zip(judges)
+        .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]));
     systems
         .iter()
         .map(|system| system.as_ref().and_then(|_| kept.next().flatten()))
@@ -137,10 +142,11 @@ fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
 }
 
 /// A shot with the accuracy it reached, if that is what was asked.
-fn kept(mut shot: Shot, judge: &Shot) -> Option<Shot> {
-    let change = OF_CHANGE * shot.change(judge);
-    shot.accuracy_reached = Some(change);
-    (change <= shot.accuracy_asked).then_some(shot)
+fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
+    let changes = judges.map(|judge| shot.change(judge));
+    let reached = (OF_CHANGE[0] * changes[0]).max(OF_CHANGE[1] * changes[1]);
+    shot.accuracy_reached = Some(reached);
+    (reached <= shot.accuracy_asked).then_some(shot)
 }
 
 /// Fires plans that are alike in accuracy, sensor and length, with their step

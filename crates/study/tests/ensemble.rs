@@ -50,8 +50,14 @@ fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
 
 #[test]
 fn a_shot_has_the_same_bits_whatever_flies_along_and_on_any_number_of_threads() {
-    let plans = plans("dry", &SPEEDS, 1e-5);
-    let together = fly(&plans);
+    // In single precision and in double.
+    for accuracy in [1e-4, 1e-5] {
+        same_bits(&plans("dry", &SPEEDS, accuracy));
+    }
+}
+
+fn same_bits(plans: &[Plan]) {
+    let together = fly(plans);
     let alone: Vec<Shot> = plans
         .iter()
         .flat_map(|plan| fly(std::slice::from_ref(plan)))
@@ -66,7 +72,7 @@ fn a_shot_has_the_same_bits_whatever_flies_along_and_on_any_number_of_threads() 
             .num_threads(threads)
             .build()
             .unwrap();
-        assert_eq!(together, pool.install(|| fly(&plans)), "{threads} threads");
+        assert_eq!(together, pool.install(|| fly(plans)), "{threads} threads");
     }
 }
 
@@ -157,23 +163,23 @@ fn random_plans(count: u64) -> Vec<Plan> {
 }
 
 #[test]
-fn random_rows_keep_the_accuracy_asked() {
-    // A small instance of those that docs/numerics.md counts.
-    let plans = random_plans(120);
-    let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
-    let mut fast = 0;
-    for (plan, shot) in plans.iter().zip(shots) {
-        let shot = shot.unwrap();
-        let exact = shoot(&plan.clone().with_accuracy(1e-8)).unwrap();
+fn over_a_thousand_random_rows_no_error_is_twice_the_accuracy_asked() {
+    let plans = random_plans(1000);
+    let tight: Vec<Plan> = plans
+        .iter()
+        .map(|plan| plan.clone().with_accuracy(1e-8))
+        .collect();
+    let (shots, exact) = (fly(&plans), fly(&tight));
+    for ((plan, shot), exact) in plans.iter().zip(&shots).zip(exact) {
         let error = shot.flight.unwrap().change(&exact.flight.unwrap());
-        fast += usize::from(shot.step_s.is_some());
-        // Two steps may agree by chance: of 600 rows 3 of the ensemble loop miss,
-        // the worst by a factor of 7; the stated factor is ten.
+        // What a rerun changes is not the error itself. Measured: 1.05 in the
+        // ensemble loop, 1.45 in the wave loop.
         assert!(
-            error < 10.0 * plan.accuracy,
+            error < 2.0 * plan.accuracy,
             "{error:e}, asked {:e}",
             plan.accuracy
         );
     }
-    assert!(fast > 60, "{fast} of {} by the ensemble loop", plans.len());
+    let fast = shots.iter().filter(|shot| shot.step_s.is_some()).count();
+    assert!(fast > 500, "{fast} by the ensemble loop");
 }
