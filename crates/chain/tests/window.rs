@@ -3,7 +3,7 @@
 
 mod common;
 use common::*;
-use hertzchain_chain::observe::Signal;
+use hertzchain_chain::observe::{Maximum, Signal};
 use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
 use hertzchain_chain::*;
 
@@ -106,5 +106,47 @@ fn beads_asleep_where_the_wave_has_been_change_nothing_that_matters() {
             // A thousand times the tolerance: both runs are that wrong by then.
             assert!((a - b).abs() < 1e-4 * 0.8, "body {i}: {a} {b}");
         }
+    }
+}
+
+/// Behind a pulse on its way back, what creeps takes longer steps than the pulse.
+#[test]
+fn a_second_clock_for_what_creeps_changes_nothing_that_matters_and_saves_work() {
+    for laws in [vec![hertz()], vec![hertz(), viscoelastic(), cubic()]] {
+        let system = System::new(&row(600, 0.8, laws)).unwrap();
+        let fly = |whole_chain: bool| {
+            let mut sensor = Signal::new(Sensor::Bead(400));
+            let limits = Limits {
+                whole_chain,
+                budget: true,
+                ..Limits::until(1.9e-2)
+            };
+            let method = DormandPrince { tolerance: 3e-9 };
+            let limits = Limits {
+                slow_tolerance: Some(1e-7),
+                ..limits
+            };
+            let outcome = run(&system, &method, limits, &mut [&mut sensor]).unwrap();
+            let residual = outcome.budget.unwrap().relative_residual();
+            // The residual is up to 880 times the tolerance after 1,000 beads.
+            assert!(residual.abs() < 3e-6, "{residual:e}");
+            (sensor.maxima().to_vec(), outcome.work)
+        };
+        let ((part, cheap), (whole, dear)) = (fly(false), fly(true));
+        let largest = |from_s: f64, maxima: &[Maximum]| {
+            let late = maxima.iter().filter(|peak| peak.time_s > from_s).copied();
+            late.reduce(|best, peak| if peak.value > best.value { peak } else { best })
+                .unwrap()
+        };
+        for from_s in [0.0, 1.5e-2] {
+            let (one, two) = (largest(from_s, &part), largest(from_s, &whole));
+            // Ten times the slow bodies' tolerance: peaks lie in the pulse.
+            close(one.time_s, two.time_s, 1e-6);
+            close(one.value, two.value, 1e-5);
+        }
+        assert!(
+            cheap.bodies_passed * 2 < dear.bodies_passed,
+            "{cheap:?} {dear:?}"
+        );
     }
 }

@@ -3,8 +3,9 @@
 //! One rule for every study. A shot with a wall ends once the reflected pulse
 //! has been looked for, until tw + 3 (tw − tn); one that follows its striker
 //! goes on until the striker is away for good, or for [`RETURNS`] times the
-//! pulse's way to the wall, whichever comes first. Without a wall a shot ends
-//! when all bodies fly apart.
+//! pulse's way to the wall, whichever comes first. A long chain ends earlier,
+//! once energy alone tells that neither can change any more. Without a wall a
+//! shot ends when all bodies fly apart.
 
 use crate::plan::Plan;
 use hertzchain_chain::{FarEnd, Start, System};
@@ -19,11 +20,15 @@ pub(crate) struct End {
     pub at_reflection: bool,
     /// Once all bodies fly apart.
     pub when_apart: bool,
-    /// When the striker's last word is looked for; `None` when nobody asked.
-    pub striker: Option<Looks>,
+    /// When it is looked whether the shot is decided.
+    pub looks: Looks,
+    /// The striker is followed until it is away for good.
+    pub striker: bool,
+    /// Once energy tells that nothing can change any more.
+    pub when_decided: bool,
 }
 
-/// When it is looked whether the striker is away for good: at multiples of a
+/// When it is looked whether a shot is decided: at multiples of a
 /// fraction of the chain's own time, so that the moment does not depend on
 /// steps, and seldom enough to cost a long chain nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +54,11 @@ const SHORT_CHAIN: f64 = 10.0;
 /// away for good before 6. Chains under load ring for ever and end here.
 const RETURNS: f64 = 6.0;
 
-/// Looks at the striker in the time of a contact time a bead.
+/// Chains of this length and longer end when energy decides; shorter ones are
+/// followed to the end of the search, which costs them nothing.
+pub(crate) const LONG_CHAIN: usize = 512;
+
+/// Looks in the time of a contact time a bead.
 const LOOKS: f64 = 32.0;
 
 /// A ring is followed for about two turns of a pulse.
@@ -78,7 +87,9 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
         longest_s,
         at_reflection: open && wall,
         when_apart: open && !wall && plan.chain.suspension_m.is_none(),
-        striker: followed.then_some(looks),
+        looks,
+        striker: followed,
+        when_decided: open && wall && system.beads() >= LONG_CHAIN,
     }
 }
 

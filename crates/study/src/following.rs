@@ -1,20 +1,23 @@
 //! Following pulses and the striker to the end of a shot.
 
-use crate::duration::{End, Looks, has_wall};
+use crate::duration::{End, has_wall};
 use crate::plan::Plan;
-use hertzchain_chain::FarEnd;
 use hertzchain_chain::observe::{Apart, Passages};
 use hertzchain_chain::wave::{Flow, Observer, Piece};
+use hertzchain_chain::{FarEnd, Start};
 
 /// Pulses past the sensor bead and the wall, and the striker until it is away
 /// for good.
 #[derive(Clone, Debug)]
 pub(crate) struct Following {
     passages: Passages,
-    /// The end at the reflected pulse, if this shot has it.
-    at_reflection: bool,
+    end: End,
+    sensor_bead: usize,
+    /// m₁/m₀.
+    bead_over_striker: f64,
     wall: bool,
-    striker: Option<Looks>,
+    /// When energy alone told that nothing can change any more, in s.
+    decided_s: Option<f64>,
     looked: u64,
     /// Maxima of the wall and the time of the largest when last looked.
     wall_peak: (usize, f64),
@@ -30,13 +33,15 @@ impl Following {
         let wall = has_wall(&plan.chain.far);
         Self {
             passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall),
-            at_reflection: end.at_reflection,
+            end: *end,
+            sensor_bead: plan.sensor_bead,
+            bead_over_striker: bead_over_striker(plan),
             wall,
+            decided_s: None,
             handed_on: match end.striker {
-                Some(_) => handed_on(plan),
-                None => Vec::new(),
+                true => handed_on(plan),
+                false => Vec::new(),
             },
-            striker: end.striker,
             looked: 0,
             wall_peak: (0, 0.0),
             last_word_m_s: None,
@@ -54,25 +59,62 @@ impl Following {
         self.last_word_m_s
     }
 
-    /// Looks at the striker at every multiple of the interval within a piece.
-    fn look(&mut self, piece: &Piece<'_>, looks: Looks, returned: bool) {
+    /// When energy alone told that nothing can change any more, in s; the shot
+    /// ended with that step.
+    pub(crate) fn decided_s(&self) -> Option<f64> {
+        self.decided_s
+    }
+
+    /// Looks at every multiple of the interval within a piece.
+    fn look(&mut self, piece: &Piece<'_>, returned: bool) {
         let end_s = piece.time_s(1.0);
-        while self.last_word_m_s.is_none() {
-            let at_s = (self.looked + 1) as f64 * looks.interval_s;
+        while self.decided_s.is_none() {
+            let at_s = (self.looked + 1) as f64 * self.end.looks.interval_s;
             if at_s > end_s {
                 break;
             }
             self.looked += 1;
             let theta = ((at_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
-            if (returned || !self.wall) && is_away(piece, theta, &self.handed_on) {
+            if self.end.when_decided && self.is_decided(piece, theta) {
+                self.decided_s = Some(at_s);
+            }
+            let over = self.decided_s.is_some() || returned || !self.wall;
+            if over && self.awaits_striker() && self.is_away(piece, theta) {
                 self.last_word_m_s = Some(piece.body(0, theta).1);
             }
         }
-        let waited_s = looks.returns * self.wall_peak_s();
-        if returned && self.last_word_m_s.is_none() && waited_s <= end_s {
+        let waited_s = self.end.looks.returns * self.wall_peak_s();
+        if returned && self.awaits_striker() && waited_s <= end_s {
             let theta = ((waited_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
             self.last_word_m_s = Some(piece.body(0, theta).1);
         }
+    }
+
+    fn awaits_striker(&self) -> bool {
+        self.end.striker && self.last_word_m_s.is_none()
+    }
+
+    fn is_away(&self, piece: &Piece<'_>, theta: f64) -> bool {
+        self.decided_s.is_some() || is_away(piece, theta, &self.handed_on)
+    }
+
+    /// Whether the reflected pulse has been seen, and all that is left in the chain
+    /// has neither the energy to press the sensor bead harder nor, all of it in
+    /// bead 1, to reach the striker.
+    fn is_decided(&self, piece: &Piece<'_>, theta: f64) -> bool {
+        let Ok((_, _, Some(reflected))) = self.passages.peaks() else {
+            return false;
+        };
+        let Some(left_j) = piece.energy_beyond_striker_j(theta) else {
+            return false;
+        };
+        let leaves = self.bead_over_striker * piece.leaving_energy_j(theta) > left_j;
+        let contacts = [self.sensor_bead - 1, self.sensor_bead];
+        let most_n: f64 = contacts
+            .map(|contact| piece.most_force_n(contact, left_j))
+            .iter()
+            .sum();
+        leaves && 0.5 * most_n < reflected.value
     }
 
     /// Time of the wall's largest maximum in s.
@@ -89,14 +131,22 @@ impl Following {
 impl Observer for Following {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         let returned = self.passages.step(piece) == Flow::Finished;
-        if let (Some(looks), None) = (self.striker, self.last_word_m_s) {
-            self.look(piece, looks, returned);
+        if self.end.when_decided || self.awaits_striker() {
+            self.look(piece, returned);
         }
-        let heard = self.striker.is_none() || self.last_word_m_s.is_some();
-        match self.at_reflection && returned && heard {
+        let over = returned || self.decided_s.is_some();
+        match self.end.at_reflection && over && !self.awaits_striker() {
             true => Flow::Finished,
             false => Flow::Continue,
         }
+    }
+}
+
+/// m₁/m₀ of a struck chain; 0, which decides nothing, of others.
+fn bead_over_striker(plan: &Plan) -> f64 {
+    match (&plan.chain.start, plan.chain.beads.first()) {
+        (Start::Striker { bead, .. }, Some(first)) => first.mass_kg / bead.mass_kg,
+        _ => 0.0,
     }
 }
 

@@ -200,6 +200,7 @@ impl<'a> Gun<'a> {
         observers.extend(tracer.as_mut().map(|tracer| tracer as &mut dyn Observer));
         let limits = Limits {
             budget: self.plan.budget,
+            slow_tolerance: Some(accuracy::of_times(self.plan)),
             ..Limits::until(self.end.longest_s)
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;
@@ -256,10 +257,14 @@ impl<'a> Gun<'a> {
             solver: method.name().to_owned(),
             tolerance: None,
             step_s: None,
-            notes: Vec::new(),
+            notes: Vec::from_iter(following.decided_s().map(|_| DECIDED.to_owned())),
         }
     }
 }
+
+/// Which rule ended a long chain's shot.
+const DECIDED: &str = "this long chain's shot ended with the pulse's return: what is left in the chain has neither \
+     the energy to reach the striker nor to press the sensor bead harder than the reflected pulse did";
 
 /// A gap under load is no gap: the chain has closed it before the shot.
 pub(crate) fn closed_gaps(plan: &Plan, system: &System) -> Option<String> {

@@ -13,7 +13,7 @@ pub struct Rebound {
     /// When it first let go of bead 1, in s, and its velocity then, in m/s.
     pub first: Option<(f64, f64)>,
     /// Its velocity in m/s at the end of the shot: once it is away for good, or
-    /// after six times the pulse's way to the wall. `None` when the plan does
+    /// after six times the time that the pulse took to the wall. `None` when the plan does
     /// not follow it, or when a duration that was asked for was over before.
     pub end_m_s: Option<f64>,
 }

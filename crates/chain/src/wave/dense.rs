@@ -4,6 +4,7 @@ use super::energy::Budget;
 use super::meter::Meter;
 use super::state::{Mode, State};
 use super::table::{DEGREE, Table};
+use super::zones::Slow;
 use crate::chain::Tension;
 use crate::laws::Closed;
 use crate::sensor::Sensor;
@@ -27,6 +28,8 @@ pub struct Piece<'a> {
     /// Since when bodies outside the window fly or rest.
     pub(super) asleep_since_s: &'a [f64],
     pub(super) frozen: bool,
+    /// The long step of slow bodies, if one is under way.
+    pub(super) slow: Option<&'a Slow>,
     pub(super) meter: Option<&'a Meter>,
 }
 
@@ -60,14 +63,18 @@ impl Piece<'_> {
     pub fn budget(&self) -> Option<Budget> {
         let meter = self.meter?;
         let asleep = |i: &usize| !self.is_awake(*i) && self.state.v[*i] != 0.0;
-        if !(0..self.state.x.len()).any(|i| asleep(&i)) {
-            return Some(meter.budget(self.system, self.state));
+        if self.slow.is_none() && !(0..self.state.x.len()).any(|i| asleep(&i)) {
+            return Some(meter.budget(self.system, self.state, None));
         }
-        let mut state = self.state.clone();
+        let (mut state, time_s) = (self.state.clone(), self.state.time_s);
         for i in (0..state.x.len()).filter(asleep) {
             state.x[i] = self.body(i, 0.0).0;
         }
-        Some(meter.budget(self.system, &state))
+        let pending = self.slow.map(|slow| {
+            slow.bring_to(self.system, self.table, &mut state, time_s);
+            (slow.step_s, slow.weights(self.table, time_s))
+        });
+        Some(meter.budget(self.system, &state, pending.as_ref()))
     }
 
     /// Whether a body is in the part of the chain that moves.
@@ -79,7 +86,15 @@ impl Piece<'_> {
     /// Whether a contact is open during the step (with fixed steps: at its start).
     #[must_use]
     pub fn is_open(&self, contact: usize) -> bool {
-        self.state.mode[contact] == Mode::Open
+        match self.is_slow(contact) {
+            true => self.overlap(contact, 0.0).0 < 0.0,
+            false => self.state.mode[contact] == Mode::Open,
+        }
+    }
+
+    /// Whether a contact is on the long step.
+    fn is_slow(&self, contact: usize) -> bool {
+        self.slow.is_some_and(|slow| slow.holds_contact(contact))
     }
 
     /// Displacement in m and velocity in m/s of a body.
@@ -90,6 +105,9 @@ impl Piece<'_> {
             && let Some(motion) = &self.system.motion
         {
             return motion.at(time);
+        }
+        if let Some(slow) = self.slow.filter(|slow| slow.holds(body)) {
+            return slow.at(self.table, self.state, body, time);
         }
         let (x, v) = (self.state.x[body], self.state.v[body]);
         if !self.is_awake(body) {
@@ -154,7 +172,8 @@ impl Piece<'_> {
     /// Total force in N at an overlap and a rate under this step's mode.
     fn force_at(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
         let closed = self.closed(contact, overlap, rate);
-        let mode = match self.frozen {
+        let frozen = self.frozen && !self.is_slow(contact);
+        let mode = match frozen {
             true => self.state.mode[contact],
             false if overlap > FLUSH || (overlap >= 0.0 && rate > 0.0) => Mode::Closed,
             false => Mode::Open,
@@ -164,7 +183,7 @@ impl Piece<'_> {
             Mode::Open => self.system.ungated_force(contact, closed),
             Mode::Cut => 0.0,
         };
-        let smooth = self.frozen && mode == Mode::Closed;
+        let smooth = frozen && mode == Mode::Closed;
         match self.system.tension {
             Tension::Clipped if !smooth => force.max(0.0),
             _ => force,
@@ -267,7 +286,7 @@ impl Piece<'_> {
 }
 
 /// c_1 θ + c_2 θ² + …
-fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
+pub(super) fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
     coefficients
         .iter()
         .rev()

@@ -14,6 +14,8 @@ pub(crate) struct Meter {
     laws: Vec<&'static str>,
     /// Powers of the laws, then of the cut, then of the driven end; a row a stage.
     powers_w: Vec<Vec<f64>>,
+    /// The same of the long step that slow bodies take.
+    slow_powers_w: Vec<Vec<f64>>,
     work_j: Vec<f64>,
     start_j: f64,
     /// Largest energy seen: put in, or in motion.
@@ -31,6 +33,7 @@ impl Meter {
         let mut meter = Self {
             laws,
             powers_w: vec![vec![0.0; slots]; stages],
+            slow_powers_w: vec![vec![0.0; slots]; stages],
             work_j: vec![0.0; slots],
             start_j: 0.0,
             most_j: 0.0,
@@ -42,7 +45,7 @@ impl Meter {
             .iter()
             .map(|law| stored(system, state, Some(law)))
             .collect();
-        meter.start_j = meter.budget(system, state).accounted_j();
+        meter.start_j = meter.budget(system, state, None).accounted_j();
         meter.most_j = meter.start_j.abs();
         meter
     }
@@ -53,23 +56,25 @@ impl Meter {
         stage: usize,
         system: &System,
         pass: &mut Pass,
-        contacts: Range<usize>,
+        contacts: [Range<usize>; 2],
         driven_speed_m_s: f64,
     ) {
         let powers = &mut self.powers_w[stage];
         powers.fill(0.0);
         let (cut, driven) = (self.laws.len(), self.laws.len() + 1);
-        powers[cut] = cut_power(system, pass, contacts.clone());
         if system.motion.is_some() {
             powers[driven] = (pass.dynamic[1] + system.static_force_n[0]) * driven_speed_m_s;
         }
-        for section in &system.sections {
-            let part =
-                section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);
-            for (term, gated) in with_gates(section).filter(|_| !part.is_empty()) {
-                let name = term.law.info().name;
-                if let Some(slot) = self.laws.iter().position(|&law| law == name) {
-                    powers[slot] += term_power(section, term, gated, pass, part.clone());
+        for contacts in contacts.iter().filter(|contacts| !contacts.is_empty()) {
+            powers[cut] += cut_power(system, pass, contacts.clone());
+            for section in &system.sections {
+                let part = section.contacts.start.max(contacts.start)
+                    ..section.contacts.end.min(contacts.end);
+                for (term, gated) in with_gates(section).filter(|_| !part.is_empty()) {
+                    let name = term.law.info().name;
+                    if let Some(slot) = self.laws.iter().position(|&law| law == name) {
+                        powers[slot] += term_power(section, term, gated, pass, part.clone());
+                    }
                 }
             }
         }
@@ -77,14 +82,20 @@ impl Meter {
 
     /// Adds the step's work, Σ h b_s P_s; `kinetic_j` is what moves after it.
     pub fn finish_step(&mut self, step_s: f64, weights: &[f64], kinetic_j: f64) {
-        for (weight, powers) in weights.iter().zip(&self.powers_w) {
-            for (work, power) in self.work_j.iter_mut().zip(powers) {
-                *work += step_s * weight * power;
-            }
-        }
+        add(&mut self.work_j, step_s, weights, &self.powers_w);
         let driven = self.work_j[self.laws.len() + 1];
         let put_in = (self.start_j + driven).abs().max(driven.abs());
         self.most_j = self.most_j.max(put_in).max(kinetic_j);
+    }
+
+    /// Adds the work of a long step.
+    pub fn finish_slow(&mut self, step_s: f64, weights: &[f64]) {
+        add(&mut self.work_j, step_s, weights, &self.slow_powers_w);
+    }
+
+    /// Puts the powers of the long step in the place of the short one's, or back.
+    pub fn swap_slow(&mut self) {
+        std::mem::swap(&mut self.powers_w, &mut self.slow_powers_w);
     }
 
     /// Error of the step's work, as a fraction of the energy put in.
@@ -108,15 +119,25 @@ impl Meter {
         self.powers_w.swap(0, last);
     }
 
-    /// All terms at a state that the meter has followed.
-    pub fn budget(&self, system: &System, state: &State) -> Budget {
-        let driven_j = self.work_j[self.laws.len() + 1];
+    /// All terms at a state that the meter has followed; `pending` is the length
+    /// of a long step under way and the weights of its stages up to the state.
+    pub fn budget(
+        &self,
+        system: &System,
+        state: &State,
+        pending: Option<&(f64, Vec<f64>)>,
+    ) -> Budget {
+        let mut work_j = self.work_j.clone();
+        if let Some((step_s, weights)) = pending {
+            add(&mut work_j, *step_s, weights, &self.slow_powers_w);
+        }
+        let driven_j = work_j[self.laws.len() + 1];
         let dissipated = self.laws.iter().enumerate().map(|(slot, law)| {
             let start = self.start_plastic_j.get(slot).copied().unwrap_or(0.0);
             let kept = stored(system, state, Some(law)) - start;
             Dissipated {
                 law,
-                energy_j: self.work_j[slot] - kept,
+                energy_j: work_j[slot] - kept,
             }
         });
         Budget {
@@ -127,10 +148,19 @@ impl Meter {
             kinetic_j: kinetic(system, state),
             elastic_j: stored(system, state, None) - self.rest_elastic_j,
             dissipated: dissipated.collect(),
-            clipped_j: self.work_j[self.laws.len()],
+            clipped_j: work_j[self.laws.len()],
             gravity_j: gravity(system, state),
             preload_j: preload(system, state),
             stop_j: stop(system, state),
+        }
+    }
+}
+
+/// Adds Σ h b_s P_s to works.
+fn add(work_j: &mut [f64], step_s: f64, weights: &[f64], powers_w: &[Vec<f64>]) {
+    for (weight, powers) in weights.iter().zip(powers_w) {
+        for (work, power) in work_j.iter_mut().zip(powers) {
+            *work += step_s * weight * power;
         }
     }
 }

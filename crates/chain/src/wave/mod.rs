@@ -1,19 +1,24 @@
 //! The wave loop: one shot of one chain, from the first touch to its end.
 
+mod bounds;
+mod clocks;
 mod dense;
 mod dormand_prince;
 mod energy;
 mod forces;
 mod gate;
+mod judge;
 mod meter;
 mod outcome;
 mod rk4;
 mod run;
+mod settings;
 mod state;
 mod step;
 mod table;
 mod verlet;
 mod window;
+mod zones;
 
 pub use dense::Piece;
 pub use energy::{Budget, Dissipated};

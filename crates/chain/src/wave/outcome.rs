@@ -55,8 +55,10 @@ pub struct Outcome {
 pub enum SolveError {
     /// Steps became too small to go on.
     #[error(
-        "the solver cannot reach the asked accuracy: at t = {time_s:e} s its step has shrunk to \
-         {step_s:e} s, because of contact {contact}; ask for less accuracy or look at that contact's laws"
+        "the solver cannot reach the asked accuracy: at t = {} its step has shrunk to {}, because of \
+         contact {contact}; ask for less accuracy or look at that contact's laws",
+        time(*time_s),
+        time(*step_s)
     )]
     StepTooSmall {
         /// When, in s.
@@ -68,20 +70,28 @@ pub enum SolveError {
     },
     /// A number stopped being finite.
     #[error(
-        "the motion is not finite after t = {time_s:e} s near contact {contact}; \
-         a smaller step or other law parameters are needed"
+        "the motion is not finite any more: after t = {} the speed or the place of body {body} (0 is the \
+         striker), next to contact {contact}, is beyond all numbers. Probable reasons: {}. {}",
+        time(*time_s),
+        reasons(*step_s),
+        remedy(*step_s)
     )]
     NotFinite {
         /// Last good time in s.
         time_s: f64,
-        /// Contact where it happened.
+        /// Body whose speed or place it is.
+        body: usize,
+        /// Contact next to it.
         contact: usize,
+        /// The fixed step in s, if steps are fixed.
+        step_s: Option<f64>,
     },
     /// More force passes than allowed.
     #[error(
-        "gave up at t = {time_s:e} s after {force_passes} force passes: the last step was \
-         {step_s:e} s, set by contact {contact}; ask for a shorter duration or less accuracy, \
-         or look at that contact's laws"
+        "gave up at t = {} after {force_passes} force passes: the last step was {}, set by contact \
+         {contact}; ask for a shorter duration or less accuracy, or look at that contact's laws",
+        time(*time_s),
+        time(*step_s)
     )]
     TooMuchWork {
         /// Time reached in s.
@@ -95,8 +105,9 @@ pub enum SolveError {
     },
     /// A fixed step in which a whole contact could come and go.
     #[error(
-        "a step of {step_s:e} s is longer than a contact lasts, about {contact_time_s:e} s; \
-         a fiftieth of that is a sensible step"
+        "a step of {} is longer than a contact lasts, about {}; a fiftieth of that is a sensible step",
+        time(*step_s),
+        time(*contact_time_s)
     )]
     StepTooLong {
         /// Step in s.
@@ -125,6 +136,51 @@ pub enum SolveError {
     },
 }
 
+/// Sizes of times that have a name.
+const PREFIXES: [(f64, &str); 5] = [
+    (1.0, "s"),
+    (1e-3, "ms"),
+    (1e-6, "µs"),
+    (1e-9, "ns"),
+    (1e-12, "ps"),
+];
+
+/// A time in s for people: five digits, with a prefix.
+fn time(time_s: f64) -> String {
+    let named = PREFIXES.iter().find(|(size, _)| time_s.abs() >= *size);
+    match named {
+        Some((size, unit)) if time_s < 1e5 => {
+            let value = time_s / size;
+            let decimals = 4_usize.saturating_sub(value.abs().log10().floor().max(0.0) as usize);
+            format!("{value:.decimals$} {unit}")
+        }
+        _ if time_s == 0.0 => "0 s".to_owned(),
+        _ => format!("{time_s:.2e} s"),
+    }
+}
+
+/// Why a motion stops being finite.
+fn reasons(step_s: Option<f64>) -> &'static str {
+    match step_s {
+        Some(_) => "the fixed step is too long for a stiff contact or a strong damping",
+        None => {
+            "a law whose force grows without bound (a large damping coefficient, a high power) or \
+             bodies of very unlike masses"
+        }
+    }
+}
+
+/// What to do about it.
+fn remedy(step_s: Option<f64>) -> String {
+    match step_s {
+        Some(step_s) => format!(
+            "A tenth of the step, {}, or the adaptive solver, may help; else look at that contact's laws",
+            time(0.1 * step_s)
+        ),
+        None => "Look at that contact's laws and at the masses beside it".to_owned(),
+    }
+}
+
 /// What to compute beside the motion, and when to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -134,6 +190,10 @@ pub struct Limits {
     pub budget: bool,
     /// Step the whole chain, also where nothing moves.
     pub whole_chain: bool,
+    /// Largest accepted error per step of what only creeps and rattles beside a
+    /// pulse in a long chain, if larger than the method's: a pulse repeats its
+    /// error in every bead that it passes, the others do not.
+    pub slow_tolerance: Option<f64>,
     /// Most force passes; when `None`, far more than any sensible shot of this
     /// duration needs.
     pub force_passes: Option<u64>,
@@ -147,7 +207,42 @@ impl Limits {
             duration_s,
             budget: false,
             whole_chain: false,
+            slow_tolerance: None,
             force_passes: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_written_with_few_digits_and_a_unit() {
+        let written = [
+            (34.007_123_456, "34.007 s"),
+            (1.5e-3, "1.5000 ms"),
+            (6.308_415_91e-4, "630.84 µs"),
+            (0.0, "0 s"),
+            (3.2e-19, "3.20e-19 s"),
+            (1.234e7, "1.23e7 s"),
+        ];
+        for (value, text) in written {
+            assert_eq!(time(value), text);
+        }
+    }
+
+    #[test]
+    fn a_motion_that_is_not_finite_says_when_where_why_and_what_to_do() {
+        let error = SolveError::NotFinite {
+            time_s: 1.234_567_89e-4,
+            body: 8,
+            contact: 8,
+            step_s: Some(2e-6),
+        };
+        let text = error.to_string();
+        for part in ["123.46 µs", "body 8", "contact 8", "too long", "200.00 ns"] {
+            assert!(text.contains(part), "{part} is missing: {text}");
         }
     }
 }

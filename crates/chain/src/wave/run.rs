@@ -5,10 +5,12 @@ use super::forces::{Gates, Pass};
 use super::gate::{Event, Watch};
 use super::meter::Meter;
 use super::outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
+use super::settings::{check, most_passes};
 use super::state::State;
-use super::step::{error_norm, stage};
+use super::step::stage;
 use super::table::Table;
 use super::window::Window;
+use super::zones::Slow;
 use super::{Control, Method};
 use crate::system::System;
 use std::ops::Range;
@@ -34,82 +36,36 @@ pub fn run(
     Ok(wave.outcome(finished))
 }
 
-/// Below this the rounding of a step is larger than its error.
-const LEAST_TOLERANCE: f64 = 5e-15;
-
-/// Refuses settings with which no shot can be computed.
-fn check(control: Control, limits: &Limits, system: &System) -> Result<(), SolveError> {
-    let setting = |what, value| Err(SolveError::Setting { what, value });
-    if limits.duration_s.is_nan() || limits.duration_s < 0.0 {
-        return setting("duration in s", limits.duration_s);
-    }
-    match control {
-        Control::Adaptive { tolerance } if tolerance < LEAST_TOLERANCE => {
-            Err(SolveError::TooTight {
-                tolerance,
-                least: LEAST_TOLERANCE,
-            })
-        }
-        Control::Adaptive { tolerance } if tolerance.is_nan() || tolerance >= 1.0 => {
-            setting("tolerance (below 1)", tolerance)
-        }
-        Control::Fixed { step_s } if !(step_s > 0.0 && step_s.is_finite()) => {
-            setting("step in s", step_s)
-        }
-        Control::Fixed { step_s } if step_s > system.scales().time_s => {
-            Err(SolveError::StepTooLong {
-                step_s,
-                contact_time_s: system.scales().time_s,
-            })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Ten thousand force passes a contact time, where a shot at 1e-12 needs a
-/// thousand, and ten million for the shortest shot.
-fn most_passes(system: &System, limits: &Limits) -> u64 {
-    let contact_times = limits.duration_s / system.scales().time_s;
-    limits
-        .force_passes
-        .unwrap_or(10_000_000_u64.saturating_add((1e4 * contact_times) as u64))
-}
-
 /// A shot under way.
-struct Wave<'a> {
-    system: &'a System,
-    table: &'a Table,
-    control: Control,
-    limits: Limits,
-    state: State,
-    window: Window,
-    pass: Pass,
-    watch: Watch,
-    meter: Option<Meter>,
-    a: Vec<Vec<f64>>,
-    x: Vec<f64>,
-    v: Vec<f64>,
+pub(super) struct Wave<'a> {
+    pub(super) system: &'a System,
+    pub(super) table: &'a Table,
+    pub(super) control: Control,
+    pub(super) limits: Limits,
+    pub(super) state: State,
+    pub(super) window: Window,
+    pub(super) pass: Pass,
+    pub(super) watch: Watch,
+    pub(super) meter: Option<Meter>,
+    /// The long step that slow bodies take beside short ones.
+    pub(super) slow: Slow,
+    pub(super) gates: Gates,
+    pub(super) a: Vec<Vec<f64>>,
+    pub(super) x: Vec<f64>,
+    pub(super) v: Vec<f64>,
     /// Step the error control proposes.
-    proposed_s: f64,
+    pub(super) proposed_s: f64,
     /// Change that the next step is shortened to end at.
-    aimed: Option<Event>,
+    pub(super) aimed: Option<Event>,
     /// Body with the largest error in the last step tried.
-    worst: usize,
-    most_passes: u64,
-    work: Work,
+    pub(super) worst: usize,
+    pub(super) most_passes: u64,
+    pub(super) work: Work,
 }
 
 /// First step in units of the contact time: small against everything, error
 /// control lets it grow fivefold a step.
 const FIRST_STEP: f64 = 1e-3;
-
-/// Steps below this fraction of the contact time mean that accuracy is out of
-/// reach: at the first touch of a contact and the least tolerance 1e-9 is enough.
-const SMALLEST_STEP: f64 = 1e-13;
-
-/// Errors are measured against the speed at which closed contacts move now,
-/// but never less than this fraction of the speed that set the chain in motion.
-const LEAST_SCALE: f64 = 1e-2;
 
 impl<'a> Wave<'a> {
     fn new(system: &'a System, table: &'a Table, control: Control, limits: Limits) -> Self {
@@ -119,13 +75,22 @@ impl<'a> Wave<'a> {
             Control::Adaptive { tolerance } => tolerance,
             Control::Fixed { .. } => 0.0,
         };
+        let window = Window::new(
+            system,
+            &state,
+            (table.stages(), tolerance),
+            limits.whole_chain,
+        );
+        let adaptive = matches!(control, Control::Adaptive { .. });
+        let two_clocks = adaptive && window.sleeps_again() && !system.has_memory;
         Self {
-            window: Window::new(
-                system,
-                &state,
-                (table.stages(), tolerance),
-                limits.whole_chain,
-            ),
+            window,
+            slow: Slow::new(system, table.stages(), two_clocks),
+            gates: if adaptive {
+                Gates::Frozen
+            } else {
+                Gates::Instant
+            },
             pass: Pass::new(system),
             watch: Watch::new(system, tolerance),
             meter: limits
@@ -147,21 +112,16 @@ impl<'a> Wave<'a> {
         }
     }
 
-    fn gates(&self) -> Gates {
-        match self.control {
-            Control::Adaptive { .. } => Gates::Frozen,
-            Control::Fixed { .. } => Gates::Instant,
-        }
-    }
-
-    fn contacts(&self) -> Range<usize> {
-        self.window.bodies.start..self.window.bodies.end - 1
+    pub(super) fn contacts(&self) -> Range<usize> {
+        let bodies = self.moving();
+        bodies.start..bodies.end - 1
     }
 
     /// Accelerations of one stage from the positions and velocities in `x`, `v`.
-    fn force_pass(&mut self, stage: usize) {
-        let bodies = self.window.bodies.clone();
-        let (gates, contacts) = (self.gates(), self.contacts());
+    pub(super) fn force_pass(&mut self, stage: usize) {
+        let bodies = self.moving();
+        let (gates, contacts) = (self.gates, self.contacts());
+        let usual = gates == self.usual_gates();
         self.work.force_passes += 1;
         self.work.bodies_passed += bodies.len() as u64;
         let at = (&self.x[..], &self.v[..]);
@@ -169,25 +129,30 @@ impl<'a> Wave<'a> {
             self.system,
             &self.state,
             gates,
-            bodies,
+            bodies.clone(),
             at,
             &mut self.a[stage],
         );
         if let Some(meter) = &mut self.meter {
-            meter.stage(stage, self.system, &mut self.pass, contacts, self.v[0]);
+            let parts = match usual {
+                true => [contacts, 0..0],
+                false => Slow::contacts(&self.slow.quick, &bodies),
+            };
+            meter.stage(stage, self.system, &mut self.pass, parts, self.v[0]);
         }
     }
 
     /// The first stage of a step, at its start.
-    fn first_accelerations(&mut self) {
-        let bodies = self.window.bodies.clone();
+    pub(super) fn first_accelerations(&mut self) {
+        let bodies = self.moving();
         self.x[bodies.clone()].copy_from_slice(&self.state.x[bodies.clone()]);
         self.v[bodies.clone()].copy_from_slice(&self.state.v[bodies]);
+        self.hold_seams(self.state.time_s);
         self.force_pass(0);
     }
 
     /// All stages of a step after the first; leaves the end in `x` and `v`.
-    fn stages(&mut self, h: f64) {
+    pub(super) fn stages(&mut self, h: f64) {
         let table = self.table;
         for s in 1..table.stages() {
             self.combine(h, table.nodes[s], &table.position[s], &table.velocity[s]);
@@ -200,13 +165,14 @@ impl<'a> Wave<'a> {
     }
 
     fn combine(&mut self, h: f64, node: f64, position: &[f64], velocity: &[f64]) {
-        let bodies = self.window.bodies.clone();
+        let bodies = self.moving();
         let start = (&self.state.x[..], &self.state.v[..]);
         let out = (&mut self.x[..], &mut self.v[..]);
         stage(bodies, (h, node), (position, velocity), start, &self.a, out);
         if let Some(motion) = &self.system.motion {
             (self.x[0], self.v[0]) = motion.at(self.state.time_s + node * h);
         }
+        self.hold_seams(self.state.time_s + node * h);
     }
 
     /// One accepted step; tells whether an observer is finished.
@@ -222,7 +188,7 @@ impl<'a> Wave<'a> {
 
     /// The longest step allowed from here: to the end, or to where a driven
     /// end's motion is not smooth.
-    fn longest(&self) -> f64 {
+    pub(super) fn longest(&self) -> f64 {
         let time = self.state.time_s;
         let next = self
             .system
@@ -234,7 +200,12 @@ impl<'a> Wave<'a> {
             .motion
             .as_ref()
             .map_or(f64::INFINITY, |m| m.longest_step_s());
-        (self.limits.duration_s - time).min(next - time).min(smooth)
+        let slow = match self.slow.active {
+            true => self.slow.end_s() - time,
+            false => f64::INFINITY,
+        };
+        let end = self.limits.duration_s - time;
+        end.min(next - time).min(smooth).min(slow)
     }
 
     fn fixed_step(&mut self, step_s: f64) -> Result<f64, SolveError> {
@@ -294,83 +265,6 @@ impl<'a> Wave<'a> {
         }
     }
 
-    /// A smaller step, unless it is too small.
-    fn shrunk(&self, h: f64, near: usize) -> Result<f64, SolveError> {
-        let time_s = self.state.time_s;
-        if h > SMALLEST_STEP * self.system.scales().time_s && time_s + h > time_s {
-            return Ok(h);
-        }
-        match self.first_not_finite() {
-            Some(body) => Err(self.not_finite(body)),
-            None => {
-                let contact = near.min(self.system.contacts() - 1);
-                Err(SolveError::StepTooSmall {
-                    time_s,
-                    step_s: h,
-                    contact,
-                })
-            }
-        }
-    }
-
-    fn check_work(&self) -> Result<(), SolveError> {
-        match self.work.force_passes < self.most_passes {
-            true => Ok(()),
-            false => Err(SolveError::TooMuchWork {
-                time_s: self.state.time_s,
-                force_passes: self.work.force_passes,
-                step_s: match self.control {
-                    Control::Fixed { step_s } => step_s,
-                    Control::Adaptive { .. } => self.proposed_s,
-                },
-                contact: self.worst.min(self.system.contacts() - 1),
-            }),
-        }
-    }
-
-    fn first_not_finite(&self) -> Option<usize> {
-        let bodies = self.window.bodies.clone();
-        bodies
-            .into_iter()
-            .find(|&i| !(self.x[i].is_finite() && self.v[i].is_finite()))
-    }
-
-    fn not_finite(&self, body: usize) -> SolveError {
-        let contact = body.min(self.system.contacts() - 1);
-        SolveError::NotFinite {
-            time_s: self.state.time_s,
-            contact,
-        }
-    }
-
-    /// Error of the step just tried, relative to the motion's scales.
-    fn error(&self, h: f64) -> (f64, usize) {
-        let Some(weights) = &self.table.error else {
-            return (0.0, 0);
-        };
-        let speed = self.speed_scale();
-        let length = speed * self.system.scales().time_s;
-        let bodies = self.window.bodies.clone();
-        let (error, body) = error_norm(bodies, h, weights, &self.a, (speed, length));
-        let work = self
-            .meter
-            .as_ref()
-            .map_or(0.0, |meter| meter.error(h, &weights[0]));
-        (if work > error { work } else { error }, body)
-    }
-
-    /// Largest rate of a touching contact, within bounds.
-    fn speed_scale(&self) -> f64 {
-        let contacts = self.contacts();
-        let v = &self.state.v[contacts.start..=contacts.end];
-        let touching = &self.state.touching[contacts];
-        let rates = v
-            .windows(2)
-            .zip(touching)
-            .map(|(v, on)| on * (v[0] - v[1]).abs());
-        rates.fold(LEAST_SCALE * self.system.scales().speed_m_s, f64::max)
-    }
-
     /// Shows the step to the observers.
     fn show(&self, h: f64, observers: &mut [&mut dyn Observer]) -> bool {
         let piece = self.piece(h);
@@ -391,7 +285,8 @@ impl<'a> Wave<'a> {
             accelerations: &self.a,
             window: self.window.bodies.clone(),
             asleep_since_s: &self.window.asleep_since_s,
-            frozen: self.gates() == Gates::Frozen,
+            frozen: self.gates == Gates::Frozen,
+            slow: self.slow.active.then_some(&self.slow),
             meter: self.meter.as_ref(),
         }
     }
@@ -404,7 +299,8 @@ impl<'a> Wave<'a> {
 
     /// Makes the end of the step the new state.
     fn accept(&mut self, h: f64) {
-        let bodies = self.window.bodies.clone();
+        let bodies = self.owned();
+        let awake = self.window.bodies.clone();
         self.work.steps += 1;
         if let Some(meter) = &mut self.meter {
             let moving = bodies
@@ -426,9 +322,21 @@ impl<'a> Wave<'a> {
             Control::Adaptive { .. } => self.settle_gates(),
             Control::Fixed { .. } => self.follow_gates(),
         };
-        self.window.follow(self.system, &mut self.state);
-        self.wake(bodies);
-        if changed {
+        let finished = self.finish_slow();
+        match self.slow.active {
+            true => {
+                let sides = [
+                    self.slow.quick.start == 0,
+                    self.slow.quick.end == self.system.bodies(),
+                ];
+                self.window.keep_up(self.system, &mut self.state, sides);
+            }
+            false => self.window.follow(self.system, &mut self.state),
+        }
+        self.wake(awake);
+        let begun =
+            !self.slow.active && self.slow.is_due(self.window.bodies.len()) && self.begin_slow();
+        if changed || finished || begun {
             self.first_accelerations();
         }
     }
@@ -472,13 +380,18 @@ impl<'a> Wave<'a> {
     }
 
     fn outcome(mut self, finished: bool) -> Outcome {
+        let time_s = self.state.time_s;
+        self.slow
+            .bring_to(self.system, self.table, &mut self.state, time_s);
         self.window.wake_all(&mut self.state);
+        let slow = self.slow.active.then_some(&self.slow);
+        let pending = slow.map(|slow| (slow.step_s, slow.weights(self.table, time_s)));
         Outcome {
-            time_s: self.state.time_s,
+            time_s,
             finished,
             budget: self
                 .meter
-                .map(|meter| meter.budget(self.system, &self.state)),
+                .map(|meter| meter.budget(self.system, &self.state, pending.as_ref())),
             velocity_m_s: self.state.v,
             displacement_m: self.state.x,
             work: self.work,

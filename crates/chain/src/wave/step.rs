@@ -90,3 +90,27 @@ pub(super) fn error_norm(
     }
     (worst, at)
 }
+
+/// The bodies from the first to the last whose error estimate is above a limit
+/// or not a number.
+pub(super) fn worse_than(
+    limit: f64,
+    bodies: Range<usize>,
+    h: f64,
+    [velocity, position]: &[Vec<f64>; 2],
+    a: &[Vec<f64>],
+    (speed, length): (f64, f64),
+) -> Option<Range<usize>> {
+    let is_worse = |body: &usize| {
+        let (mut dv, mut dx) = (0.0, 0.0);
+        for (a, (speed_weight, length_weight)) in a.iter().zip(velocity.iter().zip(position)) {
+            dv += h * speed_weight / speed * a[*body];
+            dx += h * h * length_weight / length * a[*body];
+        }
+        let error = dv.abs().max(dx.abs()) + 0.0 * (dv + dx);
+        error > limit || error.is_nan()
+    };
+    let first = bodies.clone().find(is_worse)?;
+    let last = bodies.rev().find(is_worse)?;
+    Some(first..last + 1)
+}

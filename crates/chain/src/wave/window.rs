@@ -80,6 +80,29 @@ impl Window {
         state.x[body].abs() > self.length_floor || state.v[body].abs() > self.speed_floor
     }
 
+    /// Whether bodies may sleep where the wave has been: in long chains on which
+    /// nothing but contacts acts.
+    pub fn sleeps_again(&self) -> bool {
+        self.sleeps_again
+    }
+
+    /// Bodies from here on have never moved.
+    pub fn untouched(&self) -> usize {
+        self.untouched
+    }
+
+    /// Within a long step: wakes what short steps may have reached, on the sides
+    /// (of the striker, of the wall) where they go to the window's edge.
+    pub fn keep_up(&mut self, system: &System, state: &mut State, sides: [bool; 2]) {
+        if sides[0] {
+            self.wake_before(system, state);
+        }
+        if sides[1] {
+            self.wake_untouched(state);
+            self.wake_beyond(system, state);
+        }
+    }
+
     /// Wakes what the last step may have reached, and lets sleep what relaxed.
     pub fn follow(&mut self, system: &System, state: &mut State) {
         self.wake_untouched(state);

@@ -12,8 +12,8 @@ pub(super) fn figure(films: &[Film]) -> Figure {
     let shares = shares.map(|(i, film)| shares_of(film, i == 0));
     let full = shares.fold(empty, Figure::panel).panel(residuals(films));
     full.title("Energy budget over time").caption(
-        "Where the striker's energy is, as stacked shares: in motion, in overlaps, and lost to \
-         each dissipative term of the contact law. Last: what the budgets miss of the initial \
+        "(a, b) Where the striker's energy is, as stacked shares: in motion, in overlaps, and lost \
+         to each dissipative term of the contact law. (c) What the budgets miss of the initial \
          energy, the error of the computation.",
     )
 }

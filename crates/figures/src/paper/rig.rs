@@ -17,9 +17,10 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {
         ..rig(experiment)?
     };
     let caption = format!(
-        "The rig as the experiment file of the motor oil has it: what moves, what is wet, where \
-         forces are measured.{} Not to scale.",
-        beside_the_model(experiment)?
+        "Drawn from the experiment file of the motor oil: what moves, what is wet, where forces \
+         are measured.{} Not to scale{}.",
+        beside_the_model(experiment)?,
+        part(experiment, RigPartKind::Bar).map_or("", |_| "; where the bar stands is not known"),
     );
     Ok(drawing.figure().title("The rig").caption(&caption))
 }

@@ -7,6 +7,8 @@ use super::row::draw_bead;
 use super::{INK, RigDrawing};
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
 
+/// Largest radius of the striker, with its arrow beside it.
+const LARGEST: f64 = 6.8;
 /// Height of the rail on which the repositioner runs.
 const RAIL: f64 = -22.0;
 
@@ -20,6 +22,7 @@ pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mu
     }
     let ratio = rig.striker_ratio.filter(|ratio| ratio.is_finite());
     let radius = layout.radius() * ratio.unwrap_or(1.0).clamp(0.6, 1.4);
+    let radius = radius.min(LARGEST);
     let centre = Point::new(x + radius, layout.radius() - radius);
     if rig.striker_ratio.is_some() {
         draw_bead(svg, centre, radius);

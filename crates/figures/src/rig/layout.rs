@@ -134,7 +134,7 @@ fn smallest(beads: usize) -> f64 {
 }
 
 /// Widest number in a bead, in diameters.
-pub(super) const NUMBER: f64 = 0.78;
+pub(super) const NUMBER: f64 = 0.86;
 
 /// Width of the half-bead in diameters.
 fn half_bead(rig: &RigDrawing) -> f64 {
