@@ -1,7 +1,8 @@
 //! What went wrong, told to people, with the exit code: 2 for the user's
 //! mistakes, 1 for ours.
 
-use hertzchain_experiment::{Finding, Mistakes, Warning};
+use crate::arguments::How;
+use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
 use hertzchain_study::StudyError;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 use std::io::IsTerminal;
@@ -33,6 +34,20 @@ impl From<StudyError> for Failure {
 }
 
 impl Failure {
+    /// What kept a shot from being computed, at the place in the experiment
+    /// that has to do with it; what the command line asks for has no place.
+    pub fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
+        let asked = how.solver.is_some() || how.step.is_some() || how.accuracy.is_some();
+        match &error {
+            _ if asked => error.into(),
+            StudyError::Solve(why) => experiment.unsolved(why).into(),
+            StudyError::NotConverged { .. } | StudyError::TooManySteps { .. } => {
+                experiment.unreached(&error.to_string()).into()
+            }
+            _ => error.into(),
+        }
+    }
+
     /// Prints itself and says how the program ends.
     pub fn report(&self) -> ExitCode {
         match self {

@@ -129,3 +129,26 @@ fn a_law_out_of_its_range_is_a_warning_beside_the_results() {
         }
     }
 }
+
+#[test]
+fn a_solver_that_does_not_get_there_is_told_where_it_was_chosen() {
+    let solver = "\n[solver]\nmethod = \"rk4\"\naccuracy = 1e-13\n";
+    let path = file("slow.toml", &format!("{DRY}{solver}"));
+    let chosen_in_file = run(&["shot", path.to_str().unwrap()]);
+    let line = [
+        "shot",
+        "--preset",
+        "dry",
+        "--solver",
+        "rk4",
+        "--accuracy",
+        "1e-13",
+    ];
+    let chosen_on_the_line = run(&line);
+    for (output, place) in [(chosen_in_file, true), (chosen_on_the_line, false)] {
+        assert_eq!(output.status.code(), Some(2));
+        let message = told(&output);
+        assert!(message.contains("use the adaptive solver"), "{message}");
+        assert_eq!(message.contains("[solver]"), place, "{message}");
+    }
+}

@@ -21,11 +21,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     input::check_step(&arguments.how, &plan)?;
     plan.budget = true;
     let folder = open_folder(arguments)?;
-    let shot = if arguments.how.check {
-        shoot_checked(&plan)?
-    } else {
-        shoot(&plan)?
+    let shot = match arguments.how.check {
+        true => shoot_checked(&plan),
+        false => shoot(&plan),
     };
+    let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
     print_warnings(&warnings);
     if arguments.json {
         let mut result = json::shot(&shot);
