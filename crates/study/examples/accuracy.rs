@@ -3,11 +3,13 @@
 //! ```sh
 //! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked
 //! cargo run --release -p hertzchain-study --example accuracy -- steps  # by step
+//! cargo run --release -p hertzchain-study --example accuracy -- rounding
 //! ```
 //!
 //! Errors are the larger ones of both times of flight, against the wave loop
 //! at 1e-11, over eleven speeds. Force passes are means over these speeds: of a
 //! sweep, those that stayed in the ensemble, without the shots that judge them.
+//! Rounding is what single precision changes at equal steps.
 
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
@@ -50,7 +52,8 @@ fn main() -> Result<()> {
     match std::env::args().nth(1).as_deref() {
         None => by_accuracy(),
         Some("steps") => by_step(),
-        Some(other) => Err(format!("`{other}` is neither nothing nor `steps`").into()),
+        Some("rounding") => rounding(),
+        Some(other) => Err(format!("`{other}` is neither nothing, `steps` nor `rounding`").into()),
     }
 }
 
@@ -126,21 +129,30 @@ fn by_accuracy() -> Result<()> {
     Ok(())
 }
 
+/// Precisions and whether openings are found, as in the tables.
+const KINDS: [(Precision, bool); 4] = [
+    (Precision::Double, false),
+    (Precision::Single, false),
+    (Precision::Double, true),
+    (Precision::Single, true),
+];
+
 fn by_step() -> Result<()> {
     let names = PRESETS.join(" | ");
-    println!("| openings | step | {names} | passes, dry | until it has passed |");
+    println!("| precision | openings | step | {names} | passes, dry | until it has passed |");
     let exact = PRESETS.iter().map(|name| one_by_one(name, EXACT));
     let exact = exact.collect::<Result<Vec<_>>>()?;
-    for openings in [false, true] {
+    for kind in KINDS {
         for step in STEPS {
-            let mut row = format!("| {openings} | {step} |");
+            let (precision, openings) = kind;
+            let mut row = format!("| {precision:?} | {openings} | {step} |");
             for (name, exact) in PRESETS.iter().zip(&exact) {
-                let flown = flown(name, (step, openings), End::Reflected)?;
+                let flown = flown(name, step, kind, End::Reflected)?;
                 let flights = flown.into_iter().map(|flown| flight(flown?));
                 row += &format!(" {} |", told(&errors(flights, exact)));
             }
             for end in [End::Reflected, End::Passed] {
-                let flown = flown("dry", (step, openings), end)?;
+                let flown = flown("dry", step, kind, end)?;
                 let works = flown.iter().flatten().map(|flown| &flown.work);
                 row += &format!(" {:.0} |", mean_passes(works));
             }
@@ -150,8 +162,41 @@ fn by_step() -> Result<()> {
     Ok(())
 }
 
+fn rounding() -> Result<()> {
+    println!("| preset | openings | step | incident | reflected |");
+    let kinds = [false, true].into_iter();
+    let kinds = kinds.flat_map(|openings| STEPS.map(|step| (openings, step)));
+    for (name, (openings, step)) in PRESETS
+        .iter()
+        .flat_map(|name| kinds.clone().map(move |kind| (name, kind)))
+    {
+        let fly = |precision| flown(name, step, (precision, openings), End::Reflected);
+        let (double, single) = (fly(Precision::Double)?, fly(Precision::Single)?);
+        let pairs = double.into_iter().zip(single);
+        let changes = pairs.filter_map(|(double, single)| rounded(double?, single?));
+        let [incident, reflected] = changes.fold([0.0_f64; 2], |most, change| {
+            [0, 1].map(|i| most[i].max(change[i]))
+        });
+        println!("| {name} | {openings} | {step} | {incident:.1e} | {reflected:.1e} |");
+    }
+    Ok(())
+}
+
+/// Relative changes of the incident and the reflected time of flight.
+fn rounded(double: Flown, single: Flown) -> Option<[f64; 2]> {
+    let (double, single) = (flight(double)?, flight(single)?);
+    let incident = single.incident_s / double.incident_s;
+    let reflected = single.reflected_s? / double.reflected_s?;
+    Some([incident, reflected].map(|ratio| (ratio - 1.0).abs()))
+}
+
 /// Shots with a step in contact times; `None` where a sweep would not trust one.
-fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Option<Flown>>> {
+fn flown(
+    name: &str,
+    step: f64,
+    (precision, openings): (Precision, bool),
+    end: End,
+) -> Result<Vec<Option<Flown>>> {
     let plans = plans(name, EXACT)?;
     let systems = plans.iter().map(|plan| Ok(System::new(&plan.chain)?));
     let systems = systems.collect::<Result<Vec<_>>>()?;
@@ -159,7 +204,7 @@ fn flown(name: &str, (step, openings): (f64, bool), end: End) -> Result<Vec<Opti
         system,
         step,
         duration_s: LONGEST_S,
-        precision: Precision::Double,
+        precision,
     };
     let shots: Vec<_> = systems.iter().map(shot).collect();
     let wall = systems[0].contacts() - 1;

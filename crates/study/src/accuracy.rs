@@ -38,6 +38,21 @@ pub(crate) fn tolerance(plan: &Plan) -> (f64, bool) {
     (wanted.max(TIGHTEST), wanted < TIGHTEST)
 }
 
+/// A result is at most this many times as wrong as a finer run changes it:
+/// half the step at the lowest order, 1, leaves as much as it takes away.
+const OF_CHANGE: f64 = 2.0;
+
+/// Two runs may agree by chance; no result is trusted to less than this many
+/// tolerances of a step. Measured over the paper's chains and speeds: with both
+/// no error is larger than what is told, `docs/numerics.md`.
+const OF_TOLERANCE: f64 = 5.0;
+
+/// The accuracy reached, from the change that a finer run makes and the
+/// tolerance per step, 0 for fixed steps.
+pub(crate) fn reached(change: f64, tolerance: f64) -> f64 {
+    (OF_CHANGE * change).max(OF_TOLERANCE * tolerance)
+}
+
 /// Tolerance per step with which errors that do not sum along a chain leave
 /// times of flight as right as a plan asks.
 pub(crate) fn of_times(plan: &Plan) -> f64 {

@@ -68,7 +68,10 @@ impl<'a> Gun<'a> {
     /// the accuracy was not reached, the finer shot takes its place.
     fn refine(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
         let mut again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
-        while shot.change(&again) > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST {
+        let bound = |shot: &Shot, again: &Shot, tolerance: f64| {
+            accuracy::reached(shot.change(again), tolerance)
+        };
+        while bound(shot, &again, tolerance) > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST {
             tolerance *= 0.1;
             let notes = std::mem::take(&mut shot.notes);
             *shot = match self.plan.watch {
@@ -78,7 +81,7 @@ impl<'a> Gun<'a> {
             (shot.tolerance, shot.notes) = (Some(tolerance), notes);
             again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
         }
-        self.judge(shot, &again);
+        self.judge(shot, bound(shot, &again, tolerance));
         Ok(())
     }
 
@@ -87,7 +90,8 @@ impl<'a> Gun<'a> {
         let mut shot = self.at_step(solver, step_s, self.plan.watch.is_some())?;
         if checked {
             let again = self.at_step(solver, 0.5 * step_s, false)?;
-            self.judge(&mut shot, &again);
+            let reached = accuracy::reached(shot.change(&again), 0.0);
+            self.judge(&mut shot, reached);
         }
         Ok(shot)
     }
@@ -176,12 +180,11 @@ impl<'a> Gun<'a> {
         Ok(shot)
     }
 
-    fn judge(&self, shot: &mut Shot, again: &Shot) {
-        let change = shot.change(again);
-        shot.accuracy_reached = Some(change);
-        if change > self.plan.accuracy {
+    fn judge(&self, shot: &mut Shot, reached: f64) {
+        shot.accuracy_reached = Some(reached);
+        if reached > self.plan.accuracy {
             shot.notes.push(format!(
-                "the asked accuracy of {:e} was not reached: computed more tightly, the result changes by {change:.1e}",
+                "the asked accuracy of {:e} was not reached: as a tighter computation tells, the result is right to {reached:.1e}",
                 self.plan.accuracy
             ));
         }

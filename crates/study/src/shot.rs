@@ -47,11 +47,12 @@ pub struct Shot {
     pub work: Work,
     /// Relative accuracy asked of times of flight.
     pub accuracy_asked: f64,
-    /// Largest relative change of the times of flight (of the sensor's largest
-    /// peak time or the final velocities, where there are none) when computed
-    /// again ten times as tightly, or at half the fixed step; `None` unless checked.
-    /// In an ensemble three times the change to a step 1.3 times as long, always;
-    /// `work` does not count that second shot.
+    /// A bound on the relative error of the times of flight (of the sensor's largest
+    /// peak time or the final velocities, where there are none): twice the change
+    /// when computed again ten times as tightly, or at half the fixed step, and at
+    /// least five tolerances of a step; `None` unless checked. In an ensemble three
+    /// times the change to a step 1.3 times as long, always; `work` does not count
+    /// that second shot.
     pub accuracy_reached: Option<f64>,
     /// How it was computed.
     pub solver: String,
