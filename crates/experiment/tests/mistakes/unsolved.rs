@@ -22,7 +22,9 @@ fn a_motion_that_ends_is_told_at_the_laws_of_its_contact() {
     ] {
         let error = SolveError::NotFinite {
             time_s: 1e-3,
+            body: contact,
             contact,
+            step_s: None,
         };
         let finding = only(&experiment, &error);
         let line = 1 + text[..text.find(part).unwrap()].matches('\n').count();
