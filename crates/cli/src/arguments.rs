@@ -182,7 +182,7 @@ pub struct Sweep {
     /// How to compute.
     #[command(flatten)]
     pub how: How,
-    /// Print JSON
+    /// Print JSON; without an energy budget, which only `shot` keeps
     #[arg(long)]
     pub json: bool,
     /// Write the table (CSV) and a figure (SVG, PNG) into this folder

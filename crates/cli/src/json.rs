@@ -76,6 +76,10 @@ fn budget(budget: &Budget) -> Json {
     })
 }
 
+/// What stands in the place of the energy budget in a sweep.
+const NO_BUDGET: &str =
+    "a sweep asks for times of flight and keeps no energy budget; `hertzchain shot` does";
+
 /// One speed of a sweep.
 pub fn point(point: &Point) -> Json {
     match &point.shot {
@@ -85,13 +89,16 @@ pub fn point(point: &Point) -> Json {
             if let Some(object) = json.as_object_mut() {
                 object.insert("speed_m_s".to_owned(), json!(point.speed_m_s));
                 object.insert("warnings".to_owned(), json!(point.warnings));
+                if result.budget.is_none() {
+                    object.insert("energy".to_owned(), json!({ "missing": NO_BUDGET }));
+                }
             }
             json
         }
     }
 }
 
-/// A fit of times against speed.
+/// A fit of times against speed. Two speeds tell no errors and no R²: null.
 pub fn fit(fit: &Result<PowerLaw, FitError>) -> Json {
     match fit {
         Err(error) => json!({ "missing": error.to_string() }),
@@ -101,7 +108,8 @@ pub fn fit(fit: &Result<PowerLaw, FitError>) -> Json {
             "exponent": law.exponent,
             "exponent_error": law.exponent_error,
             "covariance": law.covariance,
-            "r_squared": law.r_squared,
+            "r_squared": (law.residuals.len() > 2).then_some(law.r_squared),
+            "speeds": law.residuals.len(),
             "residuals": law.residuals,
         }),
     }

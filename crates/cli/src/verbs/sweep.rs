@@ -97,11 +97,27 @@ fn show(
         return print::print_json(&table::named(results, experiment.units()));
     }
     print_warnings(experiment, swept);
+    if swept.points.iter().all(|point| point.shot.is_err()) {
+        // Nothing but dashes; why there are no shots is told instead.
+        return Ok(());
+    }
     let style = Style::of_accuracy(plan.accuracy, experiment.units());
     let mut text = format!("{}\n{}", heading(experiment.title()), rows(style, swept));
+    text += &no_flight(swept);
     text += &fit_line(style, "incident", &swept.incident);
     text += &fit_line(style, "reflected", &swept.reflected);
     print::print(&text)
+}
+
+/// Why no speed has a time of flight, if none has.
+fn no_flight(swept: &Sweep) -> String {
+    let mut shots = swept.points.iter().filter_map(ok);
+    let first = shots.next().filter(|_| swept.flights().is_empty());
+    match first.map(|shot| &shot.passage) {
+        Some(Err(reason)) => format!("no times of flight: {reason}\n"),
+        Some(Ok(_)) => "no times of flight: what they are picked by was not seen\n".to_owned(),
+        None => String::new(),
+    }
 }
 
 /// The first warnings stand for those of their kind at other speeds.
@@ -194,20 +210,19 @@ fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> Strin
         Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
         Units::Dimensionless => (1.0, "", "v"),
     };
-    // Two points lie on a line and tell no error.
-    let error = |value: f64| {
-        if value.is_nan() {
-            "?".into()
-        } else {
-            digits(value, 2)
-        }
-    };
+    if law.residuals.len() == 2 {
+        return format!(
+            "{name}: ToF = {}{unit} · {speed}^({}), through two speeds, which tell no errors\n",
+            digits(law.prefactor / size, 7),
+            digits(law.exponent, 7),
+        );
+    }
     format!(
         "{name}: ToF = ({} ± {}){unit} · {speed}^({} ± {}), R² = {}, largest deviation {} %\n",
         digits(law.prefactor / size, 7),
-        error(law.prefactor_error / size),
+        digits(law.prefactor_error / size, 2),
         digits(law.exponent, 7),
-        error(law.exponent_error),
+        digits(law.exponent_error, 2),
         digits(law.r_squared, 8),
         digits(100.0 * law.largest_deviation(), 2),
     )
