@@ -32,6 +32,7 @@ fn shot_sweep_and_reproduce_agree_on_the_rebound() {
         let experiment = preset(case).unwrap();
         let settings = Settings {
             adjust: &|plan| plan.accuracy = accuracy,
+            checked: true,
             ..Settings::default()
         };
         let swept = sweep(&experiment, &speeds, &settings);

@@ -1,5 +1,6 @@
 //! What one shot showed, and how sure that is.
 
+use crate::accuracy::{reached, tolerance};
 use crate::claims::Point;
 use crate::{Plan, Shot, StudyError, shoot};
 use hertzchain_chain::observe::Passage;
@@ -27,7 +28,7 @@ mod unchecked {
 /// Below this accuracy rounding decides, not the step.
 const FINEST: f64 = 1e-12;
 
-/// Computes a shot, and again at a tenth of the tolerance: what this changes is
+/// Computes a shot, and again at a tenth of the tolerance: what this changes tells
 /// the accuracy of every number. Where times of flight change by more than the
 /// accuracy asked, the finer shot takes its place.
 pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> {
@@ -39,7 +40,8 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
     let mut point = at(accuracy)?;
     loop {
         let finer = at(0.1 * accuracy)?;
-        let judged = judged(point, &finer);
+        let (tolerance, _) = tolerance(&plan.clone().with_accuracy(accuracy));
+        let judged = judged(point, &finer, tolerance);
         if judged.accuracy_reached <= plan.accuracy || 0.1 * accuracy <= FINEST {
             return Ok(judged);
         }
@@ -48,13 +50,17 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
     }
 }
 
-/// A point whose accuracies are what a finer computation changes.
-fn judged(point: Point, finer: &Point) -> Point {
+/// A point whose accuracies follow from what a finer computation changes and from
+/// the tolerance of a step.
+fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
     let largest = |number: &dyn Fn(&Point) -> Vec<f64>, relative: bool| {
         let pairs = number(&point).into_iter().zip(number(finer));
-        let change = pairs.map(|(a, b)| (a - b).abs() / if relative { b.abs() } else { 1.0 });
+        let off = pairs.map(|(a, b)| {
+            let off = reached((a - b).abs(), tolerance * b.abs());
+            off / if relative { b.abs() } else { 1.0 }
+        });
         // What neither shot gave is not wrong.
-        change.filter(|change| !change.is_nan()).fold(0.0, f64::max)
+        off.filter(|off| !off.is_nan()).fold(0.0, f64::max)
     };
     let tofs = |p: &Point| vec![p.tof_incident_s, p.tof_reflected_s];
     let peaks = |p: &Point| vec![p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
