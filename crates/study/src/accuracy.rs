@@ -63,11 +63,11 @@ pub(crate) fn of_times(plan: &Plan) -> f64 {
 /// beads mostly reach an accuracy, and whether openings must be found: measured,
 /// `docs/numerics.md`. Each shot tells by a second, longer step whether it has.
 const EQUAL_STEPS: [(f64, f64, bool); 5] = [
-    (1e-3, 0.15, false),
-    (1e-4, 0.13, false),
-    (1e-5, 0.1, true),
-    (1e-6, 0.045, true),
-    (1e-7, 0.018, true),
+    (1e-3, 0.13, false),
+    (1e-4, 0.1, false),
+    (1e-5, 0.07, true),
+    (1e-6, 0.036, true),
+    (1e-7, 0.013, true),
 ];
 
 /// Chains longer than this lose more on the way than [`EQUAL_STEPS`] tells.
