@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// fired along.
 ///
 /// `progress` is called once a plan, from any thread. In the ensemble loop every
-/// shot is computed twice and carries the accuracy it reached; in the wave loop
+/// shot is computed three times and carries the accuracy it reached; in the wave loop
 /// only with `checked`.
 pub fn shoot_all(
     plans: &[Plan],
@@ -129,8 +129,8 @@ fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let ready: Vec<(&Plan, &System)> = ready
         .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
         .collect();
-    let shots = fire(&ready, set, 1.0).into_iter();
-    let [near, far] = LONGER.map(|longer| fire(&ready, set, longer));
+    let shots = fire(&ready, set, (1.0, true)).into_iter();
+    let [near, far] = LONGER.map(|longer| fire(&ready, set, (longer, false)));
     let judges = near.into_iter().zip(far);
     let mut kept = shots
         .zip(judges)
@@ -150,8 +150,12 @@ fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
 }
 
 /// Fires plans that are alike in accuracy, sensor and length, with their step
-/// times a factor.
-fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Option<Shot>> {
+/// times a factor; pulses have widths if asked.
+fn fire(
+    ready: &[(&Plan, &System)],
+    set: InstructionSet,
+    (longer, shapes): (f64, bool),
+) -> Vec<Option<Shot>> {
     let Some((first, system)) = ready.first() else {
         return Vec::new();
     };
@@ -176,7 +180,7 @@ fn fire(ready: &[(&Plan, &System)], set: InstructionSet, longer: f64) -> Vec<Opt
             End::Duration
         },
         set,
-        shapes: true,
+        shapes,
         whole_chain: false,
         openings,
     };

@@ -50,9 +50,9 @@ pub struct Shot {
     /// A bound on the relative error of the times of flight (of the sensor's largest
     /// peak time or the final velocities, where there are none): twice the change
     /// when computed again ten times as tightly, or at half the fixed step, and at
-    /// least five tolerances of a step; `None` unless checked. In an ensemble three
-    /// times the change to a step 1.3 times as long, always; `work` does not count
-    /// that second shot.
+    /// least five tolerances of a step; `None` unless checked. In an ensemble, always,
+    /// from the changes to steps 1.3 and 1.69 times as long; `work` does not count
+    /// those shots.
     pub accuracy_reached: Option<f64>,
     /// How it was computed.
     pub solver: String,

@@ -36,8 +36,8 @@ impl Shot<'_> {
 pub enum Precision {
     /// f64: rounding is never seen.
     Double,
-    /// f32, twice as fast: rounding moves times of flight by some 1e-6, and
-    /// by more where a chain is pressed.
+    /// f32, twice as fast: rounding moves times of flight by some 1e-6,
+    /// reflected ones by up to 2e-5, and more where a chain is pressed.
     Single,
 }
 
