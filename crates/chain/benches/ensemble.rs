@@ -103,13 +103,35 @@ fn one_dry_shot_alone(bencher: Bencher<'_, '_>, precision: Precision) {
         .bench(|| black_box(fire(&[shot], &settings)));
 }
 
+/// What memory alone allows: as many numbers read and written as by a step of
+/// [`one_long_chain`].
+#[divan::bench(args = [100_000, 1_000_000], sample_count = 5)]
+fn memory_of_one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
+    let numbers = || vec![0.0_f64; beads];
+    let (mut x, mut v, mut force, mut newest) = (numbers(), numbers(), numbers(), numbers());
+    let earlier: [Vec<f64>; 4] = std::array::from_fn(|_| numbers());
+    bencher.counter(ItemsCount::new(beads)).bench_local(|| {
+        for (force, (x, v)) in force.iter_mut().zip(x.iter().zip(&v)) {
+            *force = x - v;
+        }
+        let bodies = x.iter_mut().zip(&mut v).zip(&mut newest).zip(&force);
+        for (i, (((x, v), newest), force)) in bodies.enumerate() {
+            *newest = *force;
+            *v += earlier[0][i] + earlier[1][i] + earlier[2][i] + earlier[3][i];
+            *x += *v;
+        }
+        black_box((&x, &v));
+    });
+}
+
 /// All of a long chain, whether it moves or not.
 #[divan::bench(args = [40, 4_000, 100_000, 1_000_000], sample_count = 5)]
 fn one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
     let mut chain = row(beads, 0.5, laws("hertz"));
     chain.far = FarEnd::Free;
     let system = System::new(&chain).unwrap();
-    let steps = (10_000_000 / beads).max(16);
+    // Setting a long chain up costs some ten steps.
+    let steps = (10_000_000 / beads).max(200);
     let shot = Shot {
         system: &system,
         step: 0.1,

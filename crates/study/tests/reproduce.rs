@@ -219,6 +219,10 @@ fn scan_tries_every_option_once_and_says_what_it_left_out() {
         .product();
     assert_eq!(scan.product.len(), sizes);
     assert!(scan.rows().all(|row| row.score() <= scan.closest().score()));
+    for row in scan.as_close() {
+        assert_eq!(row.score(), scan.closest().score());
+        assert!(row.reading.changes().len() >= scan.closest().reading.changes().len());
+    }
     let moved = |name: &str| {
         let rows = scan
             .single

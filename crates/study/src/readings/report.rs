@@ -115,6 +115,18 @@ fn closest(page: &mut String, scan: &Scan) {
         scan.default.score(),
         scan.claims.len()
     );
+    let equals: Vec<String> = scan
+        .as_close()
+        .iter()
+        .map(|row| row.reading.to_string())
+        .collect();
+    if !equals.is_empty() {
+        let _ = writeln!(
+            page,
+            "The same score, with as many changes or more: {}.\n",
+            equals.join("; ")
+        );
+    }
     let or_none = |list: String| {
         if list.is_empty() {
             "nothing".to_owned()

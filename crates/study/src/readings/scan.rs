@@ -130,6 +130,20 @@ impl Scan {
         best(self.rows())
     }
 
+    /// Other readings that meet as many claims as the closest.
+    #[must_use]
+    pub fn as_close(&self) -> Vec<&Row> {
+        let closest = self.closest();
+        let mut found: Vec<&Row> = Vec::new();
+        for row in self.rows() {
+            let told = found.iter().any(|other| other.reading == row.reading);
+            if row.score() == closest.score() && row.reading != closest.reading && !told {
+                found.push(row);
+            }
+        }
+        found
+    }
+
     /// For each claim that the default reading does not fully meet, the best
     /// reading that meets it better.
     #[must_use]
