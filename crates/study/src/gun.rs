@@ -8,8 +8,18 @@ use crate::following::Following;
 use crate::plan::{Plan, Solver};
 use crate::shot::{Rebound, Shot, reported};
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
-use hertzchain_chain::wave::{Budget, Limits, Method, Observer, Outcome, run};
+use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
+
+/// Most times that a shot is computed so that its energy budget closes.
+const MOST_TRIES: u32 = 4;
+
+/// How far the energy budget is from closing, as a fraction of the input; 0
+/// where there is none.
+fn residual(shot: &Shot) -> f64 {
+    let budget = shot.budget.as_ref();
+    budget.map_or(0.0, |budget| budget.relative_residual().abs())
+}
 
 /// A plan whose chain is set up.
 pub(crate) struct Gun<'a> {
@@ -31,8 +41,8 @@ impl<'a> Gun<'a> {
     pub(crate) fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
         let mut shot = self.computed(checked)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
-        let residual = shot.budget.as_ref().map_or(0.0, Budget::relative_residual);
-        if residual.abs() > self.plan.accuracy {
+        let residual = residual(&shot);
+        if residual > self.plan.accuracy {
             shot.notes.push(format!(
                 "the energy budget closes to {residual:.1e} of the input only: less than the accuracy asked"
             ));
@@ -50,8 +60,7 @@ impl<'a> Gun<'a> {
 
     fn adaptive(&self, checked: bool) -> Result<Shot, StudyError> {
         let (tolerance, beyond) = accuracy::tolerance(self.plan);
-        let mut shot = self.once(&*accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
-        shot.tolerance = Some(tolerance);
+        let (mut shot, tolerance) = self.balanced(tolerance)?;
         if beyond {
             shot.notes.push(format!(
                 "an accuracy of {:e} is beyond double precision: computed at the tightest tolerance, {TIGHTEST:e} a step",
@@ -62,6 +71,23 @@ impl<'a> Gun<'a> {
             self.refine(&mut shot, tolerance)?;
         }
         Ok(shot)
+    }
+
+    /// The shot, computed more tightly as long as its energy budget does not
+    /// close to the accuracy asked; and the tolerance that it took.
+    fn balanced(&self, mut tolerance: f64) -> Result<(Shot, f64), StudyError> {
+        let mut tries = 1;
+        loop {
+            let mut shot = self.once(&*accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
+            shot.tolerance = Some(tolerance);
+            let excess = residual(&shot) / self.plan.accuracy;
+            if excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {
+                return Ok((shot, tolerance));
+            }
+            // The residual goes with the tolerance, about; twice is a margin.
+            tolerance = (tolerance / (2.0 * excess)).max(TIGHTEST);
+            tries += 1;
+        }
     }
 
     /// Computes a shot again at a tenth of the tolerance; where that shows that

@@ -4,7 +4,7 @@
 
 use hertzchain_chain::observe::{Maximum, Signal};
 use hertzchain_chain::wave::{DormandPrince, Limits, Observer, Outcome, run};
-use hertzchain_chain::{Chain, Motion, Sensor, Start, System};
+use hertzchain_chain::{Chain, Motion, Push, Sensor, Start, System};
 use hertzchain_experiment::{Experiment, preset, presets};
 use hertzchain_study::{Flight, Plan, shoot};
 
@@ -282,6 +282,29 @@ fn every_built_in_experiment_balances_its_energy_to_the_accuracy_asked() {
             let shot = shoot(&plan.with_accuracy(accuracy).with_budget()).unwrap();
             let residual = shot.budget.unwrap().relative_residual();
             assert!(residual.abs() < accuracy, "{}: {residual:e}", preset.name);
+        }
+    }
+}
+
+/// Loaded rows that lose nothing ring on in every contact: their sums of
+/// errors are the longest.
+#[test]
+fn loaded_rows_balance_their_energy_at_any_speed() {
+    let precompressed = |speed| Plan::from_experiment(&example("precompressed"), Some(speed));
+    let mut plans: Vec<Plan> = [1.0, 1.5, 2.5, 5.0]
+        .into_iter()
+        .map(|speed| precompressed(speed).unwrap().0)
+        .collect();
+    for (force_n, speed) in [(0.24, 0.02), (100.0, 2.5)] {
+        let (mut plan, _) = Plan::from_experiment(&example("hertz"), Some(speed)).unwrap();
+        plan.chain.push = Push::Constant { force_n };
+        plans.push(plan);
+    }
+    for plan in plans {
+        for accuracy in [1e-6, 1e-9] {
+            let shot = shoot(&plan.clone().with_accuracy(accuracy).with_budget()).unwrap();
+            let residual = shot.budget.unwrap().relative_residual();
+            assert!(residual.abs() < accuracy, "{accuracy:e}: {residual:e}");
         }
     }
 }

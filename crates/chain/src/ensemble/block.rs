@@ -89,7 +89,9 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         };
         let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
         let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
-        let loads = systems.iter().flat_map(|system| &system.static_force_n);
+        let loads = systems
+            .iter()
+            .flat_map(|system| system.static_force_n.iter());
         let loaded = loads.into_iter().any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
         let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {

@@ -144,10 +144,11 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
     let external = motion.external.as_ref().map(|a| chunks_of(a, count));
     let inverse_mass = motion.inverse_mass.reader();
     for i in awake {
-        let mut a = (load(&left[i]) - load(&right[i])) * load(inverse_mass.at(i));
-        if let Some(external) = external {
-            a += load(&external[i]);
-        }
+        let pushed = (load(&left[i]) - load(&right[i])) * load(inverse_mass.at(i));
+        let a = match external {
+            None => pushed,
+            Some(external) => pushed + load(&external[i]),
+        };
         a.store_array(&mut now[i]);
         let (x0, v0) = (load(&x[i]), load(&v[i]));
         // Two chains of sums each, so that one need not wait for the other.

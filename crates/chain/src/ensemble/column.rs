@@ -38,6 +38,16 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
         }
     }
 
+    /// All its chunks, if they are equal, as one.
+    #[inline(always)]
+    pub fn uniform(&self) -> Option<&[N; W]> {
+        self.values
+            .as_chunks()
+            .0
+            .first()
+            .filter(|_| self.stride == 0)
+    }
+
     /// A reader of chunks.
     #[inline(always)]
     pub fn reader(&self) -> Reader<'_, N, W> {

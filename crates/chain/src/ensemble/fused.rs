@@ -100,38 +100,54 @@ impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
         chunks: Range<usize>,
         force: &mut [N],
     ) {
-        let sides = Sides::new(
-            (place.offset_m, place.slightest_m),
-            (chunks.end, place.lanes),
-            (place.x, place.v),
-            place.starting,
-        );
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-        let force = force[..chunks.end * W].as_chunks_mut::<W>().0;
         // Places beyond the sum's own coefficients are never read.
         let last = T::COEFFICIENTS - 1;
-        let columns: [_; MOST] = std::array::from_fn(|j| self.coefficients[j.min(last)].reader());
-        for i in chunks {
-            let Touch {
-                overlap,
-                root,
-                rate,
-                ..
-            } = sides.touch(simd, i);
-            let k: [_; MOST] = std::array::from_fn(|j| load(columns[j].at(i - self.first)));
-            let contact = Closed {
-                overlap,
-                root,
-                rate,
-                largest: overlap,
-            };
-            let sum = T::force(&k, contact);
-            let sum = match place.fresh {
-                true => sum,
-                false => load(&force[i]) + sum,
-            };
-            sum.store_array(&mut force[i]);
+        let columns: [_; MOST] = std::array::from_fn(|j| &self.coefficients[j.min(last)]);
+        if let [Some(a), Some(b), Some(c)] = columns.map(Column::uniform) {
+            // Loaded once, they stay in registers.
+            let k = [load(a), load(b), load(c)];
+            pass::<T, S, N, W>(simd, place, chunks, force, |_| k);
+        } else {
+            let columns = columns.map(Column::reader);
+            pass::<T, S, N, W>(simd, place, chunks, force, |i| {
+                columns.map(|column| load(column.at(i - self.first)))
+            });
         }
+    }
+}
+
+/// Forces of chunks of contacts whose coefficients `k` gives.
+#[inline(always)]
+fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
+    simd: S,
+    place: &Place<'_, N, W>,
+    chunks: Range<usize>,
+    force: &mut [N],
+    k: impl Fn(usize) -> [N::Wide<S>; MOST],
+) {
+    let (first, fresh) = (chunks.start, place.fresh);
+    let force = force[first * W..chunks.end * W].as_chunks_mut::<W>().0;
+    let sides = Sides::new(place, first, force.len());
+    for (i, force) in force.iter_mut().enumerate() {
+        let Touch {
+            overlap,
+            root,
+            rate,
+            ..
+        } = sides.touch(simd, i);
+        let contact = Closed {
+            overlap,
+            root,
+            rate,
+            largest: overlap,
+        };
+        let sum = T::force(&k(first + i), contact);
+        let sum = match fresh {
+            true => sum,
+            false => N::Wide::<S>::load_array_ref(simd, force) + sum,
+        };
+        sum.store_array(force);
     }
 }
 

@@ -77,7 +77,10 @@ impl Passing {
             }
             self.returned = Peak::default();
         }
-        if sensor.crest() > self.incident.value.min(self.returned.value) {
+        let before_the_wall = self.wall.value == 0.0 || self.seen < self.wall.step;
+        let incident = before_the_wall && sensor.crest() > self.incident.value;
+        let returned = step as f64 > self.back() && sensor.crest() > self.returned.value;
+        if incident || returned {
             self.look_at_sensor(sensor, unseen);
         }
         self.now = sensor.at(step);
@@ -91,15 +94,24 @@ impl Passing {
         sensor: Samples<'_, N, W>,
         unseen: Range<usize>,
     ) {
-        let back = self.wall.step as f64 + SOONEST * self.way();
+        let back = self.back();
         for at in unseen {
             let value = sensor.at(at);
             if at < self.wall.step || self.wall.value == 0.0 {
                 self.incident.look(value, at);
             }
-            if self.wall.value > 0.0 && at as f64 > back {
+            if at as f64 > back {
                 self.returned.look(value, at);
             }
+        }
+    }
+
+    /// Step from which on a maximum can be the returned pulse; never before
+    /// the wall has seen any.
+    fn back(&self) -> f64 {
+        match self.wall.value > 0.0 {
+            true => self.wall.step as f64 + SOONEST * self.way(),
+            false => f64::INFINITY,
         }
     }
 

@@ -142,14 +142,9 @@ impl Unfused {
         place: &Place<'_, N, W>,
         part: Range<usize>,
     ) {
-        let sides = Sides::new(
-            (place.offset_m, place.slightest_m),
-            (part.end, place.lanes),
-            (place.x, place.v),
-            place.starting,
-        );
-        for i in part {
-            let touch = sides.touch(simd, i);
+        let sides = Sides::new(place, part.start, part.len());
+        for i in part.clone() {
+            let touch = sides.touch(simd, i - part.start);
             let at = i * W - self.first..(i + 1) * W - self.first;
             let keep = |values: &mut [f64], now: N::Wide<S>| {
                 for (value, &now) in values[at.clone()].iter_mut().zip(now.as_slice()) {

@@ -1,7 +1,8 @@
 //! Overlaps, their roots and their rates, chunk by chunk.
 
-use super::column::{Column, Reader};
+use super::column::Reader;
 use super::number::Number;
+use super::section::Place;
 use fearless_simd::prelude::*;
 
 /// One chunk of contacts as laws see them.
@@ -14,9 +15,10 @@ pub(super) struct Touch<V> {
     pub across: V,
 }
 
-/// Positions and velocities of the bodies left and right of each contact.
+/// Positions and velocities of the bodies left and right of some contacts.
 pub(super) struct Sides<'a, N, const W: usize> {
     offset_m: Reader<'a, N, W>,
+    first: usize,
     /// Overlaps of this size and less are none.
     slightest_m: [N; W],
     starting: bool,
@@ -25,34 +27,35 @@ pub(super) struct Sides<'a, N, const W: usize> {
 }
 
 impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
-    /// Of the first `count` chunks of contacts.
+    /// Of `count` chunks of contacts from `first` on.
     #[inline(always)]
-    pub fn new(
-        (offset_m, slightest_m): (&'a Column<N, W>, [N; W]),
-        (count, lanes): (usize, usize),
-        (x, v): (&'a [N], &'a [N]),
-        starting: bool,
-    ) -> Self {
+    pub fn new(place: &Place<'a, N, W>, first: usize, count: usize) -> Self {
+        let part = |values: &'a [N], from: usize| -> &'a [[N; W]] {
+            &values[from..].as_chunks().0[..count]
+        };
         let pair = |values: &'a [N]| {
-            let right = &values[lanes..][..count * W];
-            [values[..count * W].as_chunks().0, right.as_chunks().0]
+            let left = first * W;
+            [part(values, left), part(values, left + place.lanes)]
         };
         Self {
-            offset_m: offset_m.reader(),
-            slightest_m,
-            starting,
-            x: pair(x),
-            v: pair(v),
+            offset_m: place.offset_m.reader(),
+            first,
+            slightest_m: place.slightest_m,
+            starting: place.starting,
+            x: pair(place.x),
+            v: pair(place.v),
         }
     }
 
-    /// Chunk `i`: closed ⇔ δ > 0, or δ = 0 and approaching. The latter can only
-    /// be at the start: whatever approaches from contact overlaps a step later.
+    /// Chunk `i` of them: closed ⇔ δ > 0, or δ = 0 and approaching. The latter
+    /// can only be at the start: whatever approaches from contact overlaps a
+    /// step later.
     #[inline(always)]
     pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let zero = N::Wide::<S>::simd_from(simd, N::default());
-        let depth = load(self.offset_m.at(i)) - (load(&self.x[1][i]) - load(&self.x[0][i]));
+        let apart = load(&self.x[1][i]) - load(&self.x[0][i]);
+        let depth = load(self.offset_m.at(self.first + i)) - apart;
         let across = load(&self.v[0][i]) - load(&self.v[1][i]);
         let deep = depth.simd_gt(load(&self.slightest_m));
         let overlap = deep.select(depth, zero);

@@ -1,7 +1,7 @@
 //! From a chain to columns, with every value checked on the way.
 
 use super::check::{check_values, contact_exists};
-use super::scales::scales;
+use super::scales::{kinds, scales};
 use super::statics::{elastic_force, static_overlap};
 use super::{Scales, SectionColumns, Spring, System, TermColumns};
 use crate::chain::{Chain, ChainError, FarEnd, Push, Section, Start};
@@ -15,12 +15,12 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     let (sections, section_of) = sections(chain, &pairs)?;
     let driven = matches!(chain.start, Start::Driven { .. });
     let mut system = System {
-        mass_kg: masses(chain),
-        inverse_mass: Vec::new(),
-        offset_m: vec![f64::NEG_INFINITY; chain.beads.len() + 1],
-        static_force_n: vec![0.0; chain.beads.len() + 1],
-        sections,
-        section_of,
+        mass_kg: masses(chain).into(),
+        inverse_mass: Arc::default(),
+        offset_m: vec![f64::NEG_INFINITY; chain.beads.len() + 1].into(),
+        static_force_n: vec![0.0; chain.beads.len() + 1].into(),
+        sections: sections.into(),
+        section_of: section_of.into(),
         tension: chain.tension,
         // A driven end carries the push itself.
         spring: spring(&chain.push).filter(|_| !driven),
@@ -47,7 +47,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             time_s: 1.0,
             silent_force_n: 0.0,
         },
-        pairs: Arc::default(),
+        kinds: Arc::default(),
     };
     system.has_memory = system
         .sections
@@ -57,8 +57,8 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
     settle(chain, &mut system)?;
     set_in_motion(chain, &mut system);
-    system.scales = scales(&system, &pairs);
-    system.pairs = pairs.into();
+    system.kinds = kinds(&system, &pairs).into();
+    system.scales = scales(&system, &system.kinds);
     Ok(system)
 }
 
@@ -192,12 +192,13 @@ fn settle(chain: &Chain, system: &mut System) -> Result<(), ChainError> {
     };
     for (c, &load) in loads.iter().enumerate().filter(|&(c, _)| exists(c)) {
         let overlap = static_overlap(system, c, load)?;
-        system.offset_m[c] = overlap;
-        system.static_force_n[c] = elastic_force(system, c, overlap);
+        Arc::make_mut(&mut system.offset_m)[c] = overlap;
+        let force = elastic_force(system, c, overlap);
+        Arc::make_mut(&mut system.static_force_n)[c] = force;
     }
     for gap in &chain.gaps {
         if loads[gap.contact] == 0.0 && gap.gap_m > 0.0 && exists(gap.contact) {
-            system.offset_m[gap.contact] = -gap.gap_m;
+            Arc::make_mut(&mut system.offset_m)[gap.contact] = -gap.gap_m;
         }
     }
     Ok(())

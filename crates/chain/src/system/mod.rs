@@ -68,13 +68,13 @@ pub struct Scales {
 /// Bodies are 0..=N+1: 0 the striker or driven end, N+1 the far end.
 #[derive(Clone, Debug)]
 pub struct System {
-    pub(crate) mass_kg: Vec<f64>,
-    pub(crate) inverse_mass: Vec<f64>,
+    pub(crate) mass_kg: Arc<[f64]>,
+    pub(crate) inverse_mass: Arc<[f64]>,
     /// Static overlap in m, minus the gap where open, −∞ where no contact is.
-    pub(crate) offset_m: Vec<f64>,
-    pub(crate) static_force_n: Vec<f64>,
-    pub(crate) sections: Vec<SectionColumns>,
-    pub(crate) section_of: Vec<u32>,
+    pub(crate) offset_m: Arc<[f64]>,
+    pub(crate) static_force_n: Arc<[f64]>,
+    pub(crate) sections: Arc<[SectionColumns]>,
+    pub(crate) section_of: Arc<[u32]>,
     pub(crate) tension: Tension,
     pub(crate) spring: Option<Spring>,
     pub(crate) push_n: f64,
@@ -88,8 +88,9 @@ pub struct System {
     pub(crate) displacement_m: Vec<f64>,
     pub(crate) velocity_m_s: Vec<f64>,
     pub(crate) scales: Scales,
-    /// What each contact joins: the scales of another speed follow from it.
-    pairs: Arc<[Option<Pair>]>,
+    /// Contacts unlike their left neighbours with what they join: the scales
+    /// of another speed follow from them.
+    kinds: Arc<[(usize, Pair)]>,
 }
 
 impl System {
@@ -114,7 +115,7 @@ impl System {
         check::positive(|| "the striker's speed in m/s".to_owned(), speed_m_s)?;
         let mut struck = self.clone();
         struck.velocity_m_s[0] = speed_m_s;
-        struck.scales = scales::scales(&struck, &self.pairs);
+        struck.scales = scales::scales(&struck, &self.kinds);
         Ok(struck)
     }
 
@@ -169,7 +170,7 @@ impl System {
         };
         self.bodies() == other.bodies()
             && self.sections.len() == other.sections.len()
-            && self.sections.iter().zip(&other.sections).all(alike)
+            && self.sections.iter().zip(other.sections.iter()).all(alike)
             && self.tension == other.tension
             && self.periodic == other.periodic
             && self.has_striker == other.has_striker

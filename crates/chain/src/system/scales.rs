@@ -6,9 +6,9 @@ use crate::material::Pair;
 
 /// The speed that moves the chain and the shortest time in which a pair of
 /// its bodies turns round at that speed.
-pub(super) fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
+pub(super) fn scales(system: &System, kinds: &[(usize, Pair)]) -> Scales {
     let speed = characteristic_speed(system);
-    let time = shortest_time(system, pairs, speed);
+    let time = shortest_time(system, kinds, speed);
     let time_s = if time.is_finite() && time > 0.0 {
         time
     } else {
@@ -24,12 +24,20 @@ pub(super) fn scales(system: &System, pairs: &[Option<Pair>]) -> Scales {
     }
 }
 
-/// Shortest turning time of all contacts; equal neighbours share theirs.
-fn shortest_time(system: &System, pairs: &[Option<Pair>], speed_m_s: f64) -> f64 {
+/// Contacts with what they join, of equal neighbours the first.
+pub(super) fn kinds(system: &System, pairs: &[Option<Pair>]) -> Vec<(usize, Pair)> {
     let kind = |c: usize| (pairs[c], system.section_of[c], system.offset_m[c]);
     (0..pairs.len())
         .filter(|&c| c == 0 || kind(c) != kind(c - 1))
-        .filter_map(|c| Some(statics_time(system, c, pairs[c]?.mass_kg, speed_m_s)))
+        .filter_map(|c| Some((c, pairs[c]?)))
+        .collect()
+}
+
+/// Shortest turning time of all contacts.
+fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f64 {
+    kinds
+        .iter()
+        .map(|(c, pair)| statics_time(system, *c, pair.mass_kg, speed_m_s))
         .fold(f64::INFINITY, f64::min)
 }
 

@@ -70,7 +70,7 @@ impl Budget {
 /// Energy that contacts hold, of one law or of all.
 pub(super) fn stored(system: &System, state: &State, law: Option<&str>) -> f64 {
     let mut sum = 0.0;
-    for section in &system.sections {
+    for section in system.sections.iter() {
         for term in section.terms() {
             let info = term.law.info();
             if info.nature == Nature::Dissipative || law.is_some_and(|law| law != info.name) {

@@ -142,7 +142,7 @@ impl Pass {
     fn add_terms(&mut self, system: &System, contacts: Range<usize>) {
         self.closed_force[contacts.clone()].fill(0.0);
         self.across[contacts.clone()].fill(0.0);
-        for section in &system.sections {
+        for section in system.sections.iter() {
             let part =
                 section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);
             if part.is_empty() {

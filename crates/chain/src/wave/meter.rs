@@ -67,7 +67,7 @@ impl Meter {
         }
         for contacts in contacts.iter().filter(|contacts| !contacts.is_empty()) {
             powers[cut] += cut_power(system, pass, contacts.clone());
-            for section in &system.sections {
+            for section in system.sections.iter() {
                 let part = section.contacts.start.max(contacts.start)
                     ..section.contacts.end.min(contacts.end);
                 for (term, gated) in with_gates(section).filter(|_| !part.is_empty()) {
