@@ -323,3 +323,19 @@ fn restitution_of_an_elastic_plastic_collision_matches_its_closed_form() {
         assert!(budget.relative_residual().abs() < 1e-9, "{budget:?}");
     }
 }
+
+#[test]
+fn viscoelastic_damping_with_time_and_stiffness_given_needs_no_material() {
+    let rigid = Pair {
+        left: hertzchain_chain::Material::RIGID,
+        right: hertzchain_chain::Material::RIGID,
+        radius_m: 0.25,
+        mass_kg: 0.5,
+    };
+    for name in ["damping_viscoelastic", "damping_brilliantov_1996"] {
+        let row = hertzchain_chain::laws::find(name).unwrap();
+        let law = row.build(&[("relaxation_time", 0.5), ("stiffness", 4.0)]);
+        // (3/2) A K, exact in binary.
+        assert_eq!(law.unwrap().coefficients(&rigid).unwrap(), [3.0], "{name}");
+    }
+}

@@ -1,6 +1,7 @@
 //! The `hertzchain` program: one file a verb, no logic of its own.
 
 mod arguments;
+mod bibliography;
 mod failure;
 mod folder;
 mod format;

@@ -246,6 +246,35 @@ fn laws_lists_the_whole_registry() {
 }
 
 #[test]
+fn laws_print_the_work_that_each_is_from() {
+    let text = good(&["laws", "damping_tsuji"]);
+    for words in [
+        "Tsuji, Y.; Tanaka, T.; Ishida, T.",
+        "Lagrangian numerical simulation of plug flow",
+        "Powder Technology 71, 239–250 (1992) [Tsuji1992]",
+        "default: the section's elastic_hertz, else the materials",
+    ] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+    for law in json(&["laws", "--json"]).as_array().unwrap() {
+        let source = &law["source"];
+        assert!(law["reference"].is_string(), "{law}");
+        assert!(source["authors"][0].is_string(), "{law}");
+        assert!(
+            source["title"].is_string() && source["year"].is_i64(),
+            "{law}"
+        );
+    }
+    let hertz = json(&["laws", "elastic_hertz", "--json"]);
+    assert!(
+        hertz[0]["source"]["journal"]
+            .as_str()
+            .unwrap()
+            .contains("für")
+    );
+}
+
+#[test]
 fn schema_completions_and_manual_pages_come_from_the_program() {
     let schema = json(&["schema"]);
     assert!(schema["properties"]["beads"].is_object());

@@ -15,7 +15,8 @@ use std::sync::Arc;
 pub struct LawSpec {
     /// Its row in the registry.
     pub row: &'static Row,
-    /// Parameter values by name, in SI.
+    /// Parameter values by name, in SI; also the stiffness that a law takes from
+    /// the section's `elastic_hertz`, and 1 where a chain has no materials.
     pub given: Vec<(&'static str, f64)>,
     pub(crate) span: Range<usize>,
 }

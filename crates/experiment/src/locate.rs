@@ -3,7 +3,7 @@
 use crate::finding::Problem;
 use crate::spec::{Far, SectionSpec, Spec};
 use hertzchain_chain::ChainError;
-use hertzchain_chain::laws::{LawError, Source};
+use hertzchain_chain::laws::LawError;
 use hertzchain_chain::wave::SolveError;
 use std::ops::Range;
 
@@ -97,7 +97,7 @@ fn law(spec: &Spec, contact: usize, error: &LawError) -> Problem {
     let from_materials = law.map_or(Vec::new(), |law| {
         let parameters = law.row.info.parameters.iter();
         let given = |name: &str| law.given.iter().any(|(given, _)| *given == name);
-        let left = parameters.filter(|p| p.source == Source::Materials && !given(p.name));
+        let left = parameters.filter(|p| p.source.is_derived() && !given(p.name));
         left.map(|p| format!("`{}`", p.name)).collect()
     });
     let bare = section(spec, contact).is_some_and(|section| section.material.is_none());

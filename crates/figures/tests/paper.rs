@@ -67,6 +67,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
         left_out: Vec::new(),
         product: Vec::new(),
         search: Vec::new(),
+        flipped_by_rounding: vec![0, 1],
     });
     paper::figures(computed).unwrap()
 }
@@ -91,10 +92,13 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     let (_, wide) = pictures(&mut computed, 100).pop().unwrap();
     let (smallest, width_mm) = smallest_type(&wide.svg());
     assert!(smallest > 6.0 - 5e-3 && width_mm == 175.0, "{width_mm} mm");
+    assert!(wide.caption_text().contains("† Not decidable"));
     computed.scan = None;
     let folder = std::env::temp_dir().join(format!("hertzchain-paper-{}", std::process::id()));
-    computed.write_tables(&folder).unwrap();
-    paper::write(&computed, &folder).unwrap();
+    let mut listed = computed.write_tables(&folder).unwrap();
+    listed.extend(paper::write(&computed, &folder).unwrap());
+    let provenance = computed.write_provenance(&folder, &listed).unwrap();
+    let provenance = fs::read_to_string(provenance).unwrap();
     let entries = fs::read_dir(&folder).unwrap();
     let written: BTreeSet<String> = entries
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -111,5 +115,8 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
         .chain(["captions.md".to_owned()])
         .collect();
     assert_eq!(written, expected);
+    for name in expected {
+        assert!(provenance.contains(&format!("\"{name}\"")), "{name}");
+    }
     assert!(png.starts_with(b"\x89PNG"));
 }

@@ -18,4 +18,4 @@ mod power_law;
 
 pub use delay::delay_by_cross_correlation;
 pub use pick::{Peak, largest_peak, onset_s};
-pub use power_law::{FitError, PowerLaw, power_law};
+pub use power_law::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};

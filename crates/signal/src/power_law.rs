@@ -85,6 +85,51 @@ pub fn power_law(
     Ok(line.power_law(&x, &y, &weights, sigmas.is_some()))
 }
 
+/// How far a fitted law can be off because of errors of its values alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Largest relative error of the prefactor.
+    pub prefactor_relative: f64,
+    /// Largest error of the exponent.
+    pub exponent: f64,
+}
+
+/// What values that are right to `relative` errors leave open in an unweighted
+/// [`power_law`].
+///
+/// A bound, not a standard error: ln a = Σ cᵢ ln yᵢ and b = Σ dᵢ ln yᵢ, so it is
+/// Σ |cᵢ| εᵢ and Σ |dᵢ| εᵢ. Errors of one method mostly have one sign and do not
+/// average out.
+///
+/// # Errors
+/// See [`FitError`]; relative errors may be 0.
+pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, FitError> {
+    check(abscissas, abscissas, None)?;
+    if relative.len() != abscissas.len() {
+        return Err(FitError::Lengths {
+            abscissas: abscissas.len(),
+            values: relative.len(),
+        });
+    }
+    let bad = relative.iter().position(|e| !(*e >= 0.0 && e.is_finite()));
+    if let Some(index) = bad {
+        return Err(FitError::NotPositive { index });
+    }
+    let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
+    let weights = vec![1.0; x.len()];
+    let line = Line::through(&x, &x, &weights).ok_or(FitError::TooFew)?;
+    let slope = |x: &f64| (x - line.mean_x) / line.spread_x;
+    let level = |x: &f64| line.weight.recip() - line.mean_x * slope(x);
+    let bound = |part: &dyn Fn(&f64) -> f64| {
+        let parts = x.iter().zip(relative);
+        parts.map(|(x, error)| part(x).abs() * error).sum()
+    };
+    Ok(Uncertainty {
+        prefactor_relative: bound(&level),
+        exponent: bound(&slope),
+    })
+}
+
 fn check(abscissas: &[f64], values: &[f64], sigmas: Option<&[f64]>) -> Result<(), FitError> {
     for slice in [Some(values), sigmas].into_iter().flatten() {
         if slice.len() != abscissas.len() {

@@ -1,6 +1,6 @@
 //! Power-law fits against closed forms and against numpy's linear algebra.
 
-use hertzchain_signal::{FitError, PowerLaw, power_law};
+use hertzchain_signal::{FitError, PowerLaw, power_law, uncertainty};
 
 const SPEEDS: [f64; 7] = [0.075, 0.1, 0.25, 0.5, 0.75, 1.0, 1.23];
 const TIMES: [f64; 7] = [1086.9, 1020.3, 842.1, 741.7, 690.4, 655.0, 630.8];
@@ -98,4 +98,37 @@ fn what_cannot_be_fitted_is_refused() {
         power_law(&[1.0, 2.0], &[1.0, 1.0], Some(&[1.0, 0.0])),
         not_positive
     );
+}
+
+#[test]
+fn wrong_values_move_a_fit_by_no_more_than_their_errors_allow() {
+    let relative = [1e-6, 3e-7, 2e-6, 5e-7, 1e-6, 4e-7, 1e-6];
+    let allowed = uncertainty(&SPEEDS, &relative).unwrap();
+    let exact = power_law(&SPEEDS, &TIMES, None).unwrap();
+    let (mut farthest, mut steepest) = (0.0_f64, 0.0_f64);
+    for signs in 0..1 << SPEEDS.len() {
+        let mut values = TIMES;
+        for (i, value) in values.iter_mut().enumerate() {
+            let sign = if signs >> i & 1 == 1 { 1.0 } else { -1.0 };
+            *value *= (sign * relative[i]).exp();
+        }
+        let fit = power_law(&SPEEDS, &values, None).unwrap();
+        farthest = farthest.max((fit.prefactor / exact.prefactor).ln());
+        steepest = steepest.max(fit.exponent - exact.exponent);
+    }
+    // The worst signs reach the bound; rounding is 1e-9 of an error of 1e-6.
+    assert!((farthest / allowed.prefactor_relative - 1.0).abs() < 1e-7);
+    assert!((steepest / allowed.exponent - 1.0).abs() < 1e-7);
+}
+
+#[test]
+fn an_error_common_to_all_values_goes_to_the_prefactor() {
+    let allowed = uncertainty(&SPEEDS, &[1e-6; 7]).unwrap();
+    assert!(allowed.prefactor_relative >= 1e-6, "{allowed:?}");
+    assert_eq!(uncertainty(&[1.0, 2.0], &[0.0; 2]).unwrap().exponent, 0.0);
+    assert_eq!(
+        uncertainty(&[1.0, 2.0], &[1e-6, f64::INFINITY]),
+        Err(FitError::NotPositive { index: 1 })
+    );
+    assert_eq!(uncertainty(&[1.0], &[1e-6]), Err(FitError::TooFew));
 }

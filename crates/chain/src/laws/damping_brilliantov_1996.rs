@@ -7,19 +7,30 @@ use crate::material::{Material, Pair};
 pub struct DampingBrilliantov1996 {
     /// A in s; from the materials' viscosities when absent.
     pub relaxation_time_s: Option<f64>,
+    /// K in N/m^{3/2}; from materials and radii when absent.
+    pub stiffness: Option<f64>,
 }
 
 impl Term<1> for DampingBrilliantov1996 {
     const INFO: LawInfo = LawInfo {
         name: "damping_brilliantov_1996",
         equation: "F = (3/2) A K √δ δ̇,  A = (1/3) (3η2−η1)²/(3η2+2η1) (1−ν²)(1−2ν)/(Y ν²)",
-        parameters: &[Parameter {
-            name: "relaxation_time",
-            unit: "s",
-            meaning: "relaxation time A",
-            source: Source::Materials,
-            least: 0.0,
-        }],
+        parameters: &[
+            Parameter {
+                name: "relaxation_time",
+                unit: "s",
+                meaning: "relaxation time A",
+                source: Source::Materials,
+                least: 0.0,
+            },
+            Parameter {
+                name: "stiffness",
+                unit: "N/m^(3/2)",
+                meaning: "Hertz stiffness K of the contact",
+                source: Source::Hertz,
+                least: 0.0,
+            },
+        ],
         validity: "as damping_viscoelastic; its A vanishes at ν = 1/2 and diverges at ν = 0",
         reference: "Brilliantov1996",
         nature: Nature::Dissipative,
@@ -29,6 +40,7 @@ impl Term<1> for DampingBrilliantov1996 {
     fn new(values: &[Option<f64>]) -> Self {
         Self {
             relaxation_time_s: values[0],
+            stiffness: values[1],
         }
     }
 
@@ -44,7 +56,7 @@ impl Term<1> for DampingBrilliantov1996 {
                 what,
             });
         }
-        Ok([1.5 * time * pair.hertz_stiffness()])
+        Ok([1.5 * time * self.stiffness.unwrap_or_else(|| pair.hertz_stiffness())])
     }
 
     fn force(&[damping]: &[f64; 1], contact: Closed) -> f64 {

@@ -26,8 +26,8 @@ impl Term<1> for DampingTsuji {
             Parameter {
                 name: "stiffness",
                 unit: "N/m^(3/2)",
-                meaning: "Hertz stiffness K",
-                source: Source::Materials,
+                meaning: "Hertz stiffness K of the contact",
+                source: Source::Hertz,
                 least: 0.0,
             },
         ],

@@ -53,8 +53,19 @@ pub enum Source {
     Required,
     /// It follows from the materials, radii and masses of the two bodies.
     Materials,
+    /// It is the stiffness K of the `elastic_hertz` beside this law, where a user
+    /// gives that one; else it follows from materials and radii, as K does then.
+    Hertz,
     /// A plain default.
     Default(f64),
+}
+
+impl Source {
+    /// Whether other laws or the two bodies decide where the user gives nothing.
+    #[must_use]
+    pub const fn is_derived(self) -> bool {
+        matches!(self, Self::Materials | Self::Hertz)
+    }
 }
 
 /// One parameter that a user types.
@@ -109,7 +120,7 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     const INFO: LawInfo;
 
     /// The law from parameter values in the order of `INFO.parameters`;
-    /// `None` where the user gave nothing and the materials decide.
+    /// `None` where nothing is given and the materials decide.
     fn new(values: &[Option<f64>]) -> Self;
 
     /// The numbers the loop needs for one contact.
@@ -367,7 +378,7 @@ fn value_of(parameter: &Parameter, given: &[(&str, f64)]) -> Result<Option<f64>,
                 "needs `{name}` ({}, in {})",
                 parameter.meaning, parameter.unit
             )),
-            Source::Materials => Ok(None),
+            Source::Materials | Source::Hertz => Ok(None),
             Source::Default(value) => Ok(Some(value)),
         },
     }

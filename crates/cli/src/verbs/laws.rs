@@ -1,6 +1,7 @@
 //! `hertzchain laws`: every contact law, from the registry.
 
 use crate::arguments::Laws;
+use crate::bibliography::Work;
 use crate::failure::Failure;
 use crate::{format, print};
 use hertzchain_chain::laws::{LAWS, LawInfo, Nature, Parameter, Source, find};
@@ -46,7 +47,7 @@ fn as_text(info: &LawInfo) -> String {
         ("kind".to_owned(), nature(info).to_owned()),
         ("acts".to_owned(), gate.to_owned()),
         ("validity".to_owned(), info.validity.to_owned()),
-        ("reference".to_owned(), info.reference.to_owned()),
+        ("source".to_owned(), source(info)),
     ];
     rows.extend(
         info.parameters
@@ -56,10 +57,33 @@ fn as_text(info: &LawInfo) -> String {
     format!("{}\n{}", print::heading(info.name), format::pairs(&rows))
 }
 
+/// The work that a law is from, and its key in the bibliography.
+fn source(info: &LawInfo) -> String {
+    let key = format!("[{}]", info.reference);
+    match Work::of_key(info.reference) {
+        Some(work) => format!("{} {key}", work.lines().join("\n")),
+        None => key,
+    }
+}
+
+fn source_json(info: &LawInfo) -> Json {
+    Work::of_key(info.reference).map_or(Json::Null, |work| {
+        json!({
+            "authors": work.authors,
+            "title": work.title,
+            "journal": work.journal,
+            "volume": work.volume,
+            "pages": work.pages,
+            "year": work.year.parse::<i32>().ok(),
+        })
+    })
+}
+
 fn default(parameter: &Parameter) -> String {
     match parameter.source {
         Source::Required => "required".to_owned(),
         Source::Materials => "default: from the materials".to_owned(),
+        Source::Hertz => "default: the section's elastic_hertz, else the materials".to_owned(),
         Source::Default(value) => format!("default: {value}"),
     }
 }
@@ -76,14 +100,15 @@ fn as_json(info: &LawInfo) -> Json {
     let parameter = |p: &Parameter| {
         let value = match p.source {
             Source::Default(value) => json!(value),
-            Source::Required | Source::Materials => Json::Null,
+            Source::Required | Source::Materials | Source::Hertz => Json::Null,
         };
         json!({
             "name": p.name,
             "unit": p.unit,
             "meaning": p.meaning,
             "required": p.source == Source::Required,
-            "from_materials": p.source == Source::Materials,
+            "from_elastic_hertz": p.source == Source::Hertz,
+            "from_materials": p.source.is_derived(),
             "default": value,
             "least": p.least,
         })
@@ -95,6 +120,7 @@ fn as_json(info: &LawInfo) -> Json {
         "gated": info.gated,
         "validity": info.validity,
         "reference": info.reference,
+        "source": source_json(info),
         "parameters": info.parameters.iter().map(parameter).collect::<Json>(),
     })
 }

@@ -20,21 +20,24 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
     let folder = &arguments.out;
     // Whether it can be written to, before anything is computed for it.
     Folder::open(folder)?;
-    let options = match arguments.readings {
-        true => Options::default().with_readings(),
-        false => Options::default(),
+    let options = match (arguments.readings, arguments.full) {
+        (true, true) => Options::default().with_all_readings(),
+        (true, false) => Options::default().with_readings(),
+        (false, _) => Options::default(),
     };
     let bar = Bar::new();
     let computed = reproduce(&options, &bar);
     bar.0.finish_and_clear();
     let computed = computed.map_err(|error| failure(&error))?;
-    computed
-        .write_tables(folder)
-        .map_err(|error| failure(&error))?;
-    paper::write(&computed, folder).map_err(|error| match error {
+    let tables = computed.write_tables(folder);
+    let mut written = tables.map_err(|error| failure(&error))?;
+    let pictures = paper::write(&computed, folder).map_err(|error| match error {
         PaperError::Reproduce(error) => failure(&error),
         error => Failure::Ours(error.to_string()),
     })?;
+    written.extend(pictures);
+    let ended = computed.write_provenance(folder, &written);
+    ended.map_err(|error| failure(&error))?;
     print(&summary(&computed, folder))
 }
 
@@ -64,6 +67,10 @@ impl Progress for Bar {
 
     fn advance(&self) {
         self.0.inc(1);
+    }
+
+    fn note(&self, text: &str) {
+        self.0.suspend(|| eprintln!("{text}"));
     }
 }
 

@@ -1,11 +1,11 @@
 //! Sections of contacts and their laws.
 
-use super::{Group, Materials};
+use super::{Group, Materials, stiffness};
 use crate::document::Node;
 use crate::finding::Problem;
 use crate::laws::{self, LawSpec};
 use crate::view::View;
-use hertzchain_chain::laws::{Nature, Parameter, Source, find};
+use hertzchain_chain::laws::{Nature, find};
 use std::ops::Range;
 
 /// Consecutive contacts that share laws.
@@ -56,9 +56,10 @@ pub(crate) fn read(
         sections.push(hertz(root));
     }
     let mut parts = groups.iter().flat_map(|group| &group.cell);
-    if parts.all(|part| part.material.is_none()) {
-        sections.iter_mut().for_each(unit_stiffness);
-    }
+    let bare = parts.all(|part| part.material.is_none());
+    sections
+        .iter_mut()
+        .try_for_each(|section| stiffness::fill(section, bare))?;
     sections.sort_by_key(|section| section.from);
     covered(&sections, beads)?;
     Ok(sections)
@@ -118,21 +119,6 @@ fn within(table: &View<'_>, key: &str, contact: usize, beads: usize) -> Result<(
     let message = format!("contact {contact} is outside the chain of {beads} beads");
     let label = format!("expected a contact from 0 to {beads}, the wall contact");
     Err(Problem::new(&table.span_of(key), message, label))
-}
-
-/// Without materials a stiffness that they would set is 1.
-fn unit_stiffness(section: &mut SectionSpec) {
-    let declares = |p: &Parameter| p.name == "stiffness" && p.source == Source::Materials;
-    for law in section
-        .laws
-        .iter_mut()
-        .filter(|_| section.material.is_none())
-    {
-        let given = law.given.iter().any(|(name, _)| *name == "stiffness");
-        if law.row.info.parameters.iter().any(declares) && !given {
-            law.given.push(("stiffness", 1.0));
-        }
-    }
 }
 
 /// Every contact belongs to one section.

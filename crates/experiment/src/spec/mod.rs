@@ -7,6 +7,7 @@ mod layout;
 mod materials;
 mod rig;
 mod setting;
+mod stiffness;
 
 pub use contacts::SectionSpec;
 pub use rig::{Rig, RigPart, RigPartKind};

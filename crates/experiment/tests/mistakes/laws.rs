@@ -88,10 +88,10 @@ fn a_unit_follows_the_exponent_beside_it() {
 
 #[test]
 fn a_law_that_needs_a_material_asks_for_one() {
-    let law = "{ law = \"damping_brilliantov_1996\", relaxation_time = 1 }";
+    let law = "{ law = \"elastic_plastic_thornton\", yield_pressure = 1 }";
     let text = format!(
         "units = \"dimensionless\"\n[striker]\nspeed = 1\n[[beads]]\n[[contacts]]\n\
-         laws = [\"elastic_hertz\", {law}]\n"
+         laws = [{law}]\n"
     );
     let words = ["can't be used on contact 0", "name one in [[beads]]"];
     check(&refused(&text), 6, law, &words);

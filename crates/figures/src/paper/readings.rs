@@ -2,12 +2,13 @@
 
 use crate::{Figure, Verdict, VerdictMatrix};
 use hertzchain_study::claims::Verdict as Judged;
-use hertzchain_study::readings::{Row, Scan};
+use hertzchain_study::readings::{FLIPPED, Row, Scan};
 
 /// Claims against readings: the default, one switch at a time, the closest.
 ///
 /// What never moves needs no cells: claims with one verdict in all readings
-/// are listed by it, and so are switches that move no verdict.
+/// are listed by it, and so are switches that move no verdict. Claims that
+/// rounding flips are marked: a verdict is that of the constants as printed.
 pub(super) fn figure(scan: &Scan) -> Figure {
     let columns = columns(scan);
     let moved: Vec<&Column> = columns.iter().filter(|c| c.is_shown(scan)).collect();
@@ -15,7 +16,7 @@ pub(super) fn figure(scan: &Scan) -> Figure {
     let mut matrix = VerdictMatrix::new(&names);
     let mut fixed: [Vec<String>; 4] = Default::default();
     for (i, claim) in scan.claims.iter().enumerate() {
-        let name = words(&claim.id);
+        let name = name(scan, i, &claim.id);
         let verdicts: Vec<Verdict> = moved.iter().filter_map(|c| c.verdict(i)).collect();
         match verdicts.split_first() {
             Some((first, others)) if others.iter().all(|other| other == first) => {
@@ -36,15 +37,37 @@ pub(super) fn figure(scan: &Scan) -> Figure {
     if !unmoved.is_empty() {
         matrix = matrix.note(&format!("As the default: {}.", unmoved.join("; ")));
     }
+    if !scan.flipped_by_rounding.is_empty() {
+        matrix = matrix.note(&format!("{FLIPPED} {ROUNDING}"));
+    }
     matrix
         .figure()
         .title("Claims of the paper in different readings of it")
-        .caption(
-            "Which claims of the paper hold in which reading of its model: the default, one \
-             switch changed at a time, and the reading that comes closest to the paper. Claims \
-             with the same verdict in all of them, and switches that move no verdict, are listed \
-             below the table.",
-        )
+        .caption(&caption(scan))
+}
+
+/// What the mark means.
+const ROUNDING: &str = "Not decidable in the default reading: there rounding of the printed constants \
+    alone flips the verdict that they give as printed, which is shown.";
+
+fn caption(scan: &Scan) -> String {
+    let mut caption = String::from(
+        "Which claims of the paper hold in which reading of its model: the default, one switch \
+         changed at a time, and the reading that comes closest to the paper. Claims with the same \
+         verdict in all of them, and switches that move no verdict, are listed below the table.",
+    );
+    if !scan.flipped_by_rounding.is_empty() {
+        caption += &format!(" {FLIPPED} {ROUNDING}");
+    }
+    caption
+}
+
+/// A claim's name in words, marked if rounding flips it.
+fn name(scan: &Scan, claim: usize, id: &str) -> String {
+    match scan.flipped_by_rounding.contains(&claim) {
+        true => words(id) + FLIPPED,
+        false => words(id),
+    }
 }
 
 /// Verdicts in the order of the lists below the table.

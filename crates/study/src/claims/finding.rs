@@ -5,9 +5,10 @@
 pub enum Verdict {
     /// It does.
     Holds,
-    /// It does in some of the cases or speeds that the claim covers.
+    /// It does in at least [`IN_PART`] of the comparisons that the claim covers, or
+    /// meets the claim's weaker threshold.
     InPart,
-    /// It does not.
+    /// It does not, or in fewer.
     Fails,
     /// The numbers do not tell.
     NotDecidable,
@@ -44,6 +45,10 @@ impl std::fmt::Display for Verdict {
         f.write_str(self.name())
     }
 }
+
+/// Share of its comparisons that a claim must meet to hold in part: what more
+/// often fails than holds is not partly true.
+pub const IN_PART: f64 = 0.5;
 
 /// A predicate's answer: a number with its accuracy, and what follows from it.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,14 +133,29 @@ impl Counts {
         }
     }
 
+    /// The verdict that stands whichever way the open comparisons go.
     fn verdict(self) -> Verdict {
-        match (self.yes, self.no, self.open) {
-            (0, 0, _) => Verdict::NotDecidable,
-            (_, 0, 0) => Verdict::Holds,
-            (0, _, 0) => Verdict::Fails,
-            (0, _, _) | (_, 0, _) => Verdict::NotDecidable,
-            _ => Verdict::InPart,
+        let all = self.yes + self.no + self.open;
+        // More comparisons met never make a verdict worse: the extremes tell.
+        let (least, most) = (sure(self.yes, all), sure(self.yes + self.open, all));
+        if least == most {
+            least
+        } else {
+            Verdict::NotDecidable
         }
+    }
+}
+
+/// The verdict when so many of all comparisons are met.
+fn sure(met: usize, all: usize) -> Verdict {
+    if all == 0 {
+        Verdict::NotDecidable
+    } else if met == all {
+        Verdict::Holds
+    } else if met as f64 >= IN_PART * all as f64 {
+        Verdict::InPart
+    } else {
+        Verdict::Fails
     }
 }
 
@@ -152,8 +172,8 @@ impl Tally {
         self.margin(if yes { 1.0 } else { -1.0 }, 0.0);
     }
 
-    /// Holds when all are met, fails when none is, in part when some are;
-    /// not decidable as soon as an open one could change that.
+    /// Holds when all are met, in part when at least [`IN_PART`] of them are, else
+    /// fails; not decidable when open ones could change that.
     #[must_use]
     pub fn verdict(self) -> Verdict {
         self.seen.verdict()
@@ -177,5 +197,57 @@ impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (met, all) = self.counts();
         write!(f, "{met} of {all}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tally of so many met, not met and open comparisons.
+    fn tally(yes: usize, no: usize, open: usize) -> Tally {
+        let mut tally = Tally::default();
+        for (count, margin) in [(yes, 1.0), (no, -1.0), (open, 0.1)] {
+            (0..count).for_each(|_| tally.margin(margin, 0.5));
+        }
+        tally
+    }
+
+    #[test]
+    fn a_claim_holds_in_part_when_at_least_half_of_its_comparisons_are_met() {
+        for (yes, no, verdict) in [
+            (31, 0, Verdict::Holds),
+            (30, 1, Verdict::InPart),
+            (16, 15, Verdict::InPart),
+            (15, 15, Verdict::InPart),
+            (15, 16, Verdict::Fails),
+            (6, 25, Verdict::Fails),
+            (1, 30, Verdict::Fails),
+            (0, 31, Verdict::Fails),
+            (0, 0, Verdict::NotDecidable),
+        ] {
+            assert_eq!(
+                tally(yes, no, 0).verdict(),
+                verdict,
+                "{yes} of {yes} + {no}"
+            );
+        }
+    }
+
+    #[test]
+    fn open_comparisons_leave_a_verdict_open_only_if_they_could_change_it() {
+        for (yes, no, open, verdict) in [
+            (30, 0, 1, Verdict::NotDecidable),
+            (0, 30, 1, Verdict::Fails),
+            (20, 10, 1, Verdict::InPart),
+            (15, 15, 1, Verdict::NotDecidable),
+            (15, 14, 1, Verdict::InPart),
+            (0, 0, 3, Verdict::NotDecidable),
+        ] {
+            let tally = tally(yes, no, open);
+            assert_eq!(tally.verdict(), verdict, "{yes} {no} {open}");
+            // Exact numbers with these signs meet every open one.
+            assert_eq!(tally.leaning(), self::tally(yes + open, no, 0).verdict());
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Claim, Finding, Judged, Needs, Rounded, Verdict};
+use super::{Claim, Finding, IN_PART, Judged, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -78,7 +78,7 @@ fn number(value: f64) -> Value {
 #[must_use]
 pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
     let mut page = String::from("# What the paper says, and what its model shows\n\n");
-    let _ = writeln!(page, "Read as: {reading}.\n");
+    let _ = writeln!(page, "Read as: {reading}.\n\n{}\n", verdicts_text());
     if judged.iter().any(|judged| judged.rounded.is_some()) {
         page.push_str(ROUNDING);
     }
@@ -101,6 +101,17 @@ pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
         section(&mut page, judged);
     }
     page
+}
+
+/// What makes which verdict, for the pages.
+pub(crate) fn verdicts_text() -> String {
+    format!(
+        "Verdicts: a claim of many comparisons (speeds, liquids, passages) holds when all of them are met, \
+         and in part when not all but at least {:.0} % are; with fewer it fails, for what more often fails than \
+         holds is not partly true. Where a claim names a weaker threshold, it also holds in part when that one is \
+         met. It is not decidable when numbers within their accuracy could change the verdict.",
+        100.0 * IN_PART
+    )
 }
 
 /// What was drawn, for the page.

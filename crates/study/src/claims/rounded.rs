@@ -58,6 +58,16 @@ pub struct Judged {
     pub rounded: Option<Rounded>,
 }
 
+impl Judged {
+    /// Whether rounding of the printed constants alone flips the verdict that
+    /// they give.
+    #[must_use]
+    pub fn flips_by_rounding(&self) -> bool {
+        let rounded = self.rounded.as_ref();
+        rounded.is_some_and(|rounded| rounded.flips(self.finding.leaning))
+    }
+}
+
 /// Decides all claims on the constants as printed.
 #[must_use]
 pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
@@ -77,15 +87,14 @@ fn decide(judge: &Judge, printed: &Evidence, draws: &[Evidence]) -> Judged {
     let finding = judge.decide(printed);
     let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
     let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
-    let flips = rounded.as_ref().is_some_and(|r| r.flips(finding.leaning));
-    Judged {
+    let mut judged = Judged {
         claim: judge.claim.clone(),
-        verdict: if flips {
-            Verdict::NotDecidable
-        } else {
-            finding.verdict
-        },
+        verdict: finding.verdict,
         finding,
         rounded,
+    };
+    if judged.flips_by_rounding() {
+        judged.verdict = Verdict::NotDecidable;
     }
+    judged
 }

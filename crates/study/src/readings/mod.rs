@@ -8,6 +8,6 @@ mod scan;
 mod sharpened;
 
 pub use draws::rounded_evidence;
-pub use report::{scan_csv, scan_markdown, two_digits_markdown};
+pub use report::{FLIPPED, scan_csv, scan_markdown, two_digits_markdown};
 pub use rounding::{Draw, DryPoisson, Prefactors};
-pub use scan::{Price, Row, Scan, scan};
+pub use scan::{Factor, Price, Row, Scan, scan};

@@ -1,10 +1,14 @@
 //! A scan over readings as a table and a page.
 
-use super::scan::{Row, Scan};
-use crate::claims::{Claim, Judged, Verdict, rounded_text, with_unit};
+use super::scan::{Factor, Row, Scan};
+use crate::claims::{Claim, Judged, Verdict, rounded_text, verdicts_text, with_unit};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
+
+/// Marks a claim whose verdict in the default reading rounding of the printed
+/// constants alone flips.
+pub const FLIPPED: &str = "†";
 
 /// One row a reading: its switches, its score, the verdict of each claim.
 #[must_use]
@@ -33,8 +37,10 @@ pub fn scan_markdown(scan: &Scan) -> String {
     let mut page = String::from("# Which claims hold in which reading\n\n");
     page.push_str(
         "The paper leaves open what these switches decide. The score counts a claim that holds as \
-         1 and one that holds in part as 1/2; rounding of the printed constants is left aside here.\n\n",
+         1 and one that holds in part as 1/2. Every reading takes the printed constants to the letter.\n\n",
     );
+    rounding(&mut page, scan);
+    let _ = writeln!(page, "{}\n", verdicts_text());
     page.push_str(
         "## One switch at a time\n\n| reading | score | gained | lost |\n|---|---|---|---|\n",
     );
@@ -47,6 +53,18 @@ pub fn scan_markdown(scan: &Scan) -> String {
     side_by_side(&mut page, scan);
     prices(&mut page, scan);
     page
+}
+
+/// What the mark means, and how many claims have it.
+fn rounding(page: &mut String, scan: &Scan) {
+    let count = scan.flipped_by_rounding.len();
+    if count > 0 {
+        let _ = writeln!(
+            page,
+            "{FLIPPED} marks {count} claims that rounding of the printed constants alone flips in the default \
+             reading: claims.md calls them not decidable, whatever the constants as printed give here.\n"
+        );
+    }
 }
 
 fn table_row(page: &mut String, scan: &Scan, row: &Row) {
@@ -62,32 +80,39 @@ fn table_row(page: &mut String, scan: &Scan, row: &Row) {
 
 /// Names of claims, by index.
 fn names(scan: &Scan, claims: &[usize]) -> String {
-    let names = claims
-        .iter()
-        .filter_map(|i| scan.claims.get(*i))
-        .map(|claim| claim.id.as_str());
+    let names = claims.iter().filter_map(|claim| name(scan, *claim));
     names.collect::<Vec<_>>().join(", ")
 }
 
+/// A claim's name, marked if rounding flips it.
+fn name(scan: &Scan, claim: usize) -> Option<String> {
+    let id = &scan.claims.get(claim)?.id;
+    Some(match scan.flipped_by_rounding.contains(&claim) {
+        true => format!("{id}{FLIPPED}"),
+        false => id.clone(),
+    })
+}
+
 fn product(page: &mut String, scan: &Scan) {
-    page.push_str("\n## Full product\n\n");
-    let factors = scan
-        .product_of
-        .iter()
-        .map(|(name, options)| format!("{name} ({})", options.len()));
-    let factors: Vec<String> = factors.collect();
+    let (tried, all) = (scan.product.len(), scan.full_product_size());
+    page.push_str(match tried < all {
+        true => "\n## Part of the full product\n\n",
+        false => "\n## Full product\n\n",
+    });
     let _ = writeln!(
         page,
-        "{} readings, of the switches that move a verdict, with their options: {}.",
-        scan.product.len(),
-        factors.join(", ")
+        "{tried} readings, of the switches that move a verdict, with their options: {}.",
+        factors(&scan.product_of)
     );
-    if !scan.left_out.is_empty() {
+    if tried < all {
         let _ = writeln!(
             page,
-            "No room in the product, by the limit on its size: {}. They were tried one at a time from \
-             the default reading and again from the best of the product.",
-            scan.left_out.join(", ")
+            "The full product has {all}; the other {} are left out because they would take too long \
+             (`reproduce --readings --full` tries them too): all that change, besides others, {}. These \
+             switches were tried one at a time from the default reading and again from the best of the part, \
+             not in every combination.",
+            all - tried,
+            factors(&scan.left_out)
         );
     }
     page.push_str("\nThe ten best:\n\n| reading | score | gained | lost |\n|---|---|---|---|\n");
@@ -101,6 +126,14 @@ fn product(page: &mut String, scan: &Scan) {
     for row in rows.into_iter().take(10) {
         table_row(page, scan, row);
     }
+}
+
+/// Switches with the number of their options.
+fn factors(factors: &[Factor]) -> String {
+    let texts = factors
+        .iter()
+        .map(|(name, options)| format!("{name} ({})", options.len()));
+    texts.collect::<Vec<_>>().join(", ")
 }
 
 fn closest(page: &mut String, scan: &Scan) {
@@ -157,7 +190,8 @@ fn side_by_side(page: &mut String, scan: &Scan) {
     };
     for (i, claim) in scan.claims.iter().enumerate() {
         let (one, other) = (cells(&scan.default, i, claim), cells(closest, i, claim));
-        let _ = writeln!(page, "| {} | {one} | {other} |", claim.id);
+        let name = name(scan, i).unwrap_or_default();
+        let _ = writeln!(page, "| {name} | {one} | {other} |");
     }
 }
 
@@ -213,4 +247,63 @@ pub fn two_digits_markdown(one_digit: &[Judged], two_digits: &[Judged]) -> Strin
         );
     }
     page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::claims::claims;
+
+    fn row(reading: Reading, verdict: Verdict, claims: usize) -> Row {
+        Row {
+            reading,
+            verdicts: vec![verdict; claims],
+            values: vec![0.0; claims],
+        }
+    }
+
+    /// A scan of two readings, in a product of one switch, with no room for others.
+    fn made_up(left_out: Vec<Factor>) -> Scan {
+        let claims: Vec<Claim> = claims().unwrap().into_iter().map(|j| j.claim).collect();
+        let wet = Reading::default().with("wet_everywhere", "yes").unwrap();
+        let default = row(Reading::default(), Verdict::Fails, claims.len());
+        let single = row(wet, Verdict::Holds, claims.len());
+        Scan {
+            product_of: vec![("wet_everywhere", vec!["no", "yes"])],
+            left_out,
+            product: vec![default.clone(), single.clone()],
+            single: vec![single],
+            search: Vec::new(),
+            flipped_by_rounding: vec![2],
+            default,
+            claims,
+        }
+    }
+
+    #[test]
+    fn claims_that_rounding_flips_are_marked_wherever_the_page_names_them() {
+        let scan = made_up(Vec::new());
+        let page = scan_markdown(&scan);
+        let (marked, id) = (format!("{}†", scan.claims[2].id), &scan.claims[2].id);
+        assert_eq!(page.matches(&**id).count(), page.matches(&marked).count());
+        // Gained in the tables and below, side by side, and its price.
+        assert!(page.matches(&marked).count() > 3, "{page}");
+        assert!(page.contains("† marks 1 "), "{page}");
+        let other = format!("{}†", scan.claims[0].id);
+        assert!(!page.contains(&other));
+    }
+
+    #[test]
+    fn a_part_of_the_product_is_not_called_full() {
+        let page = scan_markdown(&made_up(Vec::new()));
+        assert!(page.contains("\n## Full product\n") && !page.contains("left out"));
+        let left_out = vec![
+            ("wall_shape", vec!["sphere", "plane"]),
+            ("incline", vec!["0 deg", "0.5 deg", "1 deg"]),
+        ];
+        let page = scan_markdown(&made_up(left_out));
+        assert!(page.contains("\n## Part of the full product\n"), "{page}");
+        assert!(page.contains("The full product has 12; the other 10 are left out"));
+        assert!(page.contains("wall_shape (2), incline (3)"));
+    }
 }

@@ -4,6 +4,7 @@ use super::sharpened::sharpened;
 use crate::claims::{Claim, Judge, Verdict, claims};
 use crate::reproduce::{Effort, Gathering, Memory, Progress, ReproduceError, gather_remembering};
 use hertzchain_experiment::Reading;
+use std::time::Instant;
 
 /// The claims' verdicts in one reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,14 +62,17 @@ pub struct Scan {
     /// One switch changed at a time.
     pub single: Vec<Row>,
     /// Switches of the full product with their options, the default first.
-    pub product_of: Vec<(&'static str, Vec<&'static str>)>,
+    pub product_of: Vec<Factor>,
     /// Switches that move a verdict but would have made the product larger
     /// than asked; the search for the closest reading still tries them.
-    pub left_out: Vec<&'static str>,
+    pub left_out: Vec<Factor>,
     /// The product.
     pub product: Vec<Row>,
     /// Readings tried on the way from the best of the product to the closest.
     pub search: Vec<Row>,
+    /// Claims, by index, whose verdict in the default reading rounding of the
+    /// printed constants alone flips; a scan by itself looks at no rounding.
+    pub flipped_by_rounding: Vec<usize>,
 }
 
 /// Tries readings: one switch at a time, then the full product of those that
@@ -84,6 +88,7 @@ pub fn scan(
     accuracy: f64,
     progress: &dyn Progress,
 ) -> Result<Scan, ReproduceError> {
+    let start = Instant::now();
     let scanner = Scanner {
         judges: claims()?,
         memory: Memory::default(),
@@ -96,8 +101,10 @@ pub fn scan(
     progress.begin("readings, one switch at a time", readings.len() as u64);
     let single = scanner.rows(&readings)?;
     let (product_of, left_out) = factors(&default, &single, most);
+    let pace_s = start.elapsed().as_secs_f64() / (single.len() + 1) as f64;
     let readings = product(&product_of);
-    progress.begin("readings, full product", readings.len() as u64);
+    progress.note(&forecast(readings.len(), pace_s));
+    progress.begin("readings, product", readings.len() as u64);
     let product = scanner.rows(&readings)?;
     let start = best(single.iter().chain(&product).chain([&default])).clone();
     let search = scanner.climb(start)?;
@@ -113,7 +120,15 @@ pub fn scan(
         left_out,
         product,
         search,
+        flipped_by_rounding: Vec::new(),
     })
+}
+
+/// What the product will cost at most, at the pace of the readings before it:
+/// many of its readings share shots.
+fn forecast(readings: usize, pace_s: f64) -> String {
+    let minutes = (pace_s * readings as f64 / 60.0).ceil();
+    format!("{readings} readings to combine: at the pace so far {minutes} min or less")
 }
 
 impl Scan {
@@ -128,6 +143,14 @@ impl Scan {
     #[must_use]
     pub fn closest(&self) -> &Row {
         best(self.rows())
+    }
+
+    /// Readings of the full product, of which [`Scan::product`] has those that
+    /// there was room for.
+    #[must_use]
+    pub fn full_product_size(&self) -> usize {
+        let options = self.left_out.iter().map(|(_, options)| options.len());
+        self.product.len() * options.product::<usize>()
     }
 
     /// Other readings that meet as many claims as the closest.
@@ -192,11 +215,11 @@ fn singles(from: &Reading) -> Vec<Reading> {
 }
 
 /// A switch with the options that move a verdict, the default first.
-type Factor = (&'static str, Vec<&'static str>);
+pub type Factor = (&'static str, Vec<&'static str>);
 
 /// Switches of the product, those that move most verdicts first, until the
 /// product would be too large; and those for which there was no room.
-fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<&'static str>) {
+fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<Factor>) {
     let mut moving: Vec<(usize, Factor)> = Vec::new();
     for switch in Reading::switches() {
         let mut options: Vec<&'static str> = switch.options.first().copied().into_iter().collect();
@@ -222,7 +245,7 @@ fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<&'st
             size *= factor.1.len();
             chosen.push(factor);
         } else {
-            left_out.push(factor.0);
+            left_out.push(factor);
         }
     }
     (chosen, left_out)

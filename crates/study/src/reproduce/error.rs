@@ -32,6 +32,14 @@ pub enum ReproduceError {
     /// The claims can't be read.
     #[error(transparent)]
     Claims(#[from] ClaimError),
+    /// A file of an earlier run can't be removed.
+    #[error("{path}, of an earlier run, can't be removed: {error}")]
+    Remove {
+        /// The file.
+        path: String,
+        /// Why.
+        error: std::io::Error,
+    },
     /// A file can't be written.
     #[error("{path} can't be written: {error}")]
     Write {

@@ -5,6 +5,7 @@ mod error;
 mod files;
 mod films;
 mod gather;
+mod leftovers;
 mod memory;
 mod point;
 mod progress;

@@ -6,6 +6,8 @@ pub trait Progress: Sync {
     fn begin(&self, stage: &str, steps: u64);
     /// One step of the stage is done.
     fn advance(&self);
+    /// Something to know before a stage begins.
+    fn note(&self, _text: &str) {}
 }
 
 /// Tells nobody.

@@ -4,6 +4,12 @@ use serde_json::{Value, json};
 use std::fs;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+/// Name of the file.
+pub(super) const PROVENANCE: &str = "provenance.json";
+
+/// What the file says wrote it.
+pub(super) const PROGRAM: &str = "hertzchain";
+
 /// Where the numbers of a reproduction come from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
@@ -30,12 +36,12 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// As JSON.
+    /// As JSON, with the names of the run's files.
     #[must_use]
-    pub fn json(&self) -> Value {
+    pub fn json(&self, files: &[&str]) -> Value {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         json!({
-            "program": "hertzchain",
+            "program": PROGRAM,
             "version": self.version,
             "commit": self.commit,
             "solver": self.solver,
@@ -47,6 +53,7 @@ impl Provenance {
             "machine": self.machine,
             "finished_unix_s": now.as_ref().map_or(0, Duration::as_secs),
             "wall_time_s": self.wall_time_s,
+            "files": files,
         })
     }
 }

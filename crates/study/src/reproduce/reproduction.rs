@@ -3,7 +3,8 @@
 use super::cases::{CASES, Cases};
 use super::films::{Film, SignalShot, films, signals};
 use super::gather::{Effort, Gathering, gather};
-use super::provenance::{commit, machine};
+use super::leftovers::remove_leftovers;
+use super::provenance::{PROVENANCE, commit, machine};
 use super::{
     Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
     power_laws_csv, ratios_csv, tof_csv, write_atomically,
@@ -47,11 +48,23 @@ impl Options {
     pub fn with_readings(self) -> Self {
         Self {
             draws: 200,
-            readings: 1200,
+            readings: PART,
             ..self
         }
     }
+
+    /// The same with every combination of the switches that move a verdict.
+    #[must_use]
+    pub fn with_all_readings(self) -> Self {
+        Self {
+            readings: usize::MAX,
+            ..self.with_readings()
+        }
+    }
 }
+
+/// Most readings of a product that still takes minutes, not hours.
+const PART: usize = 1200;
 
 /// Accuracy of shots that decide claims in other readings, whose values are
 /// shown to six digits.
@@ -114,10 +127,9 @@ pub fn reproduce(
         0 => (None, None),
         most => {
             let two_digits = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
-            (
-                Some(two_digits),
-                Some(scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?),
-            )
+            let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
+            scan.flipped_by_rounding = flipped(&verdicts);
+            (Some(two_digits), Some(scan))
         }
     };
     Ok(Reproduction {
@@ -147,6 +159,13 @@ fn judged(
     Ok(judge_all_rounded(&judges, evidence, &draws))
 }
 
+/// Claims that rounding flips, by index.
+fn flipped(judged: &[Judged]) -> Vec<usize> {
+    let flipped = judged.iter().enumerate();
+    let flipped = flipped.filter(|(_, judged)| judged.flips_by_rounding());
+    flipped.map(|(claim, _)| claim).collect()
+}
+
 fn provenance(
     options: &Options,
     cases: &Cases,
@@ -174,14 +193,12 @@ fn provenance(
 }
 
 impl Reproduction {
-    /// Writes the tables, claims and provenance into a folder; returns what
-    /// was written.
+    /// Writes the tables and claims into a folder; returns what was written.
     ///
     /// # Errors
     /// The first file that can't be written; none is left half-written.
     pub fn write_tables(&self, folder: &Path) -> Result<Vec<PathBuf>, ReproduceError> {
         let reading = stated(&self.reading);
-        let json = |value| format!("{value:#}\n");
         let mut files = vec![
             ("tof.csv", tof_csv(&self.evidence)),
             ("ratios.csv", ratios_csv(&self.evidence)),
@@ -191,7 +208,7 @@ impl Reproduction {
                 power_law_residuals_csv(&self.evidence),
             ),
             ("oils.csv", oils_csv(&self.cases)?),
-            ("claims.json", json(claims_json(&self.judged, &reading))),
+            ("claims.json", json(&claims_json(&self.judged, &reading))),
             ("claims.md", claims_markdown(&self.judged, &reading)),
         ];
         if let Some(scan) = &self.scan {
@@ -200,7 +217,6 @@ impl Reproduction {
             let page = scan_markdown(scan) + &two_digits_markdown(&self.judged, two_digits);
             files.push(("readings.md", page));
         }
-        files.push(("provenance.json", json(self.provenance.json())));
         let mut written = Vec::new();
         for (name, content) in files {
             let path = folder.join(name);
@@ -209,6 +225,31 @@ impl Reproduction {
         }
         Ok(written)
     }
+
+    /// Ends a run: removes from the folder what the provenance of an earlier
+    /// run lists and this one did not write, then writes the provenance with the list
+    /// of all that was written.
+    ///
+    /// # Errors
+    /// A file that can't be removed or written.
+    pub fn write_provenance(
+        &self,
+        folder: &Path,
+        written: &[PathBuf],
+    ) -> Result<PathBuf, ReproduceError> {
+        let path = folder.join(PROVENANCE);
+        let names = written.iter().chain([&path]);
+        let names = names.filter_map(|path| path.strip_prefix(folder).ok()?.to_str());
+        let names: Vec<&str> = names.collect();
+        remove_leftovers(folder, &names)?;
+        write_atomically(&path, json(&self.provenance.json(&names)).as_bytes())?;
+        Ok(path)
+    }
+}
+
+/// JSON as a file.
+fn json(value: &serde_json::Value) -> String {
+    format!("{value:#}\n")
 }
 
 /// A reading with every switch spelled out.

@@ -111,6 +111,7 @@ fn the_page_has_every_number_of_a_claim_in_one_unit() {
         "- Needed: above 1e-9 m, at most 0.001 m. ",
         "- The paper: -6 log10(s). Deviation: -0.823909 log10(s).",
         "- Needed: above 0.5, in part above 0.05. ",
+        "in part when not all but at least 50 % are;",
     ] {
         assert!(page.contains(line), "{line}\n{page}");
     }
@@ -157,6 +158,21 @@ fn a_split_that_the_figure_could_just_show_holds_in_part() {
             verdict,
             "{second}"
         );
+    }
+}
+
+#[test]
+fn a_claim_that_more_speeds_break_than_meet_fails() {
+    for (from_m_s, verdict) in [(0.45, Verdict::InPart), (0.3, Verdict::Fails)] {
+        let mut evidence = agreeing();
+        // From 0.45 m/s on there are six of the twelve speeds, from 0.3 m/s on seven.
+        each(&mut evidence, "motor", |p| {
+            if p.speed_m_s > from_m_s {
+                p.tof_incident_s = 0.9 * dry(p.speed_m_s).0;
+            }
+        });
+        let finding = decide("motor-above", &evidence);
+        assert_eq!(finding.verdict, verdict, "{finding:?}");
     }
 }
 
