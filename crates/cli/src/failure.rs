@@ -3,7 +3,7 @@
 
 use crate::arguments::How;
 use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
-use hertzchain_study::StudyError;
+use hertzchain_study::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -45,6 +45,15 @@ impl Failure {
                 experiment.unreached(&error.to_string()).into()
             }
             _ => error.into(),
+        }
+    }
+
+    /// Mistakes at a speed that an option gave: what would underline the speed
+    /// in the file is told of the option instead.
+    pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
+        match of_speed(&mistakes) {
+            Some(text) => Self::User(format!("{option}: {text}")),
+            None => mistakes.into(),
         }
     }
 
@@ -116,6 +125,39 @@ fn fits(finding: &Finding) -> bool {
     };
     let mut labels = finding.labels().into_iter().flatten();
     labels.all(|label| shown(label) == Some(true))
+}
+
+/// Message, expectation and advice, without a place.
+fn placeless(finding: &Finding) -> String {
+    let help = finding
+        .help()
+        .map_or(String::new(), |help| format!(" ({help})"));
+    format!("{finding}: {}{help}", finding.label())
+}
+
+/// A mistake that is the speed's own, without a place.
+pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
+    match mistakes.findings() {
+        [finding] if underlines_speed(finding) => Some(placeless(finding)),
+        _ => None,
+    }
+}
+
+/// A speed beyond all limits is reported at the striker as a whole.
+fn underlines_speed(finding: &Finding) -> bool {
+    let text = finding.text().rsplit('=').next().unwrap_or_default();
+    let asked = text == "[striker]" && finding.to_string().ends_with("was asked for");
+    asked || parse_speed(text.trim().trim_matches('"')).is_ok()
+}
+
+/// Warnings at a speed that an option gave, as [`Failure::at_option`].
+pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
+    let (line, file): (Vec<Warning>, Vec<Warning>) =
+        warnings.iter().cloned().partition(underlines_speed);
+    print_warnings(&file);
+    for warning in &line {
+        eprintln!("warning: {option}: {}", placeless(warning));
+    }
 }
 
 /// What is odd about an experiment, each with the odd text underlined.

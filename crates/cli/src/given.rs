@@ -47,6 +47,11 @@ impl Given {
         self.value
     }
 
+    /// As it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Refuses a unit in a dimensionless experiment, and a time without one
     /// in SI: between 2 s and 2 ms lies a factor of 1000.
     pub fn check(&self, option: &str, units: Units) -> Result<(), Failure> {

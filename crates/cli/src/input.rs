@@ -1,9 +1,9 @@
 //! From arguments to an experiment and a plan.
 
 use crate::arguments::{How, Input, Pick, Solver};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::given::Given;
-use hertzchain_experiment::{Experiment, OpenError, preset};
+use hertzchain_experiment::{Experiment, Mistakes, OpenError, Warning, preset};
 use hertzchain_study as study;
 use hertzchain_study::{InstructionSet, Plan};
 use std::path::Path;
@@ -40,6 +40,27 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
 pub fn speed(given: Option<&Given>, experiment: &Experiment) -> Result<Option<f64>, Failure> {
     given.map_or(Ok(()), |given| given.check("--speed", experiment.units()))?;
     Ok(given.map(Given::value))
+}
+
+/// What an experiment gives at a speed; a speed of the command line that does
+/// not do is told as such.
+pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result<T, Failure> {
+    result.map_err(|mistakes| match given {
+        Some(given) => Failure::at_option(&option(given), mistakes),
+        None => mistakes.into(),
+    })
+}
+
+/// Prints what is odd about an experiment at a speed.
+pub fn print_warnings(given: Option<&Given>, warnings: &[Warning]) {
+    match given {
+        Some(given) => failure::print_option_warnings(&option(given), warnings),
+        None => failure::print_warnings(warnings),
+    }
+}
+
+fn option(given: &Given) -> String {
+    format!("--speed {}", given.text())
 }
 
 /// Refuses times that do not suit the experiment's units.

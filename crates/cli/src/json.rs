@@ -1,9 +1,11 @@
 //! Results as JSON, full precision, SI units in the names.
 
+use crate::missing;
 use hertzchain_chain::observe::Maximum;
 use hertzchain_chain::wave::Budget;
-use hertzchain_signal::{FitError, PowerLaw};
-use hertzchain_study::{Group, Point, Shot, Value};
+use hertzchain_experiment::Units;
+use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
+use hertzchain_study::{Group, Plan, Point, Row, Shot, Value};
 use serde_json::{Value as Json, json};
 
 fn peak(maximum: &Maximum) -> Json {
@@ -14,14 +16,14 @@ fn peaks(maxima: &[Maximum]) -> Json {
     maxima.iter().map(peak).collect()
 }
 
-/// One shot.
-pub fn shot(shot: &Shot) -> Json {
+/// One shot of a plan that differs from this one in speed at most.
+pub fn shot(shot: &Shot, units: Units, plan: &Plan) -> Json {
     json!({
         "tof_incident_s": shot.flight.map(|flight| flight.incident_s),
         "tof_reflected_s": shot.flight.and_then(|flight| flight.reflected_s),
         "accuracy_asked": shot.accuracy_asked,
         "accuracy_reached": shot.accuracy_reached,
-        "passage": passage(shot),
+        "passage": passage(shot, units, plan),
         "sensor_maxima": peaks(&shot.sensor_maxima),
         "pulse_speed_beads_per_s": shot.pulse_speed_beads_s,
         "striker_rebound": shot.rebound.map(|rebound| json!({
@@ -40,9 +42,9 @@ pub fn shot(shot: &Shot) -> Json {
     })
 }
 
-fn passage(shot: &Shot) -> Json {
+fn passage(shot: &Shot, units: Units, plan: &Plan) -> Json {
     match &shot.passage {
-        Err(error) => json!({ "missing": error.to_string() }),
+        Err(error) => json!({ "missing": missing::reason(&plan.chain.far, units, error) }),
         Ok(seen) => json!({
             "incident": peak(&seen.incident),
             "wall": peak(&seen.wall),
@@ -81,11 +83,11 @@ const NO_BUDGET: &str =
     "a sweep asks for times of flight and keeps no energy budget; `hertzchain shot` does";
 
 /// One speed of a sweep.
-pub fn point(point: &Point) -> Json {
+pub fn point(point: &Point, units: Units, plan: &Plan) -> Json {
     match &point.shot {
         Err(error) => json!({ "speed_m_s": point.speed_m_s, "error": error.to_string() }),
         Ok(result) => {
-            let mut json = shot(result);
+            let mut json = shot(result, units, plan);
             if let Some(object) = json.as_object_mut() {
                 object.insert("speed_m_s".to_owned(), json!(point.speed_m_s));
                 object.insert("warnings".to_owned(), json!(point.warnings));
@@ -98,15 +100,19 @@ pub fn point(point: &Point) -> Json {
     }
 }
 
-/// A fit of times against speed. Two speeds tell no errors and no R²: null.
-pub fn fit(fit: &Result<PowerLaw, FitError>) -> Json {
+/// A fit of times against speed, with its standard errors and with what the
+/// accuracies of the times alone leave open. Two speeds tell no errors and no
+/// R²: null.
+pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -> Json {
     match fit {
-        Err(error) => json!({ "missing": error.to_string() }),
+        Err(error) => json!({ "missing": missing::law(error) }),
         Ok(law) => json!({
             "prefactor_s": law.prefactor,
             "prefactor_error_s": law.prefactor_error,
+            "prefactor_accuracy_s": uncertainty.map(|least| law.prefactor * least.prefactor_relative),
             "exponent": law.exponent,
             "exponent_error": law.exponent_error,
+            "exponent_accuracy": uncertainty.map(|least| least.exponent),
             "covariance": law.covariance,
             "r_squared": (law.residuals.len() > 2).then_some(law.r_squared),
             "speeds": law.residuals.len(),
@@ -115,16 +121,31 @@ pub fn fit(fit: &Result<PowerLaw, FitError>) -> Json {
     }
 }
 
-/// A description.
+/// A description: numbers as numbers. What has several of them is an object
+/// whose keys name the units.
 pub fn groups(groups: &[Group]) -> Json {
-    let row = |row: &hertzchain_study::Row| {
-        let value = match &row.value {
-            Value::Number(number) => json!(number),
-            Value::Range(least, most) => json!([least, most]),
-            Value::Text(text) => json!(text),
-        };
-        json!({ "name": row.name.trim(), "value": value, "unit": row.unit })
-    };
+    let row = |row: &Row| json!({ "name": row.name.trim(), "value": value(&row.value), "unit": row.unit });
     let group = |group: &Group| json!({ "title": group.title, "rows": group.rows.iter().map(row).collect::<Json>() });
     groups.iter().map(group).collect()
+}
+
+fn value(of: &Value) -> Json {
+    match of {
+        Value::Number(number) => json!(number),
+        Value::Count(count) => json!(count),
+        Value::Range(least, most) => json!([least, most]),
+        Value::Text(text) => json!(text),
+        Value::Parts(parts) => {
+            let named = parts.iter().map(|part| (key(part), value(&part.value)));
+            Json::Object(named.collect())
+        }
+    }
+}
+
+/// A name as a key, with its unit.
+fn key(part: &Row) -> String {
+    let words = [part.name.as_str(), part.unit.as_str()];
+    let words = words.into_iter().filter(|word| !word.is_empty());
+    let words = words.map(|word| word.replace([' ', '/'], "_").to_lowercase());
+    words.collect::<Vec<_>>().join("_")
 }

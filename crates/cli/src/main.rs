@@ -8,6 +8,7 @@ mod format;
 mod given;
 mod input;
 mod json;
+mod missing;
 mod pictures;
 mod print;
 mod table;

@@ -152,3 +152,36 @@ fn a_solver_that_does_not_get_there_is_told_where_it_was_chosen() {
         assert_eq!(message.contains("[solver]"), place, "{message}");
     }
 }
+
+#[test]
+fn a_speed_of_the_command_line_is_refused_there_and_not_in_the_file() {
+    for verb in ["check", "theory", "shot"] {
+        for (speed, words) in [
+            (
+                "1e9",
+                "expected a positive, finite speed, from 1e-12 m/s to 1e6 m/s",
+            ),
+            ("1e5 m/s", "more than a bead's radius"),
+        ] {
+            let output = run(&[verb, "--preset", "dry", "--speed", speed]);
+            let message = told(&output);
+            assert_eq!(output.status.code(), Some(2), "{verb}: {message}");
+            let option = format!("error: --speed {speed}: ");
+            assert!(message.starts_with(&option), "{verb}: {message}");
+            assert!(message.contains(words), "{verb}: {message}");
+            assert!(!message.contains("dry.toml"), "{verb}: {message}");
+        }
+        let output = run(&[verb, "--preset", "hertz", "--speed", "60"]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
+        assert!(
+            message.contains("warning: --speed 60: two bodies"),
+            "{verb}: {message}"
+        );
+    }
+    let message = told(&run(&["sweep", "-p", "dry", "--speeds", "1e9"]));
+    assert!(
+        message.contains("no shot at 1e9 m/s: a shot at"),
+        "{message}"
+    );
+}

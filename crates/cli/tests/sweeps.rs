@@ -58,3 +58,75 @@ fn a_sweep_without_a_shot_tells_why_and_prints_no_empty_table() {
     assert_eq!(printed, "");
     assert_eq!(told.matches("no shot at").count(), 2, "{told}");
 }
+
+#[test]
+fn a_fit_ends_where_its_errors_do_and_has_none_below_the_accuracy_of_the_times() {
+    let arguments = ["-p", "dry", "--speeds", "log:0.1:1:5", "-a", "1e-4"];
+    let printed = text(&sweep(&arguments).stdout);
+    // Standard errors of 3.5 µs and 0.0036, far above the accuracy.
+    assert!(
+        printed.contains("ToF = (676.4 ± 3.5) µs") && printed.contains("^(-0.1794 ± 0.0036)"),
+        "{printed}"
+    );
+    assert!(printed.contains("R² = 0.9988,"), "{printed}");
+    let hertz = ["-p", "hertz", "--speeds", "log:0.1:1:5", "--json"];
+    let swept: Value = serde_json::from_slice(&sweep(&hertz).stdout).unwrap();
+    let law = &swept["power_law_incident"];
+    let of = |key: &str| law[key].as_f64().unwrap();
+    // A perfect power law: what scatters is far less than what is not known.
+    assert!(
+        of("prefactor_error_s") < of("prefactor_accuracy_s"),
+        "{law}"
+    );
+    let reached = (swept["points"].as_array().unwrap().iter())
+        .map(|point| point["accuracy_reached"].as_f64().unwrap());
+    let least = reached.fold(f64::INFINITY, f64::min);
+    assert!(
+        of("prefactor_accuracy_s") >= least * of("prefactor_s"),
+        "{law}"
+    );
+    assert!(of("exponent_accuracy") > 0.0, "{law}");
+    let printed = text(&sweep(&hertz[..4]).stdout);
+    // The same as in JSON, in µs to two digits.
+    let error = 1e6 * of("prefactor_accuracy_s");
+    let told = format!("ToF = (630.84158 ± {error:.5}) µs");
+    assert!(printed.contains(&told), "{told}: {printed}");
+}
+
+#[test]
+fn a_sweep_of_a_chain_without_a_wall_tells_what_a_shot_tells() {
+    for preset in ["newtons-cradle", "heavy-striker"] {
+        let output = sweep(&["-p", preset, "--speeds", "0.25,0.5"]);
+        let printed = text(&output.stdout);
+        assert!(
+            printed.contains("No times of flight: the chain has no wall."),
+            "{printed}"
+        );
+        assert!(!printed.contains("ToF"), "{printed}");
+        let arguments = ["-p", preset, "--speeds", "0.25,0.5", "--json"];
+        let swept: Value = serde_json::from_slice(&sweep(&arguments).stdout).unwrap();
+        let point = &swept["points"][1];
+        assert_eq!(point["passage"]["missing"], "the chain has no wall");
+        let maxima = point["sensor_maxima"].as_array().unwrap();
+        let largest = (maxima.iter().filter_map(|peak| peak["value"].as_f64())).fold(0.0, f64::max);
+        // Five digits in the table.
+        let peak = format!("{largest:.4}");
+        assert!(
+            largest > 0.0 && printed.contains(&peak[..5]),
+            "{peak}: {printed}"
+        );
+    }
+}
+
+#[test]
+fn threads_are_counted_from_1() {
+    for count in ["0", "-3", "many", "1e9"] {
+        let output = sweep(&["--threads", count]);
+        assert_eq!(output.status.code(), Some(2));
+        let told = text(&output.stderr);
+        assert!(
+            told.contains("expected a whole number from 1 to 1024"),
+            "{told}"
+        );
+    }
+}

@@ -106,3 +106,76 @@ fn tiny_numbers_have_an_exponent_and_every_number_is_short() {
         assert!(cells.iter().any(|cell| cell.contains("e-")), "{file}");
     }
 }
+
+#[test]
+fn traces_hold_no_numbers_below_the_solver_s_error() {
+    let (out, _) = folder("floor");
+    good(&["shot", "-p", "dry", "--out", out.to_str().unwrap()]);
+    let text = fs::read_to_string(out.join("traces.csv")).unwrap();
+    let forces: Vec<f64> = (text.lines().skip(1))
+        .flat_map(|line| line.split(',').skip(1))
+        .map(|cell| cell.parse().unwrap())
+        .collect();
+    let largest = forces
+        .iter()
+        .fold(0.0_f64, |most, force| most.max(force.abs()));
+    let shot = good(&["shot", "-p", "dry", "--json"]);
+    let shot: Value = serde_json::from_str(&shot).unwrap();
+    let least = shot["tolerance"].as_f64().unwrap() * largest;
+    let small = |force: &&f64| **force != 0.0 && force.abs() < least;
+    assert_eq!(forces.iter().find(small), None);
+    assert!(forces.iter().any(|force| *force == 0.0));
+}
+
+#[test]
+fn what_was_understood_is_told_in_numbers() {
+    let check: Value = serde_json::from_str(&good(&["check", "-p", "dry", "--json"])).unwrap();
+    let groups = check["groups"].as_array().unwrap();
+    let row = |title: &str, name: &str| -> Value {
+        let group = groups.iter().find(|group| group["title"] == title).unwrap();
+        let rows = group["rows"].as_array().unwrap();
+        rows.iter().find(|row| row["name"] == name).unwrap()["value"].clone()
+    };
+    assert_eq!(row("Experiment", "sensor bead"), 7);
+    assert_eq!(row("Beads", "number of beads N"), 40);
+    let bead = row("Beads", "beads 1 to 40");
+    assert_eq!(bead["radius_m"], 0.00635);
+    assert_eq!(bead["young_modulus_pa"], 213e9);
+    assert_eq!(bead["shear_viscosity_pa_s"], 3.2e4);
+    assert_eq!(row("Ends", "far end")["kind"], "fixed half-bead");
+    let (_, file) = folder("plain-check");
+    let plain: Value = serde_json::from_str(&good(&["check", &file, "--json"])).unwrap();
+    let units: Vec<_> = keys(&plain)
+        .into_iter()
+        .filter(|key| has_unit(key))
+        .collect();
+    assert!(units.is_empty(), "{units:?}");
+}
+
+#[test]
+fn beads_are_counted_in_chains_without_units_too() {
+    let (_, file) = folder("plain-words");
+    let shot = good(&["shot", &file]);
+    assert!(shot.contains(" beads per unit time"), "{shot}");
+    let theory = good(&["theory", &file]);
+    for (name, end) in [("speed ", " beads per unit time"), ("length ", " beads")] {
+        let found = theory
+            .lines()
+            .any(|line| line.trim().starts_with(name) && line.ends_with(end));
+        assert!(found, "{name}: {theory}");
+    }
+}
+
+#[test]
+fn times_have_the_digits_of_the_accuracy_that_was_reached() {
+    let printed = good(&["shot", "-p", "dry", "-a", "1e-13", "--check"]);
+    let line = printed
+        .lines()
+        .find(|line| line.contains("incident time"))
+        .unwrap();
+    let number = line.split_whitespace().rev().nth(1).unwrap();
+    // 1e-11 of the time was reached: the reference's nine digits and at most
+    // three more.
+    assert!(number.starts_with("761.904023"), "{number}");
+    assert!((10..=13).contains(&number.len()), "{number}");
+}

@@ -31,7 +31,7 @@ mod shot;
 mod speeds;
 mod sweep;
 
-pub use describe::{Group, Row, Value, describe, describe_theory};
+pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
 pub use ensemble::shoot_all;
 pub use error::StudyError;
 pub use flight::Flight;

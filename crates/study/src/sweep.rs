@@ -2,11 +2,12 @@
 
 use crate::ensemble::shoot_all;
 use crate::error::StudyError;
+use crate::flight::Flight;
 use crate::plan::Plan;
 use crate::shot::Shot;
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, Warning};
-use hertzchain_signal::{FitError, PowerLaw, power_law};
+use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
 use rayon::prelude::*;
 
 /// Why one speed has no shot.
@@ -51,6 +52,33 @@ impl Sweep {
             Some((point.speed_m_s, flight.incident_s, flight.reflected_s))
         };
         self.points.iter().filter_map(of).collect()
+    }
+
+    /// What the accuracies of the incident times of flight alone leave open in
+    /// their power law: those reached where known, else those asked.
+    ///
+    /// # Errors
+    /// As the fit's.
+    pub fn incident_uncertainty(&self) -> Result<Uncertainty, FitError> {
+        self.uncertainty(|flight| Some(flight.incident_s))
+    }
+
+    /// The same for the reflected times of flight.
+    ///
+    /// # Errors
+    /// As the fit's.
+    pub fn reflected_uncertainty(&self) -> Result<Uncertainty, FitError> {
+        self.uncertainty(|flight| flight.reflected_s)
+    }
+
+    fn uncertainty(&self, seen: fn(&Flight) -> Option<f64>) -> Result<Uncertainty, FitError> {
+        let of = |point: &Point| {
+            let shot = point.shot.as_ref().ok()?;
+            let accuracy = shot.accuracy_reached.unwrap_or(shot.accuracy_asked);
+            seen(&shot.flight?).map(|_| (point.speed_m_s, accuracy))
+        };
+        let (speeds, accuracies): (Vec<f64>, Vec<f64>) = self.points.iter().filter_map(of).unzip();
+        uncertainty(&speeds, &accuracies)
     }
 }
 

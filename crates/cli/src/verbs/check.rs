@@ -1,7 +1,7 @@
 //! `hertzchain check`: what was understood; runs nothing.
 
 use crate::arguments::Check;
-use crate::failure::{Failure, print_warnings};
+use crate::failure::Failure;
 use crate::{format, input, json, print};
 use hertzchain_study::describe;
 use serde_json::json;
@@ -16,8 +16,9 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
     // What the physics refuses is reported at its place in the file.
-    experiment.system(speed)?;
-    let (chain, warnings) = experiment.chain(speed)?;
+    let given = arguments.speed.as_ref();
+    input::at_speed(given, experiment.system(speed))?;
+    let (chain, warnings) = input::at_speed(given, experiment.chain(speed))?;
     let groups = describe(&experiment, &chain)?;
     if arguments.json {
         let warnings: Vec<String> = warnings.iter().map(|w| w.one_line()).collect();
@@ -25,6 +26,6 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
             &json!({ "groups": json::groups(&groups), "warnings": warnings }),
         );
     }
-    print_warnings(&warnings);
+    input::print_warnings(given, &warnings);
     print::print(&format::groups(&groups, experiment.units()))
 }

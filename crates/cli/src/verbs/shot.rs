@@ -4,7 +4,7 @@ mod report;
 mod traces;
 
 use crate::arguments::Shot as Arguments;
-use crate::failure::{Failure, print_warnings};
+use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::{input, json, print, table};
 use hertzchain_study::{Plan, shoot, shoot_checked};
@@ -16,7 +16,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
     input::check_times(&arguments.how, &experiment)?;
-    let (mut plan, warnings) = Plan::from_experiment(&experiment, speed)?;
+    let given = arguments.speed.as_ref();
+    let planned = Plan::from_experiment(&experiment, speed);
+    let (mut plan, warnings) = input::at_speed(given, planned)?;
     input::adjust(&arguments.how, &mut plan);
     input::check_step(&arguments.how, &plan)?;
     plan.budget = true;
@@ -26,9 +28,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => shoot(&plan),
     };
     let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
-    print_warnings(&warnings);
+    input::print_warnings(given, &warnings);
     if arguments.json {
-        let mut result = json::shot(&shot);
+        let mut result = json::shot(&shot, experiment.units(), &plan);
         if let Some(object) = result.as_object_mut() {
             object.insert("experiment".to_owned(), json!(experiment.name()));
             object.insert(

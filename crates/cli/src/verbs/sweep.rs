@@ -1,16 +1,17 @@
 //! `hertzchain sweep`: times of flight against speed.
 
+mod fits;
+
 use crate::arguments::{How, Sweep as Arguments};
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
-use crate::format::{self, Style, digits};
+use crate::format::{self, Style};
 use crate::given::check_speeds;
 use crate::print::heading;
 use crate::table::cell;
-use crate::{input, json, pictures, print, table};
+use crate::{input, json, missing, pictures, print, table};
 use hertzchain_experiment::{Experiment, Units};
-use hertzchain_signal::{FitError, PowerLaw};
-use hertzchain_study::{Plan, Point, Settings, Shot, Sweep, parse_speeds, sweep};
+use hertzchain_study::{Plan, Point, PointError, Settings, Shot, Sweep, parse_speeds, sweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use serde_json::json;
@@ -22,7 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_speeds("--speeds", &arguments.speeds, experiment.units())?;
     let plan = adjusted(&experiment, &arguments.how)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
+    let threads = arguments.threads.unwrap_or(0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let bar = bar(speeds.len() as u64);
@@ -36,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     show(arguments, &experiment, &plan, &swept)?;
     folder.map_or(Ok(()), |folder| write(folder, &experiment, &swept))?;
-    judge(&swept)
+    judge(&swept, experiment.units())
 }
 
 /// Shots for times of flight alone, unless the striker is to be followed.
@@ -64,13 +65,21 @@ fn bar(shots: u64) -> ProgressBar {
 }
 
 /// Every speed failed: the sweep did.
-fn judge(swept: &Sweep) -> Result<(), Failure> {
+fn judge(swept: &Sweep, units: Units) -> Result<(), Failure> {
+    let style = Style { digits: 16, units };
     let failed = swept
         .points
         .iter()
         .filter_map(|point| Some((point, point.shot.as_ref().err()?)));
+    let told = |error: &PointError| match error {
+        PointError::Mistakes(mistakes) => failure::of_speed(mistakes),
+        PointError::Study(_) => None,
+    };
     let lines: Vec<String> = failed
-        .map(|(point, error)| format!("{} m/s: {error}", point.speed_m_s))
+        .map(|(point, error)| {
+            let why = told(error).unwrap_or_else(|| error.to_string());
+            format!("{}: {why}", style.quantity(point.speed_m_s, "m/s"))
+        })
         .collect();
     for line in &lines {
         eprintln!("warning: no shot at {line}");
@@ -90,9 +99,9 @@ fn show(
     if arguments.json {
         let results = json!({
             "experiment": experiment.name(),
-            "points": swept.points.iter().map(json::point).collect::<serde_json::Value>(),
-            "power_law_incident": json::fit(&swept.incident),
-            "power_law_reflected": json::fit(&swept.reflected),
+            "points": swept.points.iter().map(|point| json::point(point, experiment.units(), plan)).collect::<serde_json::Value>(),
+            "power_law_incident": json::fit(&swept.incident, swept.incident_uncertainty().ok()),
+            "power_law_reflected": json::fit(&swept.reflected, swept.reflected_uncertainty().ok()),
         });
         return print::print_json(&table::named(results, experiment.units()));
     }
@@ -101,22 +110,30 @@ fn show(
         // Nothing but dashes; why there are no shots is told instead.
         return Ok(());
     }
-    let style = Style::of_accuracy(plan.accuracy, experiment.units());
+    let reached = swept
+        .points
+        .iter()
+        .filter_map(|point| ok(point)?.accuracy_reached);
+    let style = Style::of_accuracy(reached.fold(plan.accuracy, f64::max), experiment.units());
     let mut text = format!("{}\n{}", heading(experiment.title()), rows(style, swept));
-    text += &no_flight(swept);
-    text += &fit_line(style, "incident", &swept.incident);
-    text += &fit_line(style, "reflected", &swept.reflected);
+    if swept.flights().is_empty() {
+        // No fits either, for the same reason.
+        text += &no_flight(swept, plan, experiment.units());
+        return print::print(&text);
+    }
+    text += &fits::lines(swept, experiment.units());
     print::print(&text)
 }
 
-/// Why no speed has a time of flight, if none has.
-fn no_flight(swept: &Sweep) -> String {
-    let mut shots = swept.points.iter().filter_map(ok);
-    let first = shots.next().filter(|_| swept.flights().is_empty());
+/// Why no speed has a time of flight.
+fn no_flight(swept: &Sweep, plan: &Plan, units: Units) -> String {
+    let first = swept.points.iter().find_map(ok);
     match first.map(|shot| &shot.passage) {
-        Some(Err(reason)) => format!("no times of flight: {reason}\n"),
-        Some(Ok(_)) => "no times of flight: what they are picked by was not seen\n".to_owned(),
-        None => String::new(),
+        Some(Err(reason)) => {
+            let reason = missing::reason(&plan.chain.far, units, reason);
+            format!("No times of flight: {reason}.\n")
+        }
+        _ => "No times of flight: what they are picked by was not seen.\n".to_owned(),
     }
 }
 
@@ -127,7 +144,12 @@ fn print_warnings(experiment: &Experiment, swept: &Sweep) {
         return;
     };
     if let Ok((_, warnings)) = experiment.chain(Some(first.speed_m_s)) {
-        failure::print_warnings(&warnings);
+        let style = Style {
+            digits: 16,
+            units: experiment.units(),
+        };
+        let speed = style.quantity(first.speed_m_s, "m/s");
+        failure::print_option_warnings(&format!("--speeds, {speed}"), &warnings);
     }
     match warned.count() {
         0 => {}
@@ -147,18 +169,28 @@ const COLUMNS: [Column; 6] = [
     ("reflected ToF", "µs", 1e-6, |point| {
         ok(point)?.flight?.reflected_s
     }),
-    ("sensor peak", "N", 1.0, |point| {
-        Some(ok(point)?.passage.as_ref().ok()?.incident.value)
-    }),
+    ("sensor peak", "N", 1.0, |point| sensor_peak(ok(point)?)),
     ("wall peak", "N", 1.0, |point| {
         Some(ok(point)?.passage.as_ref().ok()?.wall.value)
     }),
     ("rebound", "m/s", 1.0, |point| ok(point)?.rebound?.end_m_s),
 ];
 
-/// Whether a column has anything to tell; only the rebound must be asked for.
+/// Whether a column has anything to tell.
 fn told(column: &Column, swept: &Sweep) -> bool {
-    column.0 != "rebound" || swept.points.iter().any(|point| (column.3)(point).is_some())
+    swept.points.iter().any(|point| (column.3)(point).is_some())
+}
+
+/// The incident pulse's, or the largest where none is seen to pass.
+fn sensor_peak(shot: &Shot) -> Option<f64> {
+    let largest = || {
+        shot.sensor_maxima
+            .iter()
+            .map(|peak| peak.value)
+            .reduce(f64::max)
+    };
+    let passage = shot.passage.as_ref().ok();
+    passage.map(|seen| seen.incident.value).or_else(largest)
 }
 
 fn ok(point: &Point) -> Option<&Shot> {
@@ -198,36 +230,6 @@ fn rows(style: Style, swept: &Sweep) -> String {
     format::table(&head, &rows)
 }
 
-fn fit_line(style: Style, name: &str, fit: &Result<PowerLaw, FitError>) -> String {
-    let law = match fit {
-        Err(FitError::TooFew) => {
-            return format!("{name}: no power law: fewer than two speeds have a time of flight\n");
-        }
-        Err(error) => return format!("{name}: no power law: {error}\n"),
-        Ok(law) => law,
-    };
-    let (size, unit, speed) = match style.units {
-        Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
-        Units::Dimensionless => (1.0, "", "v"),
-    };
-    if law.residuals.len() == 2 {
-        return format!(
-            "{name}: ToF = {}{unit} · {speed}^({}), through two speeds, which tell no errors\n",
-            digits(law.prefactor / size, 7),
-            digits(law.exponent, 7),
-        );
-    }
-    format!(
-        "{name}: ToF = ({} ± {}){unit} · {speed}^({} ± {}), R² = {}, largest deviation {} %\n",
-        digits(law.prefactor / size, 7),
-        digits(law.prefactor_error / size, 2),
-        digits(law.exponent, 7),
-        digits(law.exponent_error, 2),
-        digits(law.r_squared, 8),
-        digits(100.0 * law.largest_deviation(), 2),
-    )
-}
-
 fn write(mut folder: Folder, experiment: &Experiment, swept: &Sweep) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(swept, experiment.units()).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(experiment, swept))?;
@@ -260,7 +262,7 @@ fn csv(swept: &Sweep, units: Units) -> String {
             Some(point.speed_m_s),
             shot.flight.map(|flight| flight.incident_s),
             shot.flight.and_then(|flight| flight.reflected_s),
-            seen.map(|seen| seen.incident.value),
+            sensor_peak(shot),
             seen.map(|seen| seen.wall.value),
             seen.and_then(|seen| Some(seen.reflected?.value)),
             shot.rebound.and_then(|rebound| rebound.end_m_s),

@@ -1,7 +1,7 @@
 //! `hertzchain theory`: what theory says of a chain's waves.
 
 use crate::arguments::Check;
-use crate::failure::{Failure, print_warnings};
+use crate::failure::Failure;
 use crate::{format, input, json, print};
 use hertzchain_study::describe_theory;
 
@@ -10,13 +10,14 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
     // What the physics refuses is reported at its place in the file.
-    experiment.system(speed)?;
-    let (chain, warnings) = experiment.chain(speed)?;
+    let given = arguments.speed.as_ref();
+    input::at_speed(given, experiment.system(speed))?;
+    let (chain, warnings) = input::at_speed(given, experiment.chain(speed))?;
     let groups = describe_theory(&experiment, &chain)?;
     if arguments.json {
         return print::print_json(&json::groups(&groups));
     }
-    print_warnings(&warnings);
+    input::print_warnings(given, &warnings);
     match groups.is_empty() {
         true => print::print("No closed theory fits this chain: no striker, no preload."),
         false => print::print(&format::groups(&groups, experiment.units())),

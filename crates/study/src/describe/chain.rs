@@ -8,7 +8,7 @@ pub(super) fn experiment(experiment: &Experiment, chain: &Chain) -> Group {
     let mut group = Group::new("Experiment");
     group.text("title", experiment.title());
     group.text("reading", experiment.reading().to_string());
-    group.text("sensor bead", experiment.sensor_bead().to_string());
+    group.count("sensor bead", experiment.sensor_bead());
     let solver = experiment.solver();
     let method = match solver.method {
         Method::Adaptive => "adaptive",
@@ -43,16 +43,13 @@ const MOST_RUNS: usize = 8;
 
 pub(super) fn beads(chain: &Chain) -> Group {
     let mut group = Group::new("Beads");
-    group.text("number of beads N", chain.beads.len().to_string());
+    group.count("number of beads N", chain.beads.len());
     let mass: f64 = chain.beads.iter().map(|bead| bead.mass_kg).sum();
     group.number("mass of all beads", mass, "kg");
     match cell(&chain.beads) {
         Some(length) => {
-            let cells = chain.beads.len() / length;
-            group.text(
-                "unit cell",
-                format!("{length} beads, repeated {cells} times"),
-            );
+            group.count("beads in a unit cell", length);
+            group.count("unit cells", chain.beads.len() / length);
             list(&mut group, &chain.beads[..length]);
         }
         None => list(&mut group, &chain.beads),
@@ -81,11 +78,10 @@ fn list(group: &mut Group, beads: &[Bead]) {
             1 => format!("bead {first}"),
             _ => format!("beads {first} to {last}"),
         };
-        group.text(name, bead(&run[0]));
+        group.parts(name, bead(&run[0]));
     }
     if runs.len() > MOST_RUNS {
-        let more = runs.len() - MOST_RUNS;
-        group.text("", format!("and {more} more runs of equal beads"));
+        group.count("more runs of equal beads", runs.len() - MOST_RUNS);
     }
 }
 
@@ -102,38 +98,25 @@ fn runs(beads: &[Bead]) -> Vec<(usize, &[Bead])> {
         .collect()
 }
 
-fn bead(bead: &Bead) -> String {
-    format!(
-        "radius {} m, mass {} kg, {}",
-        short(bead.radius_m),
-        short(bead.mass_kg),
-        material(&bead.material)
-    )
+/// Numbers of a bead; the group is never shown as such.
+fn bead(bead: &Bead) -> Group {
+    let mut parts = Group::new("");
+    parts.number("radius", bead.radius_m, "m");
+    parts.number("mass", bead.mass_kg, "kg");
+    material(&mut parts, &bead.material);
+    parts
 }
 
-fn material(material: &Material) -> String {
+fn material(parts: &mut Group, material: &Material) {
     if material.young_modulus_pa.is_infinite() {
-        return "rigid".to_owned();
+        return parts.text("material", "rigid");
     }
-    let mut text = format!(
-        "Y {} Pa, ν {}",
-        short(material.young_modulus_pa),
-        short(material.poisson_ratio)
-    );
+    parts.number("Young modulus", material.young_modulus_pa, "Pa");
+    parts.number("Poisson ratio", material.poisson_ratio, "");
     let (shear, bulk) = (material.shear_viscosity_pa_s, material.bulk_viscosity_pa_s);
     if shear != 0.0 || bulk != 0.0 {
-        text += &format!(", η1 {} Pa s, η2 {} Pa s", short(shear), short(bulk));
-    }
-    text
-}
-
-/// A number with at most seven digits.
-pub(super) fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-3..1e6).contains(&rounded.abs()) {
-        format!("{rounded:e}")
-    } else {
-        format!("{rounded}")
+        parts.number("shear viscosity", shear, "Pa s");
+        parts.number("bulk viscosity", bulk, "Pa s");
     }
 }
 
@@ -144,7 +127,7 @@ pub(super) fn ends(chain: &Chain) -> Group {
             bead: ball,
             speed_m_s,
         } => {
-            group.text("striker", bead(ball));
+            group.parts("striker", bead(ball));
             group.number("its speed", *speed_m_s, "m/s");
         }
         Start::Driven { motion, .. } => {
@@ -152,11 +135,8 @@ pub(super) fn ends(chain: &Chain) -> Group {
             group.number("its largest speed", motion.largest_speed_m_s(), "m/s");
         }
         Start::Free => {
-            let moving = chain.initial.len();
-            group.text(
-                "near end",
-                format!("free; {moving} beads start displaced or moving"),
-            );
+            group.text("near end", "free");
+            group.count("beads that start displaced or moving", chain.initial.len());
         }
     }
     match chain.push {
@@ -177,46 +157,34 @@ pub(super) fn ends(chain: &Chain) -> Group {
         .suspension_m
         .into_iter()
         .for_each(|length| group.number("threads", length, "m"));
-    group.text("far end", far(&chain.far));
+    group.parts("far end", far(&chain.far));
     group
 }
 
-fn far(far: &FarEnd) -> String {
-    match far {
-        FarEnd::HalfBead {
-            radius_m,
-            material: of,
-        } => {
-            format!(
-                "fixed half-bead, radius {} m, {}",
-                short(*radius_m),
-                material(of)
-            )
-        }
-        FarEnd::Plane { material: of } => format!("fixed plane, {}", material(of)),
-        FarEnd::Stop {
-            radius_m,
-            material: of,
-            mass_kg,
-        } => format!(
-            "half-bead on a stop of {} kg, radius {} m, {}",
-            short(*mass_kg),
-            short(*radius_m),
-            material(of)
-        ),
-        FarEnd::PlaneStop {
-            material: of,
-            mass_kg,
-        } => {
-            format!(
-                "plane on a stop of {} kg, {}",
-                short(*mass_kg),
-                material(of)
-            )
-        }
-        FarEnd::Periodic { force_n } => {
-            format!("bead 1 again (a ring), static force {} N", short(*force_n))
-        }
-        FarEnd::Free => "free".to_owned(),
+fn far(far: &FarEnd) -> Group {
+    let mut parts = Group::new("");
+    let kind = match far {
+        FarEnd::HalfBead { .. } => "fixed half-bead",
+        FarEnd::Plane { .. } => "fixed plane",
+        FarEnd::Stop { .. } => "half-bead on a stop",
+        FarEnd::PlaneStop { .. } => "plane on a stop",
+        FarEnd::Periodic { .. } => "bead 1 again (a ring)",
+        FarEnd::Free => "free",
+    };
+    parts.text("kind", kind);
+    if let FarEnd::Stop { mass_kg, .. } | FarEnd::PlaneStop { mass_kg, .. } = far {
+        parts.number("mass of the stop", *mass_kg, "kg");
     }
+    if let FarEnd::HalfBead { radius_m, .. } | FarEnd::Stop { radius_m, .. } = far {
+        parts.number("radius", *radius_m, "m");
+    }
+    match far {
+        FarEnd::HalfBead { material: of, .. }
+        | FarEnd::Plane { material: of }
+        | FarEnd::Stop { material: of, .. }
+        | FarEnd::PlaneStop { material: of, .. } => material(&mut parts, of),
+        FarEnd::Periodic { force_n } => parts.number("static force", *force_n, "N"),
+        FarEnd::Free => {}
+    }
+    parts
 }

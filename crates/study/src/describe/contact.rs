@@ -1,7 +1,6 @@
 //! Contacts: their laws and the constants that follow from the materials.
 
 use super::Group;
-use super::chain::short;
 use hertzchain_chain::laws::{Nature, Source};
 use hertzchain_chain::{Chain, Material, Pair, Section};
 use hertzchain_experiment::{Experiment, LawSpec};
@@ -88,7 +87,7 @@ fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pair
         _ => return group.text(name, "from the materials"),
     };
     match values.iter().any(|value| value.is_nan()) {
-        true => group.text(name, format!("not defined ({})", short(f64::NAN))),
+        true => group.text(name, "not defined"),
         false => group.spread(format!("{name} (from the materials)"), &values, unit),
     }
 }

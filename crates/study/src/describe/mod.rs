@@ -19,10 +19,14 @@ use theory::Waves;
 pub enum Value {
     /// A number in the row's unit.
     Number(f64),
+    /// A number of things.
+    Count(usize),
     /// From a least to a largest number.
     Range(f64, f64),
     /// Words.
     Text(String),
+    /// What describes one thing: its numbers, and words that need no name.
+    Parts(Vec<Row>),
 }
 
 /// One line: a name, its value and unit.
@@ -32,7 +36,7 @@ pub struct Row {
     pub name: String,
     /// Its value.
     pub value: Value,
-    /// Unit; empty for plain numbers, words and dimensionless chains.
+    /// Unit; empty for plain numbers and words; dimensionless chains only count.
     pub unit: String,
 }
 
@@ -63,6 +67,14 @@ impl Group {
 
     fn number(&mut self, name: impl Into<String>, value: f64, unit: &str) {
         self.put(name, Value::Number(value), unit);
+    }
+
+    fn count(&mut self, name: impl Into<String>, count: usize) {
+        self.put(name, Value::Count(count), "");
+    }
+
+    fn parts(&mut self, name: impl Into<String>, parts: Group) {
+        self.put(name, Value::Parts(parts.rows), "");
     }
 
     fn text(&mut self, name: impl Into<String>, text: impl Into<String>) {
@@ -118,7 +130,7 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
     let system = System::new(chain)?;
     let mut groups: Vec<Group> = theory::collision(chain).into_iter().collect();
     groups.extend(theory::restitution(chain)?);
-    groups.extend(large_waves(chain, &system));
+    groups.extend(large_waves(experiment, chain, &system));
     groups.extend(rest::linear_waves(chain, &system));
     groups.extend(small_waves::dispersion(chain, &system));
     groups.extend(small_waves::modes(chain, &system));
@@ -130,7 +142,7 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
 }
 
 /// Solitary waves, as far as theory knows them in this row.
-fn large_waves(chain: &Chain, system: &System) -> Vec<Group> {
+fn large_waves(experiment: &Experiment, chain: &Chain, system: &System) -> Vec<Group> {
     let known = match theory::waves(chain, system) {
         Waves::Touching => vec![
             theory::solitary(chain),
@@ -138,22 +150,35 @@ fn large_waves(chain: &Chain, system: &System) -> Vec<Group> {
             theory::long_wave(chain),
         ],
         Waves::Loaded => vec![theory::loaded(chain, system)],
-        Waves::Dimer => vec![dimer::long_wave(chain)],
+        Waves::Dimer => vec![dimer::long_wave(chain, experiment.units())],
         Waves::None(reason) => vec![Some(theory::no_waves(reason))],
     };
     known.into_iter().flatten().collect()
 }
 
-/// A dimensionless chain has numbers without units, in its descriptions of
-/// beads and ends too.
+/// A dimensionless chain has numbers without units, but for counts and angles.
 fn drop_units(group: &mut Group) {
-    let describes = matches!(group.title.as_str(), "Beads" | "Ends");
-    for row in &mut group.rows {
-        row.unit.clear();
-        if let (true, Value::Text(text)) = (describes, &mut row.value) {
-            for unit in [" kg,", " m,", " Pa s", " Pa,"] {
-                *text = text.replace(unit, if unit.ends_with(',') { "," } else { "" });
-            }
-        }
+    group.rows.iter_mut().for_each(drop_unit);
+}
+
+fn drop_unit(row: &mut Row) {
+    row.unit = dimensionless_unit(&row.unit).to_owned();
+    if let Value::Parts(parts) = &mut row.value {
+        parts.iter_mut().for_each(drop_unit);
     }
 }
+
+/// What is left of a unit where lengths, masses and times have none: things
+/// that are counted, and angles.
+#[must_use]
+pub fn dimensionless_unit(unit: &str) -> &str {
+    match unit {
+        "beads" | "bits" | "°" => unit,
+        "beads/s" | BEADS_A_TIME => BEADS_A_TIME,
+        "cells/s" | CELLS_A_TIME => CELLS_A_TIME,
+        _ => "",
+    }
+}
+
+const BEADS_A_TIME: &str = "beads per unit time";
+const CELLS_A_TIME: &str = "cells per unit time";

@@ -1,8 +1,7 @@
 //! What stands around the chain, as the file describes it.
 
-use super::Group;
-use super::chain::short;
-use hertzchain_experiment::{Experiment, RigPart, Units};
+use super::{Group, Value};
+use hertzchain_experiment::{Experiment, RigPart};
 
 /// One line a part that the file names. No number of them is computed with.
 pub(super) fn rig(experiment: &Experiment) -> Option<Group> {
@@ -12,26 +11,25 @@ pub(super) fn rig(experiment: &Experiment) -> Option<Group> {
         group.text("beads", beads);
     }
     for part in &rig.parts {
-        group.text(
-            part.kind.key().replace('_', " "),
-            described(part, experiment.units()),
-        );
+        group.parts(part.kind.key().replace('_', " "), described(part));
     }
     Some(group)
 }
 
-fn described(part: &RigPart, units: Units) -> String {
-    let number = |value: Option<f64>, unit: &str| match units {
-        Units::Si => value.map(|value| format!("{} {unit}", short(value))),
-        Units::Dimensionless => value.map(short),
+fn described(part: &RigPart) -> Group {
+    let mut parts = Group::new("");
+    parts.text("name", part.name.clone());
+    let mut number = |name: &str, value: Option<f64>, unit: &str| {
+        value
+            .into_iter()
+            .for_each(|value| parts.number(name, value, unit));
     };
-    let numbers = [
-        number(part.mass_kg, "kg"),
-        number(part.length_m, "m"),
-        number(part.force_n, "N"),
-        part.bits.map(|bits| format!("{bits} bits")),
-        number(part.rate_hz, "Hz"),
-    ];
-    let words = std::iter::once(part.name.clone()).chain(numbers.into_iter().flatten());
-    words.collect::<Vec<_>>().join(", ")
+    number("mass", part.mass_kg, "kg");
+    number("length", part.length_m, "m");
+    number("force", part.force_n, "N");
+    number("rate", part.rate_hz, "Hz");
+    if let Some(bits) = part.bits {
+        parts.put("resolution", Value::Count(bits), "bits");
+    }
+    parts
 }

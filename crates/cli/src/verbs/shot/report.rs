@@ -1,18 +1,20 @@
 //! A shot in words.
 
 use crate::format::{Style, digits, pairs};
+use crate::missing;
 use crate::print::heading;
-use hertzchain_chain::observe::{Maximum, Passage, PassageError};
+use hertzchain_chain::Start;
+use hertzchain_chain::observe::{Maximum, Passage};
 use hertzchain_chain::wave::Budget;
-use hertzchain_chain::{FarEnd, Start};
-use hertzchain_experiment::{Experiment, Units};
+use hertzchain_experiment::Experiment;
 use hertzchain_study::{Plan, Shot};
 
 type Rows = Vec<(String, String)>;
 
 /// Everything that was asked of the shot.
 pub fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
-    let style = Style::of_accuracy(plan.accuracy, experiment.units());
+    let accuracy = shot.accuracy_reached.unwrap_or(plan.accuracy);
+    let style = Style::of_accuracy(accuracy, experiment.units());
     let mut text = format!("{}\n", heading(experiment.title()));
     if let Start::Striker { speed_m_s, .. } = &plan.chain.start {
         let speed = Style::brief(style.units).quantity(*speed_m_s, "m/s");
@@ -22,8 +24,8 @@ pub fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
     text += &match &shot.passage {
         Ok(seen) => format!("\n{}\n{}", heading("Pulses"), pairs(&pulses(style, seen))),
         Err(reason) => format!(
-            "\n{}{}",
-            no_passage(plan, shot, reason),
+            "\nNo time of flight: {}.\n{}",
+            missing::reason(&plan.chain.far, style.units, reason),
             last_speeds(style, shot)
         ),
     };
@@ -84,20 +86,6 @@ fn flight(style: Style, shot: &Shot) -> Rows {
         rows.extend(peaks.map(|peak| ("peak of the sensor bead".into(), at(brief, peak))));
     }
     rows
-}
-
-/// Why there is no time of flight.
-fn no_passage(plan: &Plan, shot: &Shot, reason: &PassageError) -> String {
-    match (plan.chain.far, reason) {
-        (FarEnd::Free | FarEnd::Periodic { .. }, _) => {
-            "No time of flight: the chain has no wall.\n".to_owned()
-        }
-        (_, PassageError::NoWallPulse { .. }) => {
-            let duration = Style::brief(Units::Dimensionless).quantity(shot.duration_s, "");
-            format!("No time of flight: no pulse reached the wall within {duration} s.\n")
-        }
-        (_, reason) => format!("No time of flight: {reason}.\n"),
-    }
 }
 
 /// Longer chains have traces for that.

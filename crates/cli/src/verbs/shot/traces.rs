@@ -73,7 +73,9 @@ pub fn write(
     // Budgets stand at the ends of steps; the last step may reach beyond the shot.
     trace.budgets.extend(shot.budget.clone());
     if arguments.out.is_some() {
-        folder.write("traces.csv", csv(&trace, &shown, experiment).as_bytes())?;
+        let noise = shot.tolerance.unwrap_or(shot.accuracy_asked);
+        let table = csv(&trace, &shown, experiment, noise);
+        folder.write("traces.csv", table.as_bytes())?;
         let energy = energy_csv(&trace, experiment.units());
         folder.write("energy.csv", energy.as_bytes())?;
         folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
@@ -106,22 +108,43 @@ fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Fail
     trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
 }
 
-fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment) -> String {
+/// What was sampled; what is smaller than the solver's error, a fraction
+/// `noise` of the largest number of its unit, is 0.
+fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment, noise: f64) -> String {
     let (units, wall) = (experiment.units(), pictures::wall(experiment));
     let column = |sensor: &Sensor| {
         let (name, unit) = pictures::name(*sensor, wall);
         format!(",{}{}", name.replace(' ', "_"), suffix(unit, units))
     };
     let names: String = sensors.iter().map(column).collect();
+    let floors = floors(trace, sensors, wall, noise);
     let mut text = format!("time{}{names}\n", suffix("s", units));
     for (row, time) in trace.time_s.iter().enumerate() {
         text += &cell(*time);
-        for column in trace.columns.iter().take(sensors.len()) {
-            text += &format!(",{}", cell(column.get(row).copied().unwrap_or(f64::NAN)));
+        for (column, floor) in trace.columns.iter().zip(&floors) {
+            let value = column.get(row).copied().unwrap_or(f64::NAN);
+            let value = if value.abs() < *floor { 0.0 } else { value };
+            text += &format!(",{}", cell(value));
         }
         text.push('\n');
     }
     text
+}
+
+/// The smallest number that means anything, a column: the solver's error is
+/// common to all bodies and contacts.
+fn floors(trace: &Trace, sensors: &[Sensor], wall: Option<usize>, noise: f64) -> Vec<f64> {
+    let unit = |sensor: &Sensor| pictures::name(*sensor, wall).1;
+    let largest = |column: &Vec<f64>| column.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let of_unit = |sensor: &Sensor| {
+        let alike = sensors.iter().zip(&trace.columns);
+        let alike = alike.filter(|(other, _)| unit(other) == unit(sensor));
+        alike.map(|(_, column)| largest(column)).fold(0.0, f64::max)
+    };
+    sensors
+        .iter()
+        .map(|sensor| noise * of_unit(sensor))
+        .collect()
 }
 
 fn energy_csv(trace: &Trace, units: Units) -> String {
