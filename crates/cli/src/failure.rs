@@ -2,6 +2,7 @@
 //! mistakes, 1 for ours.
 
 use crate::arguments::How;
+use crate::given::has_unit;
 use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
 use hertzchain_study::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
@@ -147,7 +148,9 @@ pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
 fn underlines_speed(finding: &Finding) -> bool {
     let text = finding.text().rsplit('=').next().unwrap_or_default();
     let asked = text == "[striker]" && finding.to_string().ends_with("was asked for");
-    asked || parse_speed(text.trim().trim_matches('"')).is_ok()
+    let text = text.trim().trim_matches('"');
+    // Plain numbers may be anything.
+    asked || (has_unit(text) && parse_speed(text).is_ok())
 }
 
 /// Warnings at a speed that an option gave, as [`Failure::at_option`].

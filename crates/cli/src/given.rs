@@ -75,7 +75,8 @@ pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Fail
     }
 }
 
-fn has_unit(text: &str) -> bool {
+/// Whether a number has a unit.
+pub fn has_unit(text: &str) -> bool {
     parse_quantity(text).is_ok_and(|quantity| quantity.dimension != Dimension::NONE)
 }
 
