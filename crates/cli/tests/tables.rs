@@ -124,7 +124,7 @@ fn traces_hold_no_numbers_below_the_solver_s_error() {
     let least = shot["tolerance"].as_f64().unwrap() * largest;
     let small = |force: &&f64| **force != 0.0 && force.abs() < least;
     assert_eq!(forces.iter().find(small), None);
-    assert!(forces.iter().any(|force| *force == 0.0));
+    assert!(forces.contains(&0.0));
 }
 
 #[test]
