@@ -61,7 +61,7 @@ pub(crate) fn of_times(plan: &Plan) -> f64 {
 
 /// Steps of the ensemble loop, in contact times, with which rows of alike
 /// beads mostly reach an accuracy, and whether openings must be found: measured,
-/// `docs/numerics.md`. Each shot tells by a second, longer step whether it has.
+/// `docs/numerics.md`. Each shot tells by two longer steps whether it has.
 const EQUAL_STEPS: [(f64, f64, bool); 5] = [
     (1e-3, 0.13, false),
     (1e-4, 0.1, false),

@@ -81,7 +81,7 @@ impl<'a> Gun<'a> {
             let mut shot = self.once(&*accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
             shot.tolerance = Some(tolerance);
             let excess = residual(&shot) / self.plan.accuracy;
-            if excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {
+            if excess.is_nan() || excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {
                 return Ok((shot, tolerance));
             }
             // The residual goes with the tolerance, about; twice is a margin.

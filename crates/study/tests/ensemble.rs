@@ -18,18 +18,20 @@ fn fly(plans: &[Plan]) -> Vec<Shot> {
     shots.into_iter().map(Result::unwrap).collect()
 }
 
+const PRESETS: [&str; 6] = [
+    "hertz",
+    "hertz-viscoelastic",
+    "dry",
+    "pump",
+    "gear",
+    "motor",
+];
+
 const SPEEDS: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
 
 #[test]
 fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
-    for name in [
-        "hertz",
-        "hertz-viscoelastic",
-        "dry",
-        "pump",
-        "gear",
-        "motor",
-    ] {
+    for name in PRESETS {
         let exact: Vec<_> = plans(name, &SPEEDS, 1e-9)
             .iter()
             .map(|p| shoot(p).unwrap())
@@ -127,15 +129,7 @@ fn random_plans(count: u64) -> Vec<Plan> {
         low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let plan = |_| {
-        let names = [
-            "hertz",
-            "hertz-viscoelastic",
-            "dry",
-            "pump",
-            "gear",
-            "motor",
-        ];
-        let experiment = preset(names[random(0.0, 6.0) as usize]).unwrap();
+        let experiment = preset(PRESETS[random(0.0, 6.0) as usize]).unwrap();
         let speed = 0.1 * 10_f64.powf(random(0.0, 1.3));
         let (mut plan, _) = Plan::from_experiment(&experiment, Some(speed)).unwrap();
         let kind = random(0.0, 4.0) as usize;

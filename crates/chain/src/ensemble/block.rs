@@ -89,10 +89,10 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         };
         let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
         let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
-        let loads = systems
+        let mut loads = systems
             .iter()
             .flat_map(|system| system.static_force_n.iter());
-        let loaded = loads.into_iter().any(|&force| force != 0.0);
+        let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
         let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {
             let offset = systems[lane].offset_m.get(c).copied();
@@ -357,7 +357,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         // kept in the place of contact 0.
         let bead = |n: usize| {
             let (left, right) = (force(n - 1), force(n));
-            std::array::from_fn(|lane| left[lane].middle(right[lane]))
+            std::array::from_fn(|lane| N::of(0.5) * (left[lane] + right[lane]))
         };
         match sensor {
             Sensor::Bead(n) => bead(n),

@@ -4,7 +4,7 @@
 use crate::system::FLUSH;
 use fearless_simd::{SimdFloatElement, f32x16, f64x8, prelude::*};
 use std::fmt::Debug;
-use std::ops::Add;
+use std::ops::{Add, Mul};
 
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::{Avx512, Level};
@@ -15,6 +15,7 @@ pub(super) trait Number<const W: usize>:
     + Default
     + PartialOrd
     + Add<Output = Self>
+    + Mul<Output = Self>
     + Debug
     + Into<f64>
     + Send
@@ -29,9 +30,6 @@ pub(super) trait Number<const W: usize>:
 
     /// The nearest number.
     fn of(value: f64) -> Self;
-
-    /// Half the sum.
-    fn middle(self, other: Self) -> Self;
 
     /// Overlaps up to this are none: they would make forces too small for
     /// normal numbers. From an overlap of the shot's own size.
@@ -49,11 +47,6 @@ impl Number<8> for f64 {
     #[inline(always)]
     fn of(value: f64) -> Self {
         value
-    }
-
-    #[inline(always)]
-    fn middle(self, other: Self) -> Self {
-        0.5 * (self + other)
     }
 
     fn slightest_m(_overlap_m: f64) -> Self {
@@ -85,11 +78,6 @@ impl Number<16> for f32 {
     )]
     fn of(value: f64) -> Self {
         value as f32
-    }
-
-    #[inline(always)]
-    fn middle(self, other: Self) -> Self {
-        0.5 * (self + other)
     }
 
     /// A force of 1e-18 of the largest adds nothing to what is single.

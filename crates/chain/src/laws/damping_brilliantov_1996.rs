@@ -1,4 +1,4 @@
-use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
+use super::{Closed, DampingViscoelastic, LawError, LawInfo, Nature, Term};
 use crate::material::{Material, Pair};
 
 /// Viscoelastic spheres as first derived [Brilliantov1996]: the same form as
@@ -15,22 +15,7 @@ impl Term<1> for DampingBrilliantov1996 {
     const INFO: LawInfo = LawInfo {
         name: "damping_brilliantov_1996",
         equation: "F = (3/2) A K √δ δ̇,  A = (1/3) (3η2−η1)²/(3η2+2η1) (1−ν²)(1−2ν)/(Y ν²)",
-        parameters: &[
-            Parameter {
-                name: "relaxation_time",
-                unit: "s",
-                meaning: "relaxation time A",
-                source: Source::Materials,
-                least: 0.0,
-            },
-            Parameter {
-                name: "stiffness",
-                unit: "N/m^(3/2)",
-                meaning: "Hertz stiffness K of the contact",
-                source: Source::Hertz,
-                least: 0.0,
-            },
-        ],
+        parameters: DampingViscoelastic::INFO.parameters,
         validity: "as damping_viscoelastic; its A vanishes at ν = 1/2 and diverges at ν = 0",
         reference: "Brilliantov1996",
         nature: Nature::Dissipative,
