@@ -14,6 +14,7 @@ use crate::instruction_set::InstructionSet;
 use crate::laws::Closed;
 use crate::sensor::Sensor;
 use crate::system::System;
+use fearless_simd::{dispatch, prelude::*};
 
 /// Edges below this fraction of the shot's speed are left as they are.
 const SLIGHT: f64 = 1e-10;
@@ -157,21 +158,17 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// One step of all lanes; the forces are then those of the new positions.
-    pub fn step(&mut self) {
+    #[inline(always)]
+    pub fn step<S: Simd>(&mut self, simd: S) {
         self.push();
         if self.steps <= self.schedule.last_row() {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
         }
-        self.motion.step(
-            self.set,
-            &self.window,
-            self.lanes,
-            &self.force_n,
-            &self.weights,
-        );
+        self.motion
+            .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
         self.mend_edges();
         self.close_ring();
-        self.window.follow(self.set, places!(self));
+        self.window.follow(simd, places!(self));
         self.starting = false;
         self.forces();
         self.look_at_changes(true);
@@ -380,22 +377,35 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// How much correcting the last step changed any velocity of each lane, in
     /// m/s; NaN where anything is.
     pub fn corrections(&self) -> [f64; W] {
-        let weights = &self.schedule.row(self.steps.saturating_sub(1)).residual;
-        let mut worst = [0.0_f64; W];
-        for chunk in self.window.bodies.clone() {
-            let mut change = [0.0; W];
-            for (age, weight) in weights.iter().enumerate() {
-                let a = &self.motion.accelerations(age)[chunk * W..][..W];
-                for (change, &a) in change.iter_mut().zip(a) {
-                    *change += weight * a.into();
-                }
-            }
-            worst = std::array::from_fn(|lane| larger_or_nan(worst[lane], change[lane].abs()));
-        }
+        let worst = dispatch!(self.set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.worst_correction(simd)
+        ));
         std::array::from_fn(|lane| {
-            let own = (lane..W).step_by(self.lanes).map(|at| worst[at]);
+            let own = (lane..W).step_by(self.lanes).map(|at| worst[at].into());
             self.step_s[lane] * own.fold(0.0, larger_or_nan)
         })
+    }
+
+    #[inline(always)]
+    fn worst_correction<S: Simd>(&self, simd: S) -> [N; W] {
+        let weights = &self.schedule.row(self.steps.saturating_sub(1)).residual;
+        let wide = |value: f64| N::Wide::<S>::simd_from(simd, N::of(value));
+        let mut worst = wide(0.0);
+        for chunk in self.window.bodies.clone() {
+            let mut change = wide(0.0);
+            for (age, &weight) in weights.iter().enumerate() {
+                let a = &self.motion.accelerations(age)[chunk * W..][..W];
+                change = wide(weight).mul_add(N::Wide::<S>::from_slice(simd, a), change);
+            }
+            let change = change.abs();
+            // What is not at most the worst is larger, or NaN and stays so.
+            let smaller = change.simd_le(worst) | worst.simd_ne(worst);
+            worst = smaller.select(worst, change);
+        }
+        let mut lanes = [N::default(); W];
+        worst.store_array(&mut lanes);
+        lanes
     }
 }
 

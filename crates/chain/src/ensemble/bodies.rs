@@ -6,8 +6,7 @@ use super::column::Column;
 use super::number::Number;
 use super::weights::{EARLIER, USED, Weights};
 use super::window::Window;
-use crate::instruction_set::InstructionSet;
-use fearless_simd::{dispatch, prelude::*};
+use fearless_simd::prelude::*;
 use std::ops::Range;
 
 /// Motion of all bodies of all lanes.
@@ -73,9 +72,10 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
 
     /// One step of what the wave has reached: `force` holds the dynamic force
     /// on each body from the left, and `lanes` further on from the right.
-    pub fn step(
+    #[inline(always)]
+    pub fn step<S: Simd>(
         &mut self,
-        set: InstructionSet,
+        simd: S,
         window: &Window,
         lanes: usize,
         force: &[N],
@@ -83,15 +83,10 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
     ) {
         self.newest = (self.newest + USED - 1) % USED;
         let mut now = std::mem::take(&mut self.accelerations[self.newest]);
-        dispatch!(set.level(), simd => simd.vectorize(
-            #[inline(always)]
-            || {
-                let (awake, all) = (window.bodies.clone(), window.chunks);
-                fly(simd, self, 0..awake.start, scaled);
-                sweep(simd, self, &mut now, (awake.clone(), lanes), force, scaled);
-                fly(simd, self, awake.end..all, scaled);
-            }
-        ));
+        let (awake, all) = (window.bodies.clone(), window.chunks);
+        fly(simd, self, 0..awake.start, scaled);
+        sweep(simd, self, &mut now, (awake.clone(), lanes), force, scaled);
+        fly(simd, self, awake.end..all, scaled);
         self.accelerations[self.newest] = now;
     }
 }
@@ -151,19 +146,15 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
         };
         a.store_array(&mut now[i]);
         let (x0, v0) = (load(&x[i]), load(&v[i]));
-        // Two chains of sums each, so that one need not wait for the other.
-        let a1 = load(&earlier[0][i]);
-        let mut sped = [velocity[0].mul_add(a, v0), velocity[1] * a1];
-        let mut moved = [
-            position[0] * a,
-            position[1].mul_add(a1, drift.mul_add(v0, x0)),
-        ];
-        for k in 2..USED {
+        // What is small first: single precision rounds once where it is large.
+        let mut sped = velocity[0] * a;
+        let mut moved = position[0] * a;
+        for k in 1..USED {
             let a = load(&earlier[k - 1][i]);
-            sped[k % 2] = velocity[k].mul_add(a, sped[k % 2]);
-            moved[k % 2] = position[k].mul_add(a, moved[k % 2]);
+            sped = velocity[k].mul_add(a, sped);
+            moved = position[k].mul_add(a, moved);
         }
-        (sped[0] + sped[1]).store_array(&mut v[i]);
-        (moved[0] + moved[1]).store_array(&mut x[i]);
+        (v0 + sped).store_array(&mut v[i]);
+        (x0 + drift.mul_add(v0, moved)).store_array(&mut x[i]);
     }
 }

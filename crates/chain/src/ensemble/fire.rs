@@ -11,6 +11,7 @@ use crate::observe::Signal;
 use crate::sensor::Sensor;
 use crate::system::System;
 use crate::wave::Work;
+use fearless_simd::{Simd, dispatch};
 
 /// One shot to be fired.
 #[derive(Clone, Copy, Debug)]
@@ -299,10 +300,15 @@ fn fly<N: Number<W>, const W: usize>(
     systems: &[&System],
 ) {
     while lanes.iter().any(|lane| lane.state == State::Flying) {
-        for _ in 0..LOOK_EVERY {
-            block.step();
-            recorder.add(settings.set, block);
-        }
+        dispatch!(settings.set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || {
+                for _ in 0..LOOK_EVERY {
+                    block.step(simd);
+                    recorder.add(block);
+                }
+            }
+        ));
         if block.steps.is_multiple_of(CORRECTION_EVERY) {
             let corrections = block.corrections();
             let flying = lanes.iter_mut().zip(corrections).zip(systems);

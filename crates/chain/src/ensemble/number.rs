@@ -35,8 +35,8 @@ pub(super) trait Number<const W: usize>:
     /// normal numbers. From an overlap of the shot's own size.
     fn slightest_m(overlap_m: f64) -> Self;
 
-    /// √d of numbers that are 0 or normal.
-    fn roots<S: Simd>(simd: S, d: Self::Wide<S>) -> Self::Wide<S>;
+    /// √d of numbers that are 0 or normal, where bits say that they are not 0.
+    fn roots<S: Simd>(simd: S, d: Self::Wide<S>, positive: u64) -> Self::Wide<S>;
 }
 
 impl Number<8> for f64 {
@@ -57,10 +57,10 @@ impl Number<8> for f64 {
     /// [Goldschmidt1964] makes a root of 28 bits of it and a step on the
     /// residual one of 42, 2e-13; elsewhere the hardware's root is as fast.
     #[inline(always)]
-    fn roots<S: Simd>(simd: S, d: f64x8<S>) -> f64x8<S> {
+    fn roots<S: Simd>(simd: S, d: f64x8<S>, positive: u64) -> f64x8<S> {
         match simd.level() {
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512(avx512) => double_roots(avx512, d.into()).simd_into(simd),
+            Level::Avx512(avx512) => double_roots(avx512, d.into(), positive as u8).simd_into(simd),
             _ => d.sqrt(),
         }
     }
@@ -87,10 +87,12 @@ impl Number<16> for f32 {
 
     /// As in double precision; one step leaves rounding alone.
     #[inline(always)]
-    fn roots<S: Simd>(simd: S, d: f32x16<S>) -> f32x16<S> {
+    fn roots<S: Simd>(simd: S, d: f32x16<S>, positive: u64) -> f32x16<S> {
         match simd.level() {
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512(avx512) => single_roots(avx512, d.into()).simd_into(simd),
+            Level::Avx512(avx512) => {
+                single_roots(avx512, d.into(), positive as u16).simd_into(simd)
+            }
             _ => d.sqrt(),
         }
     }
@@ -99,14 +101,11 @@ impl Number<16> for f32 {
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
     #[inline(always)]
-    fn double_roots(avx512: Avx512, d: [f64; 8]) -> [f64; 8] {
-        use std::arch::x86_64::{
-            _mm512_castpd_si512, _mm512_maskz_rsqrt14_pd, _mm512_test_epi64_mask,
-        };
+    fn double_roots(avx512: Avx512, d: [f64; 8], positive: u8) -> [f64; 8] {
+        use std::arch::x86_64::_mm512_maskz_rsqrt14_pd;
         let d: f64x8<Avx512> = d.simd_into(avx512);
-        let bits = _mm512_castpd_si512(d.into());
         // Where d is 0 the seed is 0, and so is the root.
-        let seed = _mm512_maskz_rsqrt14_pd(_mm512_test_epi64_mask(bits, bits), d.into());
+        let seed = _mm512_maskz_rsqrt14_pd(positive, d.into());
         let seed: f64x8<Avx512> = seed.simd_into(avx512);
         let half = f64x8::splat(avx512, 0.5);
         let (root, reciprocal) = (d * seed, half * seed);
@@ -120,13 +119,10 @@ fearless_simd::kernel!(
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
     #[inline(always)]
-    fn single_roots(avx512: Avx512, d: [f32; 16]) -> [f32; 16] {
-        use std::arch::x86_64::{
-            _mm512_castps_si512, _mm512_maskz_rsqrt14_ps, _mm512_test_epi32_mask,
-        };
+    fn single_roots(avx512: Avx512, d: [f32; 16], positive: u16) -> [f32; 16] {
+        use std::arch::x86_64::_mm512_maskz_rsqrt14_ps;
         let d: f32x16<Avx512> = d.simd_into(avx512);
-        let bits = _mm512_castps_si512(d.into());
-        let seed = _mm512_maskz_rsqrt14_ps(_mm512_test_epi32_mask(bits, bits), d.into());
+        let seed = _mm512_maskz_rsqrt14_ps(positive, d.into());
         let seed: f32x16<Avx512> = seed.simd_into(avx512);
         let half = f32x16::splat(avx512, 0.5);
         let (root, reciprocal) = (d * seed, half * seed);

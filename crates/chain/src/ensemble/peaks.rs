@@ -161,7 +161,8 @@ fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
         } else {
             0.5 * (low + high)
         };
-        if (next - at).abs() <= 1e-12 {
+        // What is left is the square of the last change, about.
+        if (next - at).abs() <= 1e-7 {
             return next;
         }
         at = next;

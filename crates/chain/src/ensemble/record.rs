@@ -43,15 +43,12 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
     }
 
     /// Adds what all sensors show now.
-    #[inline]
-    pub fn add(&mut self, set: InstructionSet, block: &Block<'_, N, W>) {
-        dispatch!(set.level(), simd => simd.vectorize(
-            #[inline(always)]
-            || match self.lanes == W {
-                true => self.add_row::<W>(block),
-                false => self.add_row::<1>(block),
-            }
-        ));
+    #[inline(always)]
+    pub fn add(&mut self, block: &Block<'_, N, W>) {
+        match self.lanes == W {
+            true => self.add_row::<W>(block),
+            false => self.add_row::<1>(block),
+        }
     }
 
     #[inline(always)]

@@ -65,7 +65,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
         };
         Touch {
             overlap,
-            root: N::roots(simd, overlap),
+            root: N::roots(simd, overlap, deep.to_bitmask()),
             rate: closed.select(across, zero),
             across,
         }

@@ -95,20 +95,8 @@ impl Window {
 
     /// Takes in what the last step has reached: the next chunk once the last
     /// one moves, and sleeping contacts next to what is awake once they close.
-    pub fn follow<N: Number<W>, const W: usize>(
-        &mut self,
-        set: InstructionSet,
-        places: Places<'_, N, W>,
-    ) {
-        dispatch!(set.level(), simd => simd.vectorize(
-            #[inline(always)]
-            || self.follow_with(simd, places)
-        ));
-        self.wake_bodies();
-    }
-
     #[inline(always)]
-    fn follow_with<S: Simd, N: Number<W>, const W: usize>(
+    pub fn follow<S: Simd, N: Number<W>, const W: usize>(
         &mut self,
         simd: S,
         places: Places<'_, N, W>,
@@ -125,6 +113,7 @@ impl Window {
         {
             self.contacts.end += 1;
         }
+        self.wake_bodies();
     }
 
     /// Chunks of contacts that the wave has reached.
