@@ -111,7 +111,7 @@ fn fly<S: Simd, N: Number<W>, const W: usize>(
     let x = motion.x[..asleep.end * W].as_chunks_mut::<W>().0;
     for i in asleep {
         let (x0, v0) = (load(&x[i]), load(&v[i]));
-        drift.mul_add(v0, x0).store_array(&mut x[i]);
+        (x0 + drift * v0).store_array(&mut x[i]);
     }
 }
 
