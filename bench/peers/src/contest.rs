@@ -37,6 +37,18 @@ pub struct Answer {
     pub shots_per_s: f64,
 }
 
+/// What came out of a contest.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Ours.
+    pub of_us: Answer,
+    /// The peer's.
+    pub of_them: Answer,
+    /// Our speed over theirs: the median over the rounds, each of which runs
+    /// both.
+    pub ratio: f64,
+}
+
 impl Question {
     fn count(&self, shots_per_s: f64, fewest: usize) -> usize {
         let fewest = if shots_per_s > 500.0 {
@@ -63,21 +75,43 @@ impl Question {
         worker: &Worker,
         candidates: &[Point],
         converged: &Converged,
-    ) -> Option<(Answer, Answer)> {
+    ) -> Option<Outcome> {
         let (point, speeds) = self.choose(tool, worker, candidates, converged)?;
         let our_speeds = self.our_speeds();
         let (mut our_runs, mut their_runs) = (Vec::new(), Vec::new());
         for _ in 0..self.rounds {
-            our_runs.push(measured(|| ours(self.case, &our_speeds, self.accuracy)));
-            their_runs.push(tool.run(worker, point.method, self.case, point.setting, &speeds));
+            let theirs = tool.run(worker, point.method, self.case, point.setting, &speeds);
+            our_runs.push(self.run_as_long(&our_speeds, theirs.seconds));
+            their_runs.push(theirs);
         }
+        let ratios = our_runs.iter().zip(&their_runs).map(|(ours, theirs)| {
+            theirs.seconds / speeds.len() as f64 * our_speeds.len() as f64 / ours.seconds
+        });
+        let ratio = median(ratios.collect());
         let of_us = answer(("", 0.0), &our_runs, &converged.tofs_s(&our_speeds));
         let of_them = answer(
             (point.method, point.setting),
             &their_runs,
             &converged.tofs_s(&speeds),
         );
-        Some((of_us, of_them))
+        Some(Outcome {
+            of_us,
+            of_them,
+            ratio,
+        })
+    }
+
+    /// Our shots again and again for about as long as a peer took, so that both
+    /// see the same weather on the machine; seconds of one run.
+    fn run_as_long(&self, speeds_m_s: &[f64], seconds: f64) -> Timed {
+        let run = || measured(|| ours(self.case, speeds_m_s, self.accuracy));
+        let first = run();
+        let more = (seconds / first.seconds).min(1000.0) as usize;
+        let rest: f64 = (0..more).map(|_| run().seconds).sum();
+        Timed {
+            seconds: (first.seconds + rest) / (more + 1) as f64,
+            ..first
+        }
     }
 
     fn choose(
@@ -106,9 +140,7 @@ fn answer(
     runs: &[Timed],
     converged: &[(f64, f64)],
 ) -> Answer {
-    let mut seconds: Vec<f64> = runs.iter().map(|run| run.seconds).collect();
-    seconds.sort_by(f64::total_cmp);
-    let median = seconds[seconds.len() / 2];
+    let median = median(runs.iter().map(|run| run.seconds).collect());
     Answer {
         method,
         setting,
@@ -118,4 +150,11 @@ fn answer(
         shots: converged.len(),
         shots_per_s: converged.len() as f64 / median,
     }
+}
+
+/// The middle one of some numbers.
+pub fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    let middle = numbers.get(numbers.len() / 2);
+    middle.copied().unwrap_or(f64::NAN)
 }
