@@ -79,7 +79,7 @@ fn fire_together(one: &Plan, other: &Plan) -> bool {
 /// Whether the ensemble loop can run a plan to the accuracy asked.
 fn suits(plan: &Plan) -> bool {
     plan.solver == Solver::Adaptive
-        && plan.pick == Pick::Peak
+        && plan.picks().all(|pick| pick == Pick::Peak)
         && !plan.rebound
         && !plan.budget
         && plan.watch.is_none()
@@ -209,6 +209,9 @@ fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
     let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;
     Some(Shot {
         flight: Flight::picked(plan.pick, &passages, &passage),
+        compared: (plan.compare.iter())
+            .map(|&pick| Flight::picked(pick, &passages, &passage))
+            .collect(),
         sensor_maxima: reported(passages.sensor().maxima()),
         pulse_speed_beads_s: Some(between / passage.tof_incident_s()),
         rebound: None,

@@ -260,14 +260,15 @@ impl<'a> Gun<'a> {
             }),
         };
         let seen = passage.as_ref().ok();
-        let picked = seen.and_then(|passage| Flight::picked(self.plan.pick, passages, passage));
+        let picked = |pick| Flight::picked(pick, passages, seen?);
         let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
         // A shot that came to the end of the rule by another way than the striker's.
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();
         let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         Shot {
-            flight: picked,
+            flight: picked(self.plan.pick),
+            compared: self.plan.compare.iter().map(|&pick| picked(pick)).collect(),
             sensor_maxima: reported(passages.sensor().maxima()),
             pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
             rebound: is_struck.then(|| Rebound {

@@ -34,6 +34,16 @@ pub enum Pick {
     CrossCorrelation,
 }
 
+impl Pick {
+    /// Every way that an experiment file can ask for.
+    pub const ALL: [Self; 4] = [
+        Self::Peak,
+        Self::Flank(0.1),
+        Self::Flank(0.5),
+        Self::CrossCorrelation,
+    ];
+}
+
 impl From<experiment::Pick> for Pick {
     fn from(pick: experiment::Pick) -> Self {
         match pick {
@@ -74,6 +84,8 @@ pub struct Plan {
     pub rebound: bool,
     /// Where pulses are timed.
     pub pick: Pick,
+    /// Other ways to time the same pulses, to compare with.
+    pub compare: Vec<Pick>,
     /// Keep an energy budget.
     pub budget: bool,
     /// What to sample.
@@ -93,6 +105,7 @@ impl Plan {
             duration_s: None,
             rebound: true,
             pick: Pick::Peak,
+            compare: Vec::new(),
             budget: false,
             watch: None,
         }
@@ -135,6 +148,19 @@ impl Plan {
     pub fn for_flights(mut self) -> Self {
         self.rebound = false;
         self
+    }
+
+    /// This plan, timed by peaks, with all other ways to compare with.
+    #[must_use]
+    pub fn comparing_picks(mut self) -> Self {
+        self.pick = Pick::Peak;
+        self.compare = Pick::ALL[1..].to_vec();
+        self
+    }
+
+    /// Ways to time the pulses, the plan's own first.
+    pub(crate) fn picks(&self) -> impl Iterator<Item = Pick> + '_ {
+        std::iter::once(self.pick).chain(self.compare.iter().copied())
     }
 
     /// This plan with an energy budget.

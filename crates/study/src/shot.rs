@@ -23,6 +23,8 @@ pub struct Rebound {
 pub struct Shot {
     /// Times of flight as picked; `None` when no pulse was seen to pass.
     pub flight: Option<Flight>,
+    /// The same as the plan's other picks time them.
+    pub compared: Vec<Option<Flight>>,
     /// Peaks and widths, or why there are none.
     pub passage: Result<Passage, PassageError>,
     /// Maxima of the sensor bead above 5 % of its largest, seen with or
@@ -67,15 +69,25 @@ pub struct Shot {
 impl Shot {
     /// Largest relative difference of two computations of one shot.
     pub(crate) fn change(&self, other: &Self) -> f64 {
-        match (&self.flight, &other.flight) {
-            (Some(one), Some(two)) => return one.change(two),
-            (None, None) => {}
-            _ => return f64::INFINITY,
+        if let Some(change) = self.flights_change(other) {
+            return change;
         }
         match (highest(&self.sensor_maxima), highest(&other.sensor_maxima)) {
             (Some(one), Some(two)) => relative(one.time_s, two.time_s),
             _ => velocity_change(&self.velocity_m_s, &other.velocity_m_s),
         }
+    }
+
+    /// Largest relative difference of times of flight, however picked; `None`
+    /// where neither computation has any.
+    fn flights_change(&self, other: &Self) -> Option<f64> {
+        let all = |shot: &Self| std::iter::once(shot.flight).chain(shot.compared.clone());
+        let changes = all(self).zip(all(other)).filter_map(|pair| match pair {
+            (Some(one), Some(two)) => Some(one.change(&two)),
+            (None, None) => None,
+            _ => Some(f64::INFINITY),
+        });
+        changes.reduce(f64::max)
     }
 }
 

@@ -137,6 +137,19 @@ fn hertz_pulses_keep_their_time_whatever_the_pick() {
 }
 
 #[test]
+fn one_shot_can_be_timed_in_every_way() {
+    let all = shoot(&plan("gear", 0.2).comparing_picks()).unwrap();
+    let flights = std::iter::once(all.flight).chain(all.compared);
+    for (pick, flight) in Pick::ALL.into_iter().zip(flights) {
+        let alone = shoot(&Plan {
+            pick,
+            ..plan("gear", 0.2)
+        });
+        assert_eq!(flight, alone.unwrap().flight, "{pick:?}");
+    }
+}
+
+#[test]
 fn correlated_times_do_not_depend_on_the_accuracy_beyond_it() {
     let at = |accuracy| {
         flight(&Plan {

@@ -2,10 +2,10 @@
 
 use super::cases::Cases;
 use super::memory::Memory;
-use super::point::{checked, read_off};
+use super::point::{checked, read_off_all};
 use super::{ReproduceError, failed};
 use crate::claims::{Curve, Evidence, Judge, Point};
-use crate::{InstructionSet, Plan, Shot, StudyError, shoot, shoot_all};
+use crate::{InstructionSet, Pick, Plan, Shot, StudyError, shoot, shoot_all};
 use hertzchain_chain::{Chain, Sensor};
 use hertzchain_experiment::{Experiment, Reading};
 use rayon::prelude::*;
@@ -72,7 +72,12 @@ fn gathered(
     let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
     let jobs: Vec<_> = jobs.collect();
     let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
-        Target::new(case, experiment, speed, how, change)
+        let target = Target::new(case, experiment, speed, how, change)?;
+        // What is remembered serves every pick.
+        Ok::<_, ReproduceError>(match memory {
+            Some(_) => target.comparing_picks(),
+            None => target,
+        })
     };
     let targets: Vec<Target> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
     let points = shot_at(&targets, how.effort, memory, done)?;
@@ -109,6 +114,8 @@ struct Target {
     case: &'static str,
     speed_m_s: f64,
     plan: Plan,
+    /// How the reading times pulses.
+    pick: Pick,
 }
 
 /// The end beads are sampled this often to see how far they are apart, in s.
@@ -138,17 +145,31 @@ impl Target {
         Ok(Self {
             case,
             speed_m_s,
+            pick: plan.pick,
             plan,
         })
+    }
+
+    fn comparing_picks(self) -> Self {
+        Self {
+            plan: self.plan.comparing_picks(),
+            ..self
+        }
+    }
+
+    /// The point of the target's own pick.
+    fn own(&self, mut points: Vec<Point>) -> Option<Point> {
+        let at = self.plan.picks().position(|pick| pick == self.pick)?;
+        (at < points.len()).then(|| points.swap_remove(at))
     }
 
     fn failed(&self, error: StudyError) -> ReproduceError {
         failed(self.case, self.speed_m_s, error)
     }
 
-    fn point(&self, shot: Result<Shot, StudyError>) -> Result<Point, ReproduceError> {
+    fn points(&self, shot: Result<Shot, StudyError>) -> Result<Vec<Point>, ReproduceError> {
         let shot = shot.map_err(|error| self.failed(error))?;
-        Ok(read_off(&self.plan, self.speed_m_s, &shot))
+        Ok(read_off_all(&self.plan, self.speed_m_s, &shot))
     }
 }
 
@@ -160,7 +181,7 @@ fn shot_at(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Point>, ReproduceError> {
     let known = |target: &Target| memory.and_then(|memory| memory.recall(&target.plan));
-    let mut points: Vec<Option<Point>> = targets.par_iter().map(known).collect();
+    let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
     let new = || targets.iter().zip(&points).enumerate();
     let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
     let new: Vec<(usize, &Target)> = new.collect();
@@ -168,23 +189,26 @@ fn shot_at(
         Effort::Checked => checked_points(&new, done)?,
         Effort::Lean(_) => lean_points(&new, done)?,
     };
-    for ((at, target), point) in new.into_iter().zip(fresh) {
+    for ((at, target), fresh) in new.into_iter().zip(fresh) {
         if let Some(memory) = memory {
-            memory.keep(&target.plan, &point);
+            memory.keep(&target.plan, &fresh);
         }
-        points[at] = Some(point);
+        points[at] = Some(fresh);
     }
-    Ok(points.into_iter().flatten().collect())
+    let points = targets.iter().zip(points);
+    Ok(points
+        .filter_map(|(target, points)| target.own(points?))
+        .collect())
 }
 
 fn checked_points(
     targets: &[(usize, &Target)],
     done: &(dyn Fn() + Sync),
-) -> Result<Vec<Point>, ReproduceError> {
+) -> Result<Vec<Vec<Point>>, ReproduceError> {
     let one = |(_, target): &(usize, &Target)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
-        point.map_err(|error| target.failed(error))
+        point.map(|point| vec![point]).map_err(|error| target.failed(error))
     };
     targets.par_iter().map(one).collect()
 }
@@ -194,7 +218,7 @@ fn checked_points(
 fn lean_points(
     targets: &[(usize, &Target)],
     done: &(dyn Fn() + Sync),
-) -> Result<Vec<Point>, ReproduceError> {
+) -> Result<Vec<Vec<Point>>, ReproduceError> {
     let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
     let plans: Vec<Plan> = passing.map(|(_, target)| target.plan.clone()).collect();
     let set = InstructionSet::default();
@@ -211,7 +235,7 @@ fn lean_points(
             true => followed.next(),
             false => passing.next(),
         };
-        Some(target.point(shot?))
+        Some(target.points(shot?))
     });
     in_order.collect()
 }

@@ -6,25 +6,25 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Mutex, PoisonError};
 
-/// Remembers shots by everything that decides them: many readings leave many
-/// of the paper's chains as they are.
+/// Remembers shots by everything that decides them, each as every pick times it:
+/// many readings leave many of the paper's chains as they are.
 #[derive(Debug, Default)]
-pub struct Memory(Mutex<HashMap<[u64; 2], Point>>);
+pub struct Memory(Mutex<HashMap<[u64; 2], Vec<Point>>>);
 
 impl Memory {
-    /// The remembered point of a plan.
-    pub(super) fn recall(&self, plan: &Plan) -> Option<Point> {
+    /// The remembered points of a plan, one a pick.
+    pub(super) fn recall(&self, plan: &Plan) -> Option<Vec<Point>> {
         let key = key(plan);
         self.lock().get(&key).cloned()
     }
 
-    /// Remembers the point of a plan.
-    pub(super) fn keep(&self, plan: &Plan, point: &Point) {
+    /// Remembers the points of a plan.
+    pub(super) fn keep(&self, plan: &Plan, points: &[Point]) {
         let key = key(plan);
-        self.lock().insert(key, point.clone());
+        self.lock().insert(key, points.to_vec());
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<[u64; 2], Point>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, HashMap<[u64; 2], Vec<Point>>> {
         // A panic elsewhere leaves whole points behind.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

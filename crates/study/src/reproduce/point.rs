@@ -2,7 +2,7 @@
 
 use crate::accuracy::{reached, tolerance};
 use crate::claims::Point;
-use crate::{Plan, Shot, StudyError, shoot};
+use crate::{Flight, Plan, Shot, StudyError, shoot};
 use hertzchain_chain::observe::Passage;
 
 /// How many times as wrong as the accuracy asked the numbers of a shot are that was
@@ -73,6 +73,24 @@ fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
         striker_accuracy_m_s: largest(&striker, false),
         loosened_accuracy_m: largest(&|p| vec![p.loosened_m], false),
         ..point
+    }
+}
+
+/// The numbers of a shot, one point a pick of its plan.
+pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<Point> {
+    let point = read_off(plan, speed_m_s, shot);
+    let flights = std::iter::once(&shot.flight).chain(&shot.compared);
+    let timed = |flight: &Option<Flight>| point.clone().timed(*flight);
+    flights.map(timed).collect()
+}
+
+impl Point {
+    fn timed(self, flight: Option<Flight>) -> Self {
+        Self {
+            tof_incident_s: flight.map_or(f64::NAN, |f| f.incident_s),
+            tof_reflected_s: flight.and_then(|f| f.reflected_s).unwrap_or(f64::NAN),
+            ..self
+        }
     }
 }
 
