@@ -79,7 +79,6 @@ fn fire_together(one: &Plan, other: &Plan) -> bool {
 /// Whether the ensemble loop can run a plan to the accuracy asked.
 fn suits(plan: &Plan) -> bool {
     plan.solver == Solver::Adaptive
-        && plan.picks().all(|pick| pick == Pick::Peak)
         && !plan.rebound
         && !plan.budget
         && plan.watch.is_none()
@@ -150,7 +149,7 @@ fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
 }
 
 /// Fires plans that are alike in accuracy, sensor and length, with their step
-/// times a factor; pulses have widths if asked.
+/// times a factor; pulses have widths if asked, or if a pick needs their shape.
 fn fire(
     ready: &[(&Plan, &System)],
     set: InstructionSet,
@@ -172,6 +171,7 @@ fn fire(
         })
         .collect();
     let wall = system.contacts() - 1;
+    let shaped = |plan: &Plan| plan.picks().any(|pick| pick != Pick::Peak);
     let settings = ensemble::Settings {
         sensors: vec![Sensor::Bead(first.sensor_bead), Sensor::Contact(wall)],
         end: if first.duration_s.is_none() {
@@ -180,7 +180,7 @@ fn fire(
             End::Duration
         },
         set,
-        shapes,
+        shapes: shapes || ready.iter().any(|(plan, _)| shaped(plan)),
         whole_chain: false,
         openings,
     };

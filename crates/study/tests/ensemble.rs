@@ -51,6 +51,28 @@ fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
 }
 
 #[test]
+fn every_pick_is_as_accurate_as_asked() {
+    let accuracy = 1e-5;
+    let mut stayed = 0;
+    for name in PRESETS {
+        let plans = |accuracy: f64| -> Vec<Plan> {
+            let plans = plans(name, &[0.1, 0.4, 1.0], accuracy).into_iter();
+            plans.map(Plan::comparing_picks).collect()
+        };
+        for (shot, plan) in fly(&plans(accuracy)).iter().zip(plans(1e-8)) {
+            let exact = shoot(&plan).unwrap();
+            stayed += usize::from(shot.tolerance.is_none());
+            for (one, other) in shot.compared.iter().zip(&exact.compared) {
+                let error = one.unwrap().change(&other.unwrap());
+                // As for peaks: judges tell a change, not the error itself.
+                assert!(error < 2.0 * accuracy, "{name}: {error:e}");
+            }
+        }
+    }
+    assert!(stayed > 9, "{stayed} of 18 in the ensemble loop");
+}
+
+#[test]
 fn a_shot_has_the_same_bits_whatever_flies_along_and_on_any_number_of_threads() {
     // In single precision and in double.
     for accuracy in [1e-4, 1e-5] {

@@ -208,7 +208,9 @@ fn checked_points(
     let one = |(_, target): &(usize, &Target)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
-        point.map(|point| vec![point]).map_err(|error| target.failed(error))
+        point
+            .map(|point| vec![point])
+            .map_err(|error| target.failed(error))
     };
     targets.par_iter().map(one).collect()
 }
