@@ -245,11 +245,8 @@ pub struct Reproduce {
     #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
     /// Also scan what the paper leaves open: which claims hold in which reading;
-    /// takes about 10 minutes on two idle cores
+    /// tries every combination of the switches that move a verdict, about 25 minutes
+    /// on two idle cores
     #[arg(long)]
     pub readings: bool,
-    /// With --readings: every combination of the switches that move a verdict, not
-    /// only the part that takes minutes; tells the time it needs before it starts
-    #[arg(long, requires = "readings")]
-    pub full: bool,
 }

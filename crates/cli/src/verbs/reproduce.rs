@@ -20,10 +20,9 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
     let folder = &arguments.out;
     // Whether it can be written to, before anything is computed for it.
     Folder::open(folder)?;
-    let options = match (arguments.readings, arguments.full) {
-        (true, true) => Options::default().with_all_readings(),
-        (true, false) => Options::default().with_readings(),
-        (false, _) => Options::default(),
+    let options = match arguments.readings {
+        true => Options::default().with_readings(),
+        false => Options::default(),
     };
     let bar = Bar::new();
     let computed = reproduce(&options, &bar);

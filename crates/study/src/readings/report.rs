@@ -107,8 +107,7 @@ fn product(page: &mut String, scan: &Scan) {
     if tried < all {
         let _ = writeln!(
             page,
-            "The full product has {all}; the other {} are left out because they would take too long \
-             (`reproduce --readings --full` tries them too): all that change, besides others, {}. These \
+            "The full product has {all}; the other {} are more than were asked for: all that change, besides others, {}. These \
              switches were tried one at a time from the default reading and again from the best of the part, \
              not in every combination.",
             all - tried,
@@ -296,14 +295,16 @@ mod tests {
     #[test]
     fn a_part_of_the_product_is_not_called_full() {
         let page = scan_markdown(&made_up(Vec::new()));
-        assert!(page.contains("\n## Full product\n") && !page.contains("left out"));
+        assert!(page.contains("\n## Full product\n") && !page.contains("more than were asked"));
         let left_out = vec![
             ("wall_shape", vec!["sphere", "plane"]),
             ("incline", vec!["0 deg", "0.5 deg", "1 deg"]),
         ];
         let page = scan_markdown(&made_up(left_out));
         assert!(page.contains("\n## Part of the full product\n"), "{page}");
-        assert!(page.contains("The full product has 12; the other 10 are left out"));
+        assert!(
+            page.contains("The full product has 12; the other 10 are more than were asked for")
+        );
         assert!(page.contains("wall_shape (2), incline (3)"));
     }
 }

@@ -48,23 +48,11 @@ impl Options {
     pub fn with_readings(self) -> Self {
         Self {
             draws: 200,
-            readings: PART,
+            readings: usize::MAX,
             ..self
         }
     }
-
-    /// The same with every combination of the switches that move a verdict.
-    #[must_use]
-    pub fn with_all_readings(self) -> Self {
-        Self {
-            readings: usize::MAX,
-            ..self.with_readings()
-        }
-    }
 }
-
-/// Most readings of a product that still takes minutes, not hours.
-const PART: usize = 1200;
 
 /// Accuracy of shots that decide claims in other readings, whose values are
 /// shown to six digits.
