@@ -53,7 +53,7 @@ pub(super) struct Columns {
     /// Velocities as laws see them, at the positions' time.
     pub seen: Vec<f64>,
     striker_gone: bool,
-    set: InstructionSet,
+    pub set: InstructionSet,
 }
 
 impl Columns {

@@ -36,6 +36,12 @@ pub enum SettleError {
     /// A chain that has no rest between shots.
     #[error("{0} does not come to rest between shots: only chains with two ends of their own do")]
     Restless(&'static str),
+    /// A chain made for one shot from a state.
+    #[error(
+        "a chain made from a state is for one shot: friction is frozen in its balance. \
+         Settle the chain itself, from the state after the shot"
+    )]
+    InState,
     /// Time is over.
     #[error(
         "not at rest after {time_s} s: body {body} (0 is the striker) still moves at {speed_m_s:.2e} m/s. \
@@ -121,6 +127,9 @@ pub(super) fn check(
     }
     if system.motion.is_some() {
         return Err(SettleError::Restless("a driven chain"));
+    }
+    if system.is_in_state() {
+        return Err(SettleError::InState);
     }
     check_state(system, state)
 }

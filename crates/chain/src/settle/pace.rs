@@ -1,7 +1,8 @@
 //! How long the next steps are.
 
 use super::columns::{Columns, Touch};
-use crate::system::System;
+use crate::system::{FLUSH, System};
+use fearless_simd::{dispatch, prelude::*};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// Steps between two looks at the contacts.
@@ -27,12 +28,14 @@ pub(super) struct Pace {
     /// Fraction of the shortest period.
     fraction: f64,
     longest_s: f64,
-    /// Rate in rad/s² that springs and threads add.
+    /// Squared rate in rad²/s² that springs and threads add.
     held_per_s2: f64,
+    /// Contacts as they may be before the next look.
     ahead: Touch,
+    /// Forces with damping, without it, and at a slightly smaller overlap.
+    damped: Vec<f64>,
     stiff: Vec<f64>,
     soft: Vec<f64>,
-    damped: Vec<f64>,
 }
 
 impl Pace {
@@ -44,76 +47,104 @@ impl Pace {
             longest_s,
             held_per_s2: system.pendulum_per_s2 + spring * system.inverse_mass[1],
             ahead: Touch::new(system.contacts()),
+            damped: contacts(),
             stiff: contacts(),
             soft: contacts(),
-            damped: contacts(),
         }
     }
 
     /// The next step after one of `step_s`, 0 at the start.
     pub fn step(&mut self, system: &System, columns: &Columns, x: &[f64], step_s: f64) -> f64 {
-        let most = if step_s > 0.0 {
-            (2.0 * step_s).min(self.longest_s)
-        } else {
-            self.first(system)
+        let most = match step_s > 0.0 {
+            true => (2.0 * step_s).min(self.longest_s),
+            // Nothing is known yet but the scales of the shot.
+            false => self.longest_s.min(self.fraction * system.scales().time_s),
         };
-        self.look_ahead(columns, x, LOOK_EVERY as f64 * most);
-        columns.laws(system, &self.ahead, &mut self.damped);
-        self.ahead.rate.fill(0.0);
-        self.ahead.across.fill(0.0);
-        columns.laws(system, &self.ahead, &mut self.stiff);
-        self.soften();
-        columns.laws(system, &self.ahead, &mut self.soft);
+        self.look_ahead(system, columns, x, LOOK_EVERY as f64 * most);
         let wanted = (self.fraction * TAU / self.quickest(columns)).min(most);
-        if wanted < step_s || wanted > WORTHWHILE * step_s {
-            wanted
-        } else {
-            step_s
+        match wanted < step_s || wanted > WORTHWHILE * step_s {
+            true => wanted,
+            false => step_s,
         }
     }
 
-    /// The first step: nothing is known but the scales of the shot.
-    fn first(&self, system: &System) -> f64 {
-        self.longest_s.min(self.fraction * system.scales().time_s)
-    }
-
-    /// Overlaps as they will be when contacts go on closing for a time.
-    fn look_ahead(&mut self, columns: &Columns, x: &[f64], time_s: f64) {
-        let n = columns.offset.len();
-        let (left, right) = (&x[..n], &x[1..=n]);
+    /// Forces of all contacts if they go on closing for a time.
+    fn look_ahead(&mut self, system: &System, columns: &Columns, x: &[f64], time_s: f64) {
         let ahead = &mut self.ahead;
-        for c in 0..n {
-            let rate = columns.touch.across[c];
-            let depth = columns.offset[c] - (right[c] - left[c]) + rate.max(0.0) * time_s;
-            ahead.overlap[c] = depth.max(0.0);
-            ahead.root[c] = ahead.overlap[c].sqrt();
-            ahead.largest[c] = columns.touch.largest[c].max(ahead.overlap[c]);
-            ahead.rate[c] = if depth > 0.0 { rate } else { 0.0 };
-            ahead.across[c] = rate;
-        }
-    }
-
-    fn soften(&mut self) {
-        for (overlap, root) in self.ahead.overlap.iter_mut().zip(&mut self.ahead.root) {
-            *overlap *= 1.0 - SOFTER;
-            *root = overlap.sqrt();
-        }
+        dispatch!(columns.set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || close(ahead, columns, x, time_s)
+        ));
+        columns.laws(system, ahead, &mut self.damped);
+        ahead.rate.fill(0.0);
+        ahead.across.fill(0.0);
+        columns.laws(system, ahead, &mut self.stiff);
+        dispatch!(columns.set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || soften(ahead)
+        ));
+        columns.laws(system, ahead, &mut self.soft);
     }
 
     /// The quickest rate of the chain in rad/s: √2 times that of the stiffest
     /// contact alone, as in a row of equal ones; or how fast damping acts.
-    fn quickest(&self, columns: &Columns) -> f64 {
-        let (mut ringing, mut decay) = (0.5 * self.held_per_s2, 0.0_f64);
-        for c in 0..self.stiff.len() {
-            let lightness = columns.inverse_mass[c] + columns.inverse_mass[c + 1];
-            // `soften` has left the overlap at 1 − SOFTER.
-            let change = self.ahead.overlap[c] * (SOFTER / (1.0 - SOFTER));
-            let slope = (self.stiff[c] - self.soft[c]) / change.max(f64::MIN_POSITIVE);
-            let rate = columns.touch.across[c].abs().max(SLOW_RATE);
-            let damping = (self.damped[c] - self.stiff[c]).abs() / rate;
-            ringing = ringing.max(slope * lightness);
-            decay = decay.max(STEEPEST * damping * lightness);
-        }
-        (SQRT_2 * ringing.sqrt()).max(decay)
+    fn quickest(&mut self, columns: &Columns) -> f64 {
+        let set = columns.set;
+        dispatch!(set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || rates(self, columns)
+        ));
+        let largest = |rates: &[f64]| rates.iter().copied().fold(0.0, f64::max);
+        let ringing = largest(&self.stiff).max(0.5 * self.held_per_s2);
+        (SQRT_2 * ringing.sqrt()).max(largest(&self.damped))
+    }
+}
+
+/// Overlaps when contacts go on closing for a time.
+#[inline(always)]
+fn close(ahead: &mut Touch, columns: &Columns, x: &[f64], time_s: f64) {
+    let n = columns.offset.len();
+    let (offset, left, right) = (&columns.offset[..n], &x[..n], &x[1..=n]);
+    let (now, before) = (&columns.touch.across[..n], &columns.touch.largest[..n]);
+    let (overlap, root) = (&mut ahead.overlap[..n], &mut ahead.root[..n]);
+    let (rate, across) = (&mut ahead.rate[..n], &mut ahead.across[..n]);
+    let largest = &mut ahead.largest[..n];
+    for c in 0..n {
+        let closing = if now[c] > 0.0 { now[c] * time_s } else { 0.0 };
+        let depth = offset[c] - (right[c] - left[c]) + closing;
+        let deep = depth > FLUSH;
+        overlap[c] = if deep { depth } else { 0.0 };
+        root[c] = overlap[c].sqrt();
+        rate[c] = if deep { now[c] } else { 0.0 };
+        across[c] = now[c];
+        largest[c] = before[c].max(overlap[c]);
+    }
+}
+
+/// Overlaps smaller by [`SOFTER`].
+#[inline(always)]
+fn soften(ahead: &mut Touch) {
+    for (overlap, root) in ahead.overlap.iter_mut().zip(&mut ahead.root) {
+        *overlap *= 1.0 - SOFTER;
+        *root = overlap.sqrt();
+    }
+}
+
+/// Turns forces into squared rates of ringing, left in `stiff`, and rates of
+/// damping, left in `damped`.
+#[inline(always)]
+fn rates(pace: &mut Pace, columns: &Columns) {
+    let n = pace.stiff.len();
+    let (left, right) = (&columns.inverse_mass[..n], &columns.inverse_mass[1..=n]);
+    let (closing, softened) = (&columns.touch.across[..n], &pace.ahead.overlap[..n]);
+    let (soft, stiff) = (&pace.soft[..n], &mut pace.stiff[..n]);
+    let damped = &mut pace.damped[..n];
+    for c in 0..n {
+        let lightness = left[c] + right[c];
+        let change = softened[c] * (SOFTER / (1.0 - SOFTER));
+        let slope = (stiff[c] - soft[c]) / change.max(f64::MIN_POSITIVE);
+        let damping = (damped[c] - stiff[c]).abs() / closing[c].abs().max(SLOW_RATE);
+        stiff[c] = slope * lightness;
+        damped[c] = STEEPEST * damping * lightness;
     }
 }

@@ -41,6 +41,11 @@ impl System {
         self.offset_m[contact] + moved
     }
 
+    /// Whether it was made by [`System::from_state`] from a chain at rest.
+    pub(crate) fn is_in_state(&self) -> bool {
+        self.origin_m.iter().any(|&x| x != 0.0)
+    }
+
     /// The spring on bead 1 seen from a new rest; none where it has let go.
     fn spring_at(&self, x_m: f64) -> Option<Spring> {
         let spring = self.spring?;
@@ -67,7 +72,7 @@ impl System {
         if self.motion.is_some() || self.periodic {
             return fail("a ring or a driven chain has no state between shots".to_owned());
         }
-        if self.origin_m.iter().any(|&x| x != 0.0) {
+        if self.is_in_state() {
             return fail("the chain is already in a state: start from the chain itself".to_owned());
         }
         let (places, speeds) = (state.displacement_m.len(), state.velocity_m_s.len());
