@@ -1,0 +1,143 @@
+//! Where a template correlates best with the signal.
+
+use super::local_model;
+use super::{Picked, Sight, Template};
+use crate::Pulse;
+use crate::delay::{largest, quartic_maximum};
+use crate::error::SignalError;
+
+/// Half the length of a template, in full widths at half maximum: a bell is
+/// down to some 10⁻⁴ there.
+const REACH: f64 = 1.4;
+
+/// A template of mean 0, so that an offset of the signal does not matter.
+pub(super) struct Correlator {
+    template: Vec<f64>,
+    /// Samples from the template's first to its own maximum.
+    top: f64,
+    /// Slope energy Σ s'² of a template scaled to height 1, per sample squared.
+    energy: f64,
+    /// The record's own pulse, and so as noisy: its time is its maximum's.
+    own: Option<Own>,
+}
+
+struct Own {
+    at: usize,
+    picked: Picked,
+}
+
+impl Correlator {
+    pub(super) fn new(
+        template: &Template,
+        sensor: &Sight<'_>,
+        passing: &Pulse,
+        interval_s: f64,
+    ) -> Result<Self, SignalError> {
+        match template {
+            Template::Passing => Self::passing(sensor, passing),
+            Template::Shape(shape) => Ok(Self::shape(shape, passing.width_samples)),
+            Template::Fixed(shape, width_s) => {
+                let width = width_s / interval_s;
+                let longest = sensor.samples.len() as f64;
+                let good = (2.0..longest).contains(&width);
+                good.then(|| Self::shape(shape, width))
+                    .ok_or(SignalError::Option {
+                        name: "width of the template in samples",
+                        value: width,
+                        expected: "from 2 to the length of the record",
+                    })
+            }
+        }
+    }
+
+    fn shape(shape: &super::Shape, width: f64) -> Self {
+        let half = (REACH * width).ceil();
+        let count = 2 * half as usize + 1;
+        let samples = (0..count).map(|i| shape.value((i as f64 - half) / width));
+        Self::of(samples.collect(), half, 1.0, 0.0, None)
+    }
+
+    fn passing(sensor: &Sight<'_>, pulse: &Pulse) -> Result<Self, SignalError> {
+        let picked = local_model::pick(sensor, pulse, 4, 0.9)?;
+        let reach = REACH * pulse.width_samples;
+        let at = picked.time_s;
+        let (first, heights) = sensor.window(at - reach, at + reach);
+        let noise = sensor.upright.level.noise;
+        let own = Own {
+            at: pulse.at,
+            picked,
+        };
+        let (top, height) = (at - first as f64, picked.height);
+        Ok(Self::of(heights, top, height, noise, Some(own)))
+    }
+
+    fn of(samples: Vec<f64>, top: f64, height: f64, noise: f64, own: Option<Own>) -> Self {
+        let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+        let slopes = samples.windows(3).map(|three| 0.5 * (three[2] - three[0]));
+        let squares: f64 = slopes.map(|s| s * s).sum();
+        // Differences of noise add half its variance each.
+        let of_noise = 0.5 * noise * noise * samples.len() as f64;
+        Self {
+            energy: (squares - of_noise).max(0.1 * squares) / (height * height),
+            template: samples.iter().map(|x| x - mean).collect(),
+            top,
+            own,
+        }
+    }
+
+    /// Time in samples. Variance: noise²/Σ s'² of the pulse, and as much again
+    /// of the template if that is the record's own, counted at the passing
+    /// pulse, whose noise is common to all delays against it.
+    pub(super) fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        let at_top = local_model::pick(sight, pulse, 4, 0.9)?;
+        let noise = sight.broad_noise(pulse);
+        let sigma_s = noise / (at_top.height.abs() * self.energy.sqrt());
+        let own = self.own.as_ref().filter(|own| own.at == pulse.at);
+        let time = match own {
+            Some(own) => Some(own.picked.time_s),
+            None => self.best(sight, pulse),
+        };
+        let time_s = time.ok_or(SignalError::NoPick {
+            place: pulse.place,
+            what: "largest correlation",
+        })?;
+        Ok(Picked {
+            time_s,
+            sigma_s,
+            misfit: None,
+            ..at_top
+        })
+    }
+
+    /// Where the template's maximum lies when the correlation is largest.
+    fn best(&self, sight: &Sight<'_>, pulse: &Pulse) -> Option<f64> {
+        let search = (0.5 * pulse.width_samples).ceil() + 3.0;
+        let length = self.template.len();
+        let start = (pulse.at as f64 - self.top - search).round();
+        let lags = 2 * search as usize + 1;
+        let heights = padded(sight, start, length + lags);
+        let correlations: Vec<f64> = (0..lags)
+            .map(|lag| product(&self.template, &heights[lag..]))
+            .collect();
+        let best = largest(&correlations)?;
+        let around = best.checked_sub(2)?..best + 3;
+        let five: [f64; 5] = correlations.get(around)?.try_into().ok()?;
+        Some(start + best as f64 + quartic_maximum(five) + self.top)
+    }
+}
+
+/// Heights from sample `start` on; 0 outside the record.
+fn padded(sight: &Sight<'_>, start: f64, count: usize) -> Vec<f64> {
+    let height = |i: usize| {
+        let at = start + i as f64;
+        let sample = (at >= 0.0)
+            .then(|| sight.samples.get(at as usize))
+            .flatten();
+        sample.map_or(0.0, |x| sight.upright.height(*x))
+    };
+    (0..count).map(height).collect()
+}
+
+fn product(template: &[f64], heights: &[f64]) -> f64 {
+    template.iter().zip(heights).map(|(a, b)| a * b).sum()
+}
