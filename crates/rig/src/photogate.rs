@@ -1,0 +1,26 @@
+//! The photogate: tells the striker's speed, and when it passes.
+
+use crate::chance::Chance;
+use hertzchain_experiment::Photogate;
+
+/// What the gate tells of one shot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passing {
+    /// Measured speed in m/s.
+    pub speed_m_s: f64,
+    /// When the striker passed, in s; 0 is the first touch, so that this is
+    /// negative.
+    pub time_s: f64,
+}
+
+/// Measures a striker of this true speed, whose way from the gate to bead 1
+/// is longer by `misplaced_m`.
+#[must_use]
+pub fn watch(gate: &Photogate, speed_m_s: f64, misplaced_m: f64, chance: &mut Chance) -> Passing {
+    // The gate stands before the chain, wherever the striker started from.
+    let way_m = (gate.way_m + misplaced_m).max(0.0);
+    Passing {
+        speed_m_s: speed_m_s + gate.error_m_s * chance.normal(),
+        time_s: -way_m / speed_m_s,
+    }
+}
