@@ -81,8 +81,11 @@ pub struct Rest {
 /// velocities 0.
 ///
 /// `seen` is called at every step with the time in s from the start, the state
-/// and the forces in N of contacts 0..=N then. What a law remembers of a
-/// contact begins anew.
+/// and the forces in N of contacts 0..=N then.
+///
+/// What a law remembers of a contact begins anew, as it does in a shot: after a
+/// phase in which an elastic–plastic contact has yielded, its dent is
+/// forgotten, and the state is not one of rest for the next phase.
 ///
 /// # Errors
 /// See [`SettleError`]; the state is then the last one reached.

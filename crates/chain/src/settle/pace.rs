@@ -60,7 +60,7 @@ impl Pace {
             // Nothing is known yet but the scales of the shot.
             false => self.longest_s.min(self.fraction * system.scales().time_s),
         };
-        self.look_ahead(system, columns, x, LOOK_EVERY as f64 * most);
+        self.look_ahead(system, columns, x, most);
         let wanted = (self.fraction * TAU / self.quickest(columns)).min(most);
         match wanted < step_s || wanted > WORTHWHILE * step_s {
             true => wanted,
@@ -68,22 +68,26 @@ impl Pace {
         }
     }
 
-    /// Forces of all contacts if they go on closing for a time.
-    fn look_ahead(&mut self, system: &System, columns: &Columns, x: &[f64], time_s: f64) {
+    /// Forces of all contacts if they go on closing until the next look, and
+    /// faster by what a step of `step_s` adds.
+    fn look_ahead(&mut self, system: &System, columns: &Columns, x: &[f64], step_s: f64) {
+        let level = columns.set.level();
         let ahead = &mut self.ahead;
-        dispatch!(columns.set.level(), simd => simd.vectorize(
+        dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || close(ahead, columns, x, time_s)
+            || close(ahead, columns, x, LOOK_EVERY as f64 * step_s)
         ));
-        columns.laws(system, ahead, &mut self.damped);
-        ahead.rate.fill(0.0);
-        ahead.across.fill(0.0);
         columns.laws(system, ahead, &mut self.stiff);
-        dispatch!(columns.set.level(), simd => simd.vectorize(
+        dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
             || soften(ahead)
         ));
         columns.laws(system, ahead, &mut self.soft);
+        dispatch!(level, simd => simd.vectorize(
+            #[inline(always)]
+            || hasten(ahead, columns, &self.stiff, step_s)
+        ));
+        columns.laws(system, ahead, &mut self.damped);
     }
 
     /// The quickest rate of the chain in rad/s: √2 times that of the stiffest
@@ -107,18 +111,16 @@ fn close(ahead: &mut Touch, columns: &Columns, x: &[f64], time_s: f64) {
     let (offset, left, right) = (&columns.offset[..n], &x[..n], &x[1..=n]);
     let (now, before) = (&columns.touch.across[..n], &columns.touch.largest[..n]);
     let (overlap, root) = (&mut ahead.overlap[..n], &mut ahead.root[..n]);
-    let (rate, across) = (&mut ahead.rate[..n], &mut ahead.across[..n]);
     let largest = &mut ahead.largest[..n];
     for c in 0..n {
         let closing = if now[c] > 0.0 { now[c] * time_s } else { 0.0 };
         let depth = offset[c] - (right[c] - left[c]) + closing;
-        let deep = depth > FLUSH;
-        overlap[c] = if deep { depth } else { 0.0 };
+        overlap[c] = if depth > FLUSH { depth } else { 0.0 };
         root[c] = overlap[c].sqrt();
-        rate[c] = if deep { now[c] } else { 0.0 };
-        across[c] = now[c];
         largest[c] = before[c].max(overlap[c]);
     }
+    ahead.rate.fill(0.0);
+    ahead.across.fill(0.0);
 }
 
 /// Overlaps smaller by [`SOFTER`].
@@ -130,20 +132,35 @@ fn soften(ahead: &mut Touch) {
     }
 }
 
+/// Rates as they are now and faster by what a step adds: damping that acts on
+/// them may outgrow the contacts' stiffness within it.
+#[inline(always)]
+fn hasten(ahead: &mut Touch, columns: &Columns, stiff: &[f64], step_s: f64) {
+    let n = stiff.len();
+    let (left, right) = (&columns.inverse_mass[..n], &columns.inverse_mass[1..=n]);
+    let (now, overlap) = (&columns.touch.across[..n], &ahead.overlap[..n]);
+    let (rate, across) = (&mut ahead.rate[..n], &mut ahead.across[..n]);
+    for c in 0..n {
+        let faster = step_s * stiff[c].abs() * (left[c] + right[c]);
+        across[c] = (now[c].abs() + faster).max(SLOW_RATE);
+        rate[c] = if overlap[c] > 0.0 { across[c] } else { 0.0 };
+    }
+}
+
 /// Turns forces into squared rates of ringing, left in `stiff`, and rates of
 /// damping, left in `damped`.
 #[inline(always)]
 fn rates(pace: &mut Pace, columns: &Columns) {
     let n = pace.stiff.len();
     let (left, right) = (&columns.inverse_mass[..n], &columns.inverse_mass[1..=n]);
-    let (closing, softened) = (&columns.touch.across[..n], &pace.ahead.overlap[..n]);
+    let (rate, softened) = (&pace.ahead.across[..n], &pace.ahead.overlap[..n]);
     let (soft, stiff) = (&pace.soft[..n], &mut pace.stiff[..n]);
     let damped = &mut pace.damped[..n];
     for c in 0..n {
         let lightness = left[c] + right[c];
         let change = softened[c] * (SOFTER / (1.0 - SOFTER));
         let slope = (stiff[c] - soft[c]) / change.max(f64::MIN_POSITIVE);
-        let damping = (damped[c] - stiff[c]).abs() / closing[c].abs().max(SLOW_RATE);
+        let damping = (damped[c] - soft[c]).abs() / rate[c];
         stiff[c] = slope * lightness;
         damped[c] = STEEPEST * damping * lightness;
     }

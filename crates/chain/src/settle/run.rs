@@ -28,6 +28,7 @@ pub(super) struct Slow<'a> {
     still_since_s: Option<f64>,
     withdrawn: Option<Withdrawn>,
     steps: u64,
+    next_look: u64,
 }
 
 impl<'a> Slow<'a> {
@@ -40,6 +41,7 @@ impl<'a> Slow<'a> {
             still_since_s: None,
             withdrawn: None,
             steps: 0,
+            next_look: 0,
             system,
             slow,
             state,
@@ -54,7 +56,7 @@ impl<'a> Slow<'a> {
         let mut kick_s = 0.0;
         loop {
             self.columns.feel(self.system, &self.state.displacement_m);
-            if self.steps.is_multiple_of(LOOK_EVERY) && self.look()? {
+            if self.steps == self.next_look && self.look()? {
                 return Ok(self.rest());
             }
             kick_s = 0.5 * (kick_s + self.step_s);
@@ -93,8 +95,12 @@ impl<'a> Slow<'a> {
     }
 
     fn choose_step(&mut self) -> Result<(), SettleError> {
-        let x = &self.state.displacement_m;
-        self.step_s = self.pace.step(self.system, &self.columns, x, self.step_s);
+        let (x, before) = (&self.state.displacement_m, self.step_s);
+        self.step_s = self.pace.step(self.system, &self.columns, x, before);
+        // At the start nothing is known of what comes, and a step that has
+        // shrunk by much may have to shrink again.
+        let calm = self.steps >= LOOK_EVERY && self.step_s > 0.5 * before;
+        self.next_look = self.steps + if calm { LOOK_EVERY } else { 1 };
         let endless = self.time_s + self.step_s <= self.time_s;
         match self.steps >= MOST_STEPS || endless {
             true => Err(SettleError::TooManySteps {
