@@ -81,7 +81,10 @@ fn above_the_friction_angle_a_bead_slides_with_what_friction_leaves() {
     let moving = settle(&system, &mut state, &slow, &mut |time_s, state, _| {
         way = (time_s, state.displacement_m[1] - start);
     });
-    assert!(matches!(moving, Err(SettleError::StillMoving { body: 1, .. })));
+    assert!(matches!(
+        moving,
+        Err(SettleError::StillMoving { body: 1, .. })
+    ));
     let (sin, cos) = tangent.atan().sin_cos();
     let acceleration = G * (sin - FRICTION * cos);
     // A constant force is exact in a leapfrog: rounding alone.
@@ -129,7 +132,10 @@ fn two_beads_part_as_fast_as_in_the_wave_loop() {
         let found = rebound(&state.velocity_m_s, 0.18);
         // Steps of a twentieth of the period, openings and closings not located:
         // a damping that acts in full at the instant of touch is late by half a step.
-        assert!((found - expected).abs() < 5e-3, "{laws:?}: {found} {expected}");
+        assert!(
+            (found - expected).abs() < 5e-3,
+            "{laws:?}: {found} {expected}"
+        );
     }
 }
 
@@ -152,7 +158,10 @@ fn without_friction_damping_leads_to_static_equilibrium() {
     assert_eq!(rest.closed_contacts, 3);
     // Speeds below 1e-9 m/s count as none: at 1e4 rad/s, what three beads ring
     // with at the lowest, that is 1e-13 m.
-    let most = state.displacement_m.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let most = state
+        .displacement_m
+        .iter()
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
     assert!(most < 1e-12, "{most}");
 }
 
@@ -214,8 +223,9 @@ fn the_striker_is_withdrawn_a_millimetre_away() {
     let withdrawn = rest.withdrawn.unwrap();
     assert!(withdrawn.velocity_m_s < -0.1 && withdrawn.time_s < rest.time_s);
     let gap = state.displacement_m[1] - state.displacement_m[0];
-    // It is looked for every eight steps of at most 20 µs.
-    assert!(gap > 0.5e-3 && gap < 1.5e-3, "{gap}");
+    // Put out of the way, to where bead 1 has stopped meanwhile; a place and a
+    // millimetre are subtracted.
+    assert!(gap > 2e-3 * (1.0 - 1e-12), "{gap}");
     assert_eq!(rest.gaps_m[0], 0.0);
 }
 
@@ -249,14 +259,22 @@ fn what_is_wrong_is_said() {
     let slow = |change: &dyn Fn(&mut SlowPhase)| {
         let mut slow = fine;
         change(&mut slow);
-        calm(&system, &mut State::start(&system), &slow).unwrap_err().to_string()
+        calm(&system, &mut State::start(&system), &slow)
+            .unwrap_err()
+            .to_string()
     };
     for (change, text) in [
-        (&(|s: &mut SlowPhase| s.friction_coefficient = -1.0) as &dyn Fn(&mut _), "friction"),
+        (
+            &(|s: &mut SlowPhase| s.friction_coefficient = -1.0) as &dyn Fn(&mut _),
+            "friction",
+        ),
         (&|s: &mut SlowPhase| s.step = 0.5, "0.25"),
         (&|s: &mut SlowPhase| s.step = f64::NAN, "0.25"),
         (&|s: &mut SlowPhase| s.longest_s = 0.0, "longest"),
-        (&|s: &mut SlowPhase| s.stuck_for_s = f64::INFINITY, "sticking"),
+        (
+            &|s: &mut SlowPhase| s.stuck_for_s = f64::INFINITY,
+            "sticking",
+        ),
         (&|s: &mut SlowPhase| s.withdrawn_at_m = -1e-3, "withdrawal"),
     ] {
         let error = slow(change);
@@ -264,11 +282,20 @@ fn what_is_wrong_is_said() {
     }
     let mut short = State::start(&system);
     short.velocity_m_s.pop();
-    assert!(matches!(calm(&system, &mut short, &fine), Err(SettleError::Shape { .. })));
+    assert!(matches!(
+        calm(&system, &mut short, &fine),
+        Err(SettleError::Shape { .. })
+    ));
     let mut lost = State::start(&system);
     lost.displacement_m[1] = f64::NAN;
     let error = calm(&system, &mut lost, &fine).unwrap_err();
-    assert_eq!(error, SettleError::NotFinite { time_s: 0.0, body: 1 });
+    assert_eq!(
+        error,
+        SettleError::NotFinite {
+            time_s: 0.0,
+            body: 1
+        }
+    );
     assert!(system.from_state(&lost).is_err() && system.from_state(&short).is_err());
     let chain = row(2, 1.0, vec![hertz()]);
     let free = Chain {

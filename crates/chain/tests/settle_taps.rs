@@ -128,7 +128,10 @@ fn peaks_of_a_tap_are_those_of_the_wave_loop() {
 /// Energy in J of the dry row pushed by a spring of 100 N/m, up to a constant.
 fn energy(system: &System, state: &State) -> f64 {
     let stiffness = 8.792_630_379_6e9;
-    let kinetic: f64 = state.velocity_m_s[..=40].iter().map(|v| 0.5 * BALL.mass_kg * v * v).sum();
+    let kinetic: f64 = state.velocity_m_s[..=40]
+        .iter()
+        .map(|v| 0.5 * BALL.mass_kg * v * v)
+        .sum();
     let overlaps = (0..=40).map(|c| state.overlap_m(system, c).max(0.0));
     let elastic: f64 = overlaps.map(|d| 0.4 * stiffness * d * d * d.sqrt()).sum();
     let left = (PUSH_N / 100.0 - state.displacement_m[1]).max(0.0);
@@ -206,7 +209,13 @@ fn a_row_at_rest_stays_at_rest_until_the_wave_comes() {
     close(after.displacement_m[40], state.displacement_m[40], 1e-6);
     // And back into the slow phase, which takes the chain itself, not the copy.
     let mut rested = after.clone();
-    settle(&system, &mut rested, &SlowPhase::default(), &mut |_, _, _| {}).unwrap();
+    settle(
+        &system,
+        &mut rested,
+        &SlowPhase::default(),
+        &mut |_, _, _| {},
+    )
+    .unwrap();
     let refused = settle(&shot, &mut rested, &SlowPhase::default(), &mut |_, _, _| {});
     assert_eq!(refused, Err(settle::SettleError::InState));
     assert!(shot.from_state(&after).is_err());
@@ -227,7 +236,10 @@ fn what_friction_locks_moves_a_time_of_flight_by_less_than_a_thousandth() {
     let (incident, reflected) = (locked.0 / free.0 - 1.0, locked.1 / free.1 - 1.0);
     // Locked-in forces are up to 4 mN a bead beside 0.24 N of the push, in
     // overlaps of 90 nm beside 3 µm of the wave.
-    assert!(incident.abs() < 1e-3 && reflected.abs() < 3e-3, "{incident} {reflected}");
+    assert!(
+        incident.abs() < 1e-3 && reflected.abs() < 3e-3,
+        "{incident} {reflected}"
+    );
     assert!(incident != 0.0);
 }
 
@@ -239,7 +251,13 @@ fn gaps_that_are_laid_are_closed_by_the_push() {
     for (contact, gap) in gaps.iter().enumerate() {
         assert!((state.overlap_m(&system, contact) + gap).abs() < 1e-15);
     }
-    let rest = settle(&system, &mut state, &SlowPhase::default(), &mut |_, _, _| {}).unwrap();
+    let rest = settle(
+        &system,
+        &mut state,
+        &SlowPhase::default(),
+        &mut |_, _, _| {},
+    )
+    .unwrap();
     let total: f64 = rest.gaps_m[1..].iter().sum();
     let laid: f64 = gaps[1..].iter().sum();
     assert!(total < 0.1 * laid, "{total} of {laid}");

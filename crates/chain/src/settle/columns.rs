@@ -59,7 +59,10 @@ pub(super) struct Columns {
 impl Columns {
     pub fn new(system: &System, slow: &SlowPhase, state: &State) -> Self {
         let friction = slow.friction_coefficient * system.normal_m_s2.abs();
-        let rubs = system.inverse_mass.iter().map(|&w| if w > 0.0 { friction } else { 0.0 });
+        let rubs = system
+            .inverse_mass
+            .iter()
+            .map(|&w| if w > 0.0 { friction } else { 0.0 });
         let balance = balance(system);
         let mut touch = Touch::new(system.contacts());
         for (contact, largest) in touch.largest.iter_mut().enumerate() {
@@ -136,9 +139,10 @@ impl Columns {
         } else {
             2
         };
-        let first = usize::from(self.striker_gone);
-        for i in first..bodies {
-            self.pushed[i] = self.balance[i] + system.pushed(i, x[i]);
+        let pushed = self.pushed.iter_mut().zip(&self.balance).zip(x);
+        let gone = usize::from(self.striker_gone);
+        for (i, ((pushed, balance), &x)) in pushed.enumerate().take(bodies).skip(gone) {
+            *pushed = balance + system.pushed(i, x);
         }
     }
 
@@ -170,7 +174,9 @@ impl Columns {
 /// equilibrium: push, weight, the stop's support.
 fn balance(system: &System) -> Vec<f64> {
     let rest = |body: usize| {
-        let left = body.checked_sub(1).map_or(0.0, |c| system.static_force_n[c]);
+        let left = body
+            .checked_sub(1)
+            .map_or(0.0, |c| system.static_force_n[c]);
         let right = system.static_force_n.get(body).copied().unwrap_or(0.0);
         (left - right) * system.inverse_mass[body]
     };

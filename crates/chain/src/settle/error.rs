@@ -116,11 +116,7 @@ fn check_settings(slow: &SlowPhase) -> Result<(), SettleError> {
     }
 }
 
-pub(super) fn check(
-    system: &System,
-    state: &State,
-    slow: &SlowPhase,
-) -> Result<(), SettleError> {
+pub(super) fn check(system: &System, state: &State, slow: &SlowPhase) -> Result<(), SettleError> {
     check_settings(slow)?;
     if system.periodic {
         return Err(SettleError::Restless("a ring"));

@@ -33,7 +33,7 @@ pub struct SlowPhase {
     /// Longest time in s that this may take.
     pub longest_s: f64,
     /// The striker is taken away where it is this far from bead 1, in m, and
-    /// not coming back by itself.
+    /// not coming back by itself; it is put at twice that at least.
     pub withdrawn_at_m: f64,
     /// Step as a fraction of the shortest period of the contacts as they are
     /// now; up to 1/4.

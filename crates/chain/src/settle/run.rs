@@ -12,8 +12,11 @@ const STILL_M_S: f64 = 1e-9;
 /// The longest step, as a fraction of the time for which bodies must stick.
 const LONGEST: f64 = 0.02;
 
-/// Steps beyond this take minutes: no sensible chain needs them.
-const MOST_STEPS: u64 = 200_000_000;
+/// More steps take ten seconds and more: no sensible chain needs them.
+const MOST_STEPS: u64 = 50_000_000;
+
+/// A step below this fraction of the longest time leads nowhere.
+const SHORTEST: f64 = 1e-12;
 
 /// A slow phase under way.
 pub(super) struct Slow<'a> {
@@ -48,10 +51,7 @@ impl<'a> Slow<'a> {
         }
     }
 
-    pub fn run(
-        mut self,
-        seen: &mut dyn FnMut(f64, &State, &[f64]),
-    ) -> Result<Rest, SettleError> {
+    pub fn run(mut self, seen: &mut dyn FnMut(f64, &State, &[f64])) -> Result<Rest, SettleError> {
         // Velocities lag half a step behind positions, but not at the start.
         let mut kick_s = 0.0;
         loop {
@@ -63,7 +63,8 @@ impl<'a> Slow<'a> {
             self.columns.kick(kick_s, &mut self.state.velocity_m_s);
             let forces = &self.columns.force[1..=self.system.contacts()];
             seen(self.time_s, self.state, forces);
-            self.columns.drift(self.step_s, &mut self.state.displacement_m);
+            self.columns
+                .drift(self.step_s, &mut self.state.displacement_m);
             self.time_s += self.step_s;
             self.steps += 1;
             kick_s = self.step_s;
@@ -84,6 +85,7 @@ impl<'a> Slow<'a> {
             return Ok(true);
         }
         if self.time_s >= self.slow.longest_s {
+            self.park_striker();
             return Err(SettleError::StillMoving {
                 time_s: self.time_s,
                 body: fastest,
@@ -101,8 +103,8 @@ impl<'a> Slow<'a> {
         // shrunk by much may have to shrink again.
         let calm = self.steps >= LOOK_EVERY && self.step_s > 0.5 * before;
         self.next_look = self.steps + if calm { LOOK_EVERY } else { 1 };
-        let endless = self.time_s + self.step_s <= self.time_s;
-        match self.steps >= MOST_STEPS || endless {
+        let leads_on = self.step_s > SHORTEST * self.slow.longest_s;
+        match self.steps >= MOST_STEPS || !leads_on {
             true => Err(SettleError::TooManySteps {
                 time_s: self.time_s,
                 steps: self.steps,
@@ -115,7 +117,13 @@ impl<'a> Slow<'a> {
     /// The fastest body.
     fn fastest(&self) -> Result<usize, SettleError> {
         let (mut fastest, mut most) = (0, 0.0);
-        for (i, (x, v)) in self.state.displacement_m.iter().zip(&self.columns.v).enumerate() {
+        for (i, (x, v)) in self
+            .state
+            .displacement_m
+            .iter()
+            .zip(&self.columns.v)
+            .enumerate()
+        {
             if !(x.is_finite() && v.is_finite()) {
                 return Err(SettleError::NotFinite {
                     time_s: self.time_s,
@@ -146,7 +154,17 @@ impl<'a> Slow<'a> {
         }
     }
 
-    fn rest(self) -> Rest {
+    /// Bead 1 may have moved on beyond where the striker was taken away.
+    fn park_striker(&mut self) {
+        if self.withdrawn.is_some() {
+            let touching = self.state.displacement_m[1] - self.system.rest_overlap_m(0);
+            let away = touching - 2.0 * self.slow.withdrawn_at_m;
+            self.state.displacement_m[0] = self.state.displacement_m[0].min(away);
+        }
+    }
+
+    fn rest(mut self) -> Rest {
+        self.park_striker();
         self.state.velocity_m_s.fill(0.0);
         let gap = |contact: usize| {
             let gap = -self.state.overlap_m(self.system, contact);
