@@ -39,6 +39,7 @@ mod pick;
 mod picks;
 mod power_law;
 mod reduce;
+mod running;
 mod saturation;
 mod zero_phase;
 

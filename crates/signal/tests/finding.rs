@@ -1,4 +1,9 @@
 //! Pulses are found whatever the offset, polarity and noise, and doubts are raised where due.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 mod common;
 

@@ -1,5 +1,9 @@
 //! Picked times: unbiased where they should be, and as uncertain as they say.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 mod common;
 

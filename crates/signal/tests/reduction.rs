@@ -1,5 +1,4 @@
 //! From shots to curves.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_signal::{
     Estimate, FitError, Point, coverage, groups, power_law, power_law_both_errors,

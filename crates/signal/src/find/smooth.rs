@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::track::Track;
+use crate::running;
 
 /// Largest noise, as a share of the highest pulse, that is left alone.
 const CLEAN: f64 = 0.005;
@@ -40,7 +41,7 @@ impl Smooth {
         let white = ((2.0 * n * n + 1.0) / (3.0 * n * n * n)).sqrt();
         Self {
             first,
-            values: average(&average(&values, length), length),
+            values: running::triangle(&values, length),
             noise: level.noise.min(level.broad_noise() * white),
             length,
         }
@@ -111,24 +112,4 @@ fn length(relative_noise: f64, width: f64) -> usize {
     let most = (LONGEST * width).max(1.0);
     let length = if wanted < most { wanted } else { most };
     (length as usize) | 1
-}
-
-/// Centred running means of an odd number of samples; fewer near the ends.
-fn average(values: &[f64], length: usize) -> Vec<f64> {
-    if length < 2 {
-        return values.to_vec();
-    }
-    let half = length / 2;
-    let mut sums = Vec::with_capacity(values.len() + 1);
-    let mut sum = 0.0;
-    sums.push(0.0);
-    for value in values {
-        sum += value;
-        sums.push(sum);
-    }
-    let mean = |i: usize| {
-        let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
-        (sums[to] - sums[from]) / (to - from) as f64
-    };
-    (0..values.len()).map(mean).collect()
 }

@@ -5,18 +5,26 @@ use super::{Picked, Sight, Template};
 use crate::Pulse;
 use crate::delay::{largest, quartic_maximum};
 use crate::error::SignalError;
+use crate::running;
 
 /// Half the length of a template, in full widths at half maximum: a bell is
 /// down to some 10⁻⁴ there.
 const REACH: f64 = 1.4;
+/// Length of the running means that smooth a noisy template, in full widths: without
+/// them noise of the template times noise of the signal spoils the correlation,
+/// and with them hardly any of the pulse is lost.
+const SMOOTHING: f64 = 0.2;
 
-/// A template of mean 0, so that an offset of the signal does not matter.
+/// A template. An offset of the signal adds the same to its correlation at all
+/// lags, and so does not matter.
 pub(super) struct Correlator {
     template: Vec<f64>,
     /// Samples from the template's first to its own maximum.
     top: f64,
     /// Slope energy Σ s'² of a template scaled to height 1, per sample squared.
     energy: f64,
+    /// Deviation of the delay by products of noises, for a pulse and noise of 1.
+    products: f64,
     /// The record's own pulse, and so as noisy: its time is its maximum's.
     own: Option<Own>,
 }
@@ -54,56 +62,64 @@ impl Correlator {
         let half = (REACH * width).ceil();
         let count = 2 * half as usize + 1;
         let samples = (0..count).map(|i| shape.value((i as f64 - half) / width));
-        Self::of(samples.collect(), half, 1.0, 0.0, None)
+        Self::of(samples.collect(), half, 1.0)
     }
 
     fn passing(sensor: &Sight<'_>, pulse: &Pulse) -> Result<Self, SignalError> {
-        let picked = local_model::pick(sensor, pulse, 4, 0.9)?;
+        let picked = local_model::roughly(sensor, pulse)?;
         let reach = REACH * pulse.width_samples;
         let at = picked.time_s;
         let (first, heights) = sensor.window(at - reach, at + reach);
-        let noise = sensor.upright.level.noise;
-        let own = Own {
-            at: pulse.at,
-            picked,
-        };
-        let (top, height) = (at - first as f64, picked.height);
-        Ok(Self::of(heights, top, height, noise, Some(own)))
+        let length = (SMOOTHING * pulse.width_samples) as usize | 1;
+        let smooth = running::triangle(&heights, length);
+        let correlator = Self::of(smooth, at - first as f64, picked.height);
+        let noise = sensor.upright.level.noise / picked.height;
+        // Slopes of the smoothed noise have 2/length³ of its variance a sample.
+        let slopes = noise * (2.0 * heights.len() as f64).sqrt() / (length as f64).powf(1.5);
+        Ok(Self {
+            products: slopes / correlator.energy,
+            own: Some(Own {
+                at: pulse.at,
+                picked,
+            }),
+            ..correlator
+        })
     }
 
-    fn of(samples: Vec<f64>, top: f64, height: f64, noise: f64, own: Option<Own>) -> Self {
-        let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+    fn of(samples: Vec<f64>, top: f64, height: f64) -> Self {
         let slopes = samples.windows(3).map(|three| 0.5 * (three[2] - three[0]));
         let squares: f64 = slopes.map(|s| s * s).sum();
-        // Differences of noise add half its variance each.
-        let of_noise = 0.5 * noise * noise * samples.len() as f64;
         Self {
-            energy: (squares - of_noise).max(0.1 * squares) / (height * height),
-            template: samples.iter().map(|x| x - mean).collect(),
+            energy: squares / (height * height),
+            template: samples,
             top,
-            own,
+            products: 0.0,
+            own: None,
         }
     }
 
-    /// Time in samples. Variance: noise²/Σ s'² of the pulse, and as much again
-    /// of the template if that is the record's own, counted at the passing
-    /// pulse, whose noise is common to all delays against it.
+    /// Time in samples. Variance: noise²/Σ s'² of the pulse; as much again of
+    /// the template if that is the record's own, counted at the passing pulse,
+    /// whose noise is common to all delays against it; and what noise of the
+    /// one times noise of the other adds.
     pub(super) fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
-        let at_top = local_model::pick(sight, pulse, 4, 0.9)?;
+        let at_top = local_model::roughly(sight, pulse)?;
         let noise = sight.broad_noise(pulse);
         let sigma_s = noise / (at_top.height.abs() * self.energy.sqrt());
-        let own = self.own.as_ref().filter(|own| own.at == pulse.at);
-        let time = match own {
-            Some(own) => Some(own.picked.time_s),
-            None => self.best(sight, pulse),
-        };
-        let time_s = time.ok_or(SignalError::NoPick {
+        if let Some(own) = self.own.as_ref().filter(|own| own.at == pulse.at) {
+            return Ok(Picked {
+                sigma_s,
+                misfit: None,
+                ..own.picked
+            });
+        }
+        let time_s = self.best(sight, pulse).ok_or(SignalError::NoPick {
             place: pulse.place,
             what: "largest correlation",
         })?;
         Ok(Picked {
             time_s,
-            sigma_s,
+            sigma_s: sigma_s.hypot(noise * self.products / at_top.height.abs()),
             misfit: None,
             ..at_top
         })

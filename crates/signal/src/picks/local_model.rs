@@ -5,6 +5,15 @@ use super::{Picked, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
 
+/// Degree and width tried, in this order, where noise leaves what was asked for
+/// without a maximum: wide, and at last a parabola.
+const IN_NOISE: [(usize, f64); 2] = [(4, 1.2), (2, 0.8)];
+
+/// As [`pick`], for a height and a time that need not be free of bias.
+pub(super) fn roughly(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+    pick(sight, pulse, 4, 1.0)
+}
+
 /// Time in samples.
 ///
 /// With p the polynomial and V the covariance of its coefficients, the top is
@@ -19,7 +28,9 @@ pub(super) fn pick(
         place: pulse.place,
         what: "maximum",
     };
-    let (fit, u) = fit(sight, pulse, degree, width).ok_or_else(no_top)?;
+    let mut tries = [(degree, width)].into_iter().chain(IN_NOISE);
+    let found = tries.find_map(|(degree, width)| fit(sight, pulse, degree, width));
+    let (fit, u) = found.ok_or_else(no_top)?;
     let top = fit.course(u);
     let noise = sight.broad_noise(pulse);
     Ok(Picked {
@@ -33,12 +44,7 @@ pub(super) fn pick(
 }
 
 /// The polynomial, centred on its own maximum to half a sample, and where that is.
-pub(super) fn fit(
-    sight: &Sight<'_>,
-    pulse: &Pulse,
-    degree: usize,
-    width: f64,
-) -> Option<(Polynomial, f64)> {
+fn fit(sight: &Sight<'_>, pulse: &Pulse, degree: usize, width: f64) -> Option<(Polynomial, f64)> {
     let half = (0.5 * width * pulse.width_samples).max(2.0);
     let reach = 2.0 * half + 2.0;
     let begun = pulse.at as f64;

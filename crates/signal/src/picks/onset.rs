@@ -15,7 +15,7 @@ const REACH: f64 = 0.18;
 /// is where the flank passes, roughly; a cubic fitted about that says where,
 /// finely. Variance: (var(cubic) + f² var(h))/slope².
 pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Picked, SignalError> {
-    let top = local_model::pick(sight, pulse, 4, 0.9)?;
+    let top = local_model::roughly(sight, pulse)?;
     let no_crossing = || SignalError::NoPick {
         place: pulse.place,
         what: "rising flank",
@@ -51,13 +51,18 @@ fn rough(sight: &Sight<'_>, pulse: &Pulse, top: f64, threshold: f64) -> Option<f
 fn fit(sight: &Sight<'_>, pulse: &Pulse, rough: f64, threshold: f64) -> Option<(Polynomial, f64)> {
     let half = (REACH * pulse.width_samples).max(2.0);
     let (first, heights) = sight.window(rough - 3.0 * half, rough + 3.0 * half);
-    let through = |centre| {
-        let fit = Polynomial::through(&heights, first as f64, centre, half, 3)?;
+    let through = |centre, half, degree| {
+        let fit = Polynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.rise_through(threshold)?;
         Some((fit, u))
     };
-    let (once, u) = through(rough)?;
     // A second time about the place just found, for a window that noise did not choose.
-    let centre = once.sample(u);
-    through(centre).or(Some((once, u)))
+    let again = |(fit, u): (Polynomial, f64), half, degree| {
+        let centre = fit.sample(u);
+        through(centre, half, degree).unwrap_or((fit, u))
+    };
+    let cubic = through(rough, half, 3).map(|once| again(once, half, 3));
+    // Noise can bend a cubic away from the threshold; a longer line meets it.
+    let longer = 1.4 * half;
+    cubic.or_else(|| through(rough, longer, 1).map(|once| again(once, longer, 1)))
 }
