@@ -3,7 +3,6 @@
 
 mod common;
 use common::random_shots::random_shots;
-use common::*;
 use hertzchain_chain::settle::{SettleError, SlowPhase, State, settle};
 use hertzchain_chain::*;
 use proptest::prelude::*;

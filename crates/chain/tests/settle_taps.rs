@@ -44,8 +44,9 @@ fn under_a_push_a_tap_leaves_contacts_closed_and_the_row_at_rest() {
         let mut state = State::start(&system);
         let rest = tapped(&system, &mut state, TAP_M_S, &slow);
         assert!((35..=40).contains(&rest.closed_contacts));
-        // Friction alone would take v/(μ g) from the speed of a tenth of the
-        // tap, which is about what the wave leaves in the beads.
+        // Bead speeds of some mm/s to some cm/s are left by the wave, from which
+        // friction takes 0.5 m/s² at 0.05; regularised friction moves on up to 20 ms
+        // there, and creeps on beyond.
         assert!(rest.time_s > 0.01 && rest.time_s < 0.3, "{}", rest.time_s);
         assert!(state.velocity_m_s.iter().all(|&v| v == 0.0));
     }
@@ -75,16 +76,16 @@ fn a_tap_ends_where_steps_a_hundred_times_shorter_end() {
     let (mut coarse, mut fine) = (State::start(&system), State::start(&system));
     let rest = tapped(&system, &mut coarse, TAP_M_S, &with_step(0.05));
     let exact = tapped(&system, &mut fine, TAP_M_S, &with_step(0.0005));
-    // Sticking makes the end hang on a hair: a change of the tap by 1e-6, with
-    // any step, moves beads by up to 50 nm, overlaps by up to 5 nm and rest by
-    // half a millisecond. Twice that is allowed.
+    // Sticking makes the end hang on a hair: taps that differ by 1e-6 end, with
+    // any step, 30 nm (standard deviation) elsewhere at bead 1, 3 nm in an
+    // overlap, 0.4 ms in time. Three to five times that is allowed.
     assert_eq!(rest.closed_contacts, exact.closed_contacts);
-    assert!((rest.time_s - exact.time_s).abs() < 1e-3);
+    assert!((rest.time_s - exact.time_s).abs() < 1.5e-3);
     for contact in 1..=40 {
         let moved = coarse.displacement_m[contact] - fine.displacement_m[contact];
         let pressed = coarse.overlap_m(&system, contact) - fine.overlap_m(&system, contact);
-        assert!(moved.abs() < 1e-7, "{moved}");
-        assert!(pressed.abs() < 1e-8, "{pressed}");
+        assert!(moved.abs() < 1.5e-7, "{moved}");
+        assert!(pressed.abs() < 1.5e-8, "{pressed}");
     }
 }
 

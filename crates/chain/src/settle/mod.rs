@@ -45,7 +45,7 @@ impl Default for SlowPhase {
         Self {
             friction_coefficient: 0.05,
             stuck_for_s: 1e-3,
-            longest_s: 2.0,
+            longest_s: 5.0,
             withdrawn_at_m: 1e-3,
             step: 0.05,
         }
