@@ -108,21 +108,47 @@ fn peaks(system: &System, step: f64) -> [f64; 2] {
     peaks
 }
 
+/// The dry row with a softer, more viscous stretch from bead 7 to the wall.
+fn wet() -> Chain {
+    let section = |contacts, laws, material| Section {
+        contacts,
+        laws,
+        material,
+    };
+    let soft = Material {
+        young_modulus_pa: 193e9,
+        shear_viscosity_pa_s: 6.6e4,
+        ..STEEL
+    };
+    let dry_laws = vec![hertz(), viscoelastic(), cubic()];
+    Chain {
+        sections: vec![
+            section(0..=6, dry_laws, None),
+            section(7..=40, vec![hertz(), viscoelastic()], Some(soft)),
+        ],
+        ..dry(PUSH_N)
+    }
+}
+
 #[test]
 fn peaks_of_a_tap_are_those_of_the_wave_loop() {
-    let chain = dry(PUSH_N);
-    let system = System::new(&chain).unwrap();
-    let (passage, _) = shoot(&chain, 1e-9);
-    let exact = [passage.incident.value, passage.wall.value];
-    // The default step is a tenth of a pulse: its largest sample is up to 0.5 %
-    // below the peak, and the scheme's own error is half of that.
-    for (found, exact) in peaks(&system, 0.05).into_iter().zip(exact) {
-        close(found, exact, 0.01);
-    }
-    // Fifty times shorter steps: the first order of what damping does at the
-    // instant of touch.
-    for (found, exact) in peaks(&system, 0.001).into_iter().zip(exact) {
-        close(found, exact, 1e-4);
+    let clipped = Chain {
+        tension: Tension::Clipped,
+        ..dry(PUSH_N)
+    };
+    for chain in [dry(PUSH_N), wet(), clipped] {
+        let system = System::new(&chain).unwrap();
+        let (passage, _) = shoot(&chain, 1e-9);
+        let exact = [passage.incident.value, passage.wall.value];
+        // The default step is a tenth of a pulse: its largest sample is up to 0.5 %
+        // below the peak, and the scheme's own error is half of that.
+        for (found, exact) in peaks(&system, 0.05).into_iter().zip(exact) {
+            close(found, exact, 0.01);
+        }
+        // Fifty times shorter steps, errors and samples by their square.
+        for (found, exact) in peaks(&system, 0.001).into_iter().zip(exact) {
+            close(found, exact, 1e-5);
+        }
     }
 }
 
@@ -142,7 +168,7 @@ fn energy(system: &System, state: &State) -> f64 {
 #[test]
 fn energy_never_rises() {
     let system = System::new(&dry(PUSH_N)).unwrap();
-    for (step, ripple) in [(0.05, 2e-2), (0.0125, 2e-3)] {
+    for (step, ripple) in [(0.05, 2e-3), (0.0125, 1e-3)] {
         let mut state = State::start(&system);
         let (mut least, mut rise) = (f64::INFINITY, 0.0_f64);
         settle(&system, &mut state, &with_step(step), &mut |_, state, _| {
@@ -152,8 +178,8 @@ fn energy_never_rises() {
             least = least.min(now);
         })
         .unwrap();
-        // A leapfrog's energy ripples by the square of the step as contacts are
-        // pressed and released.
+        // A leapfrog's energy ripples as contacts are pressed and released, and
+        // where damping begins at the instant of touch, somewhere in a step.
         let tap = 0.5 * BALL.mass_kg * TAP_M_S * TAP_M_S;
         assert!(rise < ripple * tap, "{} of the tap at {step}", rise / tap);
     }
@@ -220,6 +246,23 @@ fn a_row_at_rest_stays_at_rest_until_the_wave_comes() {
     let refused = settle(&shot, &mut rested, &SlowPhase::default(), &mut |_, _, _| {});
     assert_eq!(refused, Err(settle::SettleError::InState));
     assert!(shot.from_state(&after).is_err());
+}
+
+#[test]
+fn both_loops_shoot_from_a_state_alike() {
+    use common::ensemble::{fire_one, passage, settings, step_for, tofs};
+    let system = System::new(&dry(PUSH_N)).unwrap();
+    let mut state = State::start(&system);
+    tapped(&system, &mut state, TAP_M_S, &SlowPhase::default());
+    state.strike(&system, 0.5);
+    let from = system.from_state(&state).unwrap();
+    let (incident, reflected, _) = shot(&from, 1e-8);
+    let flown = fire_one(&from, (step_for(1e-6).0, 5e-3), &settings(40));
+    let found = tofs(&passage(&flown).unwrap());
+    // The step for 1e-6 of rows that begin in equilibrium; here overlaps differ
+    // from bead to bead, and one of the ensemble's judges would say so.
+    close(found[0], incident, 3e-5);
+    close(found[1], reflected, 3e-5);
 }
 
 #[test]
