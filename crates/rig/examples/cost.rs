@@ -13,7 +13,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let campaign = experiment.campaign();
         let chance = |purpose| Chance::new(plan.seed, series.number, purpose);
         let mut bench = Bench::lay(experiment, &mut chance(Purpose::Laying))?;
-        println!("{}: open after laying {}", series.name, open(&bench.gaps_m()));
+        println!(
+            "{}: open after laying {}",
+            series.name,
+            open(&bench.gaps_m())
+        );
         let (begun, mut longest_s, mut steps) = (Instant::now(), 0.0f64, 0);
         for _ in 0..campaign.taps {
             let rest = bench.tap(campaign.tap_speed_m_s)?;

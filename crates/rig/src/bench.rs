@@ -44,7 +44,12 @@ impl<'a> Bench<'a> {
             tapped,
             state,
         };
-        settle(&bench.tapped, &mut bench.state, &bench.slow, &mut |_, _, _| {})?;
+        settle(
+            &bench.tapped,
+            &mut bench.state,
+            &bench.slow,
+            &mut |_, _, _| {},
+        )?;
         bench.hold_wall();
         Ok(bench)
     }
@@ -96,7 +101,9 @@ impl<'a> Bench<'a> {
     pub fn gaps_m(&self) -> Vec<f64> {
         let contacts = 1..self.tapped.contacts();
         let overlap_m = |contact| self.state.overlap_m(&self.tapped, contact);
-        contacts.map(|contact| (-overlap_m(contact)).max(0.0)).collect()
+        contacts
+            .map(|contact| (-overlap_m(contact)).max(0.0))
+            .collect()
     }
 
     /// Where all bodies are.

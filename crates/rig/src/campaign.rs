@@ -52,7 +52,11 @@ pub fn campaign(
         .filter(|(at, _)| shard.holds(*at))
         .map(|(_, series)| series)
         .collect();
-    let due: Vec<&Series> = part.iter().copied().filter(|series| !folder.has(series)).collect();
+    let due: Vec<&Series> = part
+        .iter()
+        .copied()
+        .filter(|series| !folder.has(series))
+        .collect();
     let fired = AtomicU64::new(0);
     let shots = plan.shots(due.len());
     let inputs = format!("{:016x}", fingerprint(plan));

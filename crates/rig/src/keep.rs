@@ -58,7 +58,9 @@ impl Folder {
             Err(error) => return Err(refused(error)),
         }
         if plan.series.iter().any(|series| folder.has(series)) {
-            return Err(folder.holds("recordings, but no campaign.toml that tells of which campaign"));
+            return Err(
+                folder.holds("recordings, but no campaign.toml that tells of which campaign")
+            );
         }
         let beside = path.join(format!(".{TOLD_IN}.{}", std::process::id()));
         let written = fs::write(&beside, told).and_then(|()| fs::rename(&beside, &told_in));

@@ -43,7 +43,7 @@ pub use campaign::{Done, Progress, campaign};
 pub use chance::{Chance, Purpose};
 pub use converter::Converter;
 pub use error::{RigError, ShotError};
-pub use photogate::{Passing, watch};
+pub use photogate::Passing;
 pub use plan::{Case, Plan, Series};
 pub use record::{Record, Window};
 pub use recording::{Truth, truth};

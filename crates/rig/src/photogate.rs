@@ -13,14 +13,16 @@ pub struct Passing {
     pub time_s: f64,
 }
 
-/// Measures a striker of this true speed, whose way from the gate to bead 1
-/// is longer by `misplaced_m`.
-#[must_use]
-pub fn watch(gate: &Photogate, speed_m_s: f64, misplaced_m: f64, chance: &mut Chance) -> Passing {
-    // The gate stands before the chain, wherever the striker started from.
-    let way_m = (gate.way_m + misplaced_m).max(0.0);
-    Passing {
-        speed_m_s: speed_m_s + gate.error_m_s * chance.normal(),
-        time_s: -way_m / speed_m_s,
+impl Passing {
+    /// Of a striker with this true speed, whose way from the gate to bead 1 is
+    /// longer by `misplaced_m`.
+    #[must_use]
+    pub fn of(gate: &Photogate, speed_m_s: f64, misplaced_m: f64, chance: &mut Chance) -> Self {
+        // A striker is never put beyond bead 1.
+        let way_m = (gate.way_m + misplaced_m).max(0.0);
+        Self {
+            speed_m_s: speed_m_s + gate.error_m_s * chance.normal(),
+            time_s: -way_m / speed_m_s,
+        }
     }
 }

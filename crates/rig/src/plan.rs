@@ -101,7 +101,9 @@ impl Plan {
 /// The cases of a file, or its one chain by the file's name.
 fn cases(experiment: &Experiment) -> Result<Vec<Case>, RigError> {
     let named = |name: &str| {
-        let chosen = experiment.case(name).unwrap_or_else(|| Ok(experiment.clone()));
+        let chosen = experiment
+            .case(name)
+            .unwrap_or_else(|| Ok(experiment.clone()));
         Ok(Case {
             name: name.to_owned(),
             experiment: chosen?,

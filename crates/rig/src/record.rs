@@ -74,7 +74,9 @@ impl Window {
     ) -> Record {
         let mut volts = self.amplified(tape, amplifier);
         if amplifier.noise_v > 0.0 {
-            volts.iter_mut().for_each(|v| *v += amplifier.noise_v * noise.normal());
+            volts
+                .iter_mut()
+                .for_each(|v| *v += amplifier.noise_v * noise.normal());
         }
         let first = match recorder.trigger {
             Trigger::Photogate => 0,

@@ -5,7 +5,7 @@
 use crate::bench::Bench;
 use crate::chance::{Chance, Purpose};
 use crate::error::{RigError, ShotError};
-use crate::photogate;
+use crate::photogate::Passing;
 use crate::plan::{Plan, Series};
 use crate::record::{Record, Window};
 use crate::shot::{Shot, shoot};
@@ -75,10 +75,14 @@ impl Run<'_> {
     fn repeat(&mut self, number: u32) -> Result<Fired, RigError> {
         let mut chance = Chance::new(self.plan.seed, self.series.number, Purpose::Shot(number));
         // Chance of the shot first: it is the same after any number of taps.
-        let speed_m_s = fired_m_s(&self.campaign.actuator, self.series.programmed_m_s, &mut chance);
+        let speed_m_s = fired_m_s(
+            &self.campaign.actuator,
+            self.series.programmed_m_s,
+            &mut chance,
+        );
         let misplaced_m = misplaced_m(&self.campaign.actuator, &mut chance);
         let gate = &self.campaign.photogate;
-        let passing = photogate::watch(gate, speed_m_s, misplaced_m, &mut chance);
+        let passing = Passing::of(gate, speed_m_s, misplaced_m, &mut chance);
         let window = Window::new(&self.campaign.recorder, passing.time_s, &mut chance);
         self.taps(number, &mut chance)?;
         let mut tape = window.tape();

@@ -63,7 +63,13 @@ pub fn shoot(
         run(&shot, &method, limits, &mut [&mut passages, &mut taping])?
     };
     let rest = slow(bench, (&system, &shot), &outcome, sensor_bead, tape)?;
-    Ok(told(&passages, gaps_before_m, bench.gaps_m(), &rest, outcome.time_s))
+    Ok(told(
+        &passages,
+        gaps_before_m,
+        bench.gaps_m(),
+        &rest,
+        outcome.time_s,
+    ))
 }
 
 /// The slow phase after a wave, on the same tape.
@@ -106,7 +112,9 @@ fn told(
         reflected_s: reflected.0 - wall.0,
         peaks_s: [incident.0, wall.0, reflected.0],
         peaks_n: [incident.1, wall.1, reflected.1],
-        rebound_m_s: rest.withdrawn.map_or(f64::NAN, |striker| striker.velocity_m_s),
+        rebound_m_s: rest
+            .withdrawn
+            .map_or(f64::NAN, |striker| striker.velocity_m_s),
         gaps_before_m,
         gaps_after_m,
         rest_s: wave_s + rest.time_s,
