@@ -103,7 +103,8 @@ pub(super) fn summed(maxima: &[Maximum], track: &Track<'_>, finding: &Finding) -
 }
 
 /// The wall's pulse, if what was taken for it is the return: another pulse
-/// stands half way, and the passing pulse's width says that half way is right.
+/// stands half way, where a sensor bead at rest shows none. One of half the
+/// height will do; less if the passing pulse's width says that half way is right.
 fn sooner(
     maxima: &[Maximum],
     first: Maximum,
@@ -111,15 +112,15 @@ fn sooner(
     finding: &Finding,
     width: f64,
 ) -> Maximum {
-    let Some(beads) = finding.beads else {
-        return wall;
-    };
     let (began, whole) = (first.at as f64, (wall.at - first.at) as f64);
     let half_way = largest(maxima, began + 0.4 * whole, began + 0.6 * whole);
-    let expected = expected(beads, width);
-    let nearer = (0.5 * whole / expected).ln().abs() < (whole / expected).ln().abs();
+    let least = finding.beads.map_or(0.5, |beads| {
+        let expected = expected(beads, width);
+        let nearer = (0.5 * whole / expected).ln().abs() < (whole / expected).ln().abs();
+        if nearer { 0.2 } else { f64::INFINITY }
+    });
     half_way
-        .filter(|other| nearer && other.height >= 0.2 * wall.height)
+        .filter(|other| other.height >= least * wall.height)
         .unwrap_or(wall)
 }
 
