@@ -15,6 +15,7 @@ pub mod material;
 pub mod motion;
 pub mod observe;
 pub mod sensor;
+pub mod settle;
 pub mod system;
 pub mod theory;
 pub mod wave;

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 const ARROWS: &[(&str, &[&str])] = &[
     ("chain", &[]),
     ("signal", &[]),
+    ("records", &[]),
+    ("measure", &["signal", "records"]),
     ("experiment", &["chain"]),
     ("study", &["chain", "experiment", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),

@@ -93,6 +93,13 @@ impl Spec {
         }
     }
 
+    /// Whether a case of the campaign names a material.
+    fn case_uses(&self, index: usize) -> bool {
+        let sections = self.cases.iter().filter_map(|case| case.sections.as_ref());
+        let mut materials = sections.flatten().map(|section| section.material);
+        materials.any(|material| material == Some(index))
+    }
+
     /// Whether something of the chain is made of a material.
     fn uses(&self, index: usize) -> bool {
         let of = |shape: &Shape| shape.material == Some(index);
@@ -123,6 +130,9 @@ fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Prob
             oddities.extend(oddity);
         } else {
             materials.push(Material::RIGID);
+            if spec.case_uses(index) {
+                continue;
+            }
             let message = format!("nothing is made of `{}`", material.name);
             oddities.push(Problem::new(
                 &material.span,

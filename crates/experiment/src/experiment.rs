@@ -11,7 +11,7 @@ use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Liquid, Near, Rig, SectionSpec, Solver, Spec};
+use crate::spec::{Campaign, Liquid, Rig, SectionSpec, Solver, Spec};
 use crate::unit_slip;
 use crate::validity;
 use crate::value::Units;
@@ -232,10 +232,7 @@ impl Experiment {
     /// Speed of the striker in m/s; `None` without a striker.
     #[must_use]
     pub fn speed_m_s(&self) -> Option<f64> {
-        match self.spec.near {
-            Near::Striker { speed_m_s, .. } => Some(speed_m_s),
-            Near::Driven { .. } | Near::Free { .. } => None,
-        }
+        self.spec.near.speed_m_s()
     }
 
     /// Number of beads N in the reading.
@@ -311,6 +308,51 @@ impl Experiment {
     #[must_use]
     pub fn rig(&self) -> Option<&Rig> {
         self.spec.rig.as_ref()
+    }
+
+    /// What a rig does with this experiment, shot after shot.
+    #[must_use]
+    pub fn campaign(&self) -> &Campaign {
+        &self.spec.campaign
+    }
+
+    /// Names of the chains that a campaign measures, in the file's order;
+    /// none where the file's one chain is all.
+    #[must_use]
+    pub fn cases(&self) -> Vec<&str> {
+        self.spec
+            .cases
+            .iter()
+            .map(|case| case.name.as_str())
+            .collect()
+    }
+
+    /// This experiment with the contacts and the liquid of one of its cases;
+    /// `None` if it has no case of this name.
+    ///
+    /// # Errors
+    /// When the reading leaves something outside the chain.
+    pub fn case(&self, name: &str) -> Option<Result<Self, Mistakes>> {
+        let case = self.written.cases.iter().find(|case| case.name == name)?;
+        let mut written = self.written.clone();
+        if let Some(sections) = &case.sections {
+            written.sections.clone_from(sections);
+        }
+        if case.liquid.is_some() {
+            written.liquid.clone_from(&case.liquid);
+        }
+        let chosen = Self {
+            written,
+            ..self.clone()
+        };
+        Some(chosen.with_reading(&self.spec.reading))
+    }
+
+    /// Coefficient of dry friction between beads and track, which acts
+    /// between shots.
+    #[must_use]
+    pub fn friction_coefficient(&self) -> f64 {
+        self.spec.friction_coefficient
     }
 
     /// Sections of contacts with their laws, in the reading.

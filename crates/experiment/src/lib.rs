@@ -75,8 +75,11 @@ pub use experiment::{Experiment, OpenError};
 pub use finding::{Finding, Mistakes, Source, Warning};
 pub use laws::LawSpec;
 pub use paths::{Named, PathError};
-pub use presets::{Preset, UnknownPreset, examples, preset, presets};
+pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use schema::schema;
-pub use spec::{Liquid, Method, Rig, RigPart, RigPartKind, SectionSpec, Solver};
+pub use spec::{
+    Actuator, Amplifier, Campaign, Laying, Liquid, LowPass, Method, Photogate, Recorder, Rig,
+    RigPart, RigPartKind, SectionSpec, Solver, Trigger,
+};
 pub use value::Units;

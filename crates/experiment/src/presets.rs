@@ -22,7 +22,7 @@ impl Preset {
     }
 }
 
-/// A name that is neither a preset nor an example.
+/// A name that is neither a preset nor an example nor a campaign.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no preset `{name}`; expected one of: {}{}", .known.join(", "), hint(.nearest))]
 pub struct UnknownPreset {
@@ -67,6 +67,8 @@ static EXAMPLES: &[Preset] = files![
     "newtons-cradle",
 ];
 
+static CAMPAIGNS: &[Preset] = files!["paper"];
+
 /// The paper's chains.
 #[must_use]
 pub const fn presets() -> &'static [Preset] {
@@ -79,12 +81,18 @@ pub const fn examples() -> &'static [Preset] {
     EXAMPLES
 }
 
-/// A preset or example by its name.
+/// Campaigns of a rig: chains, speeds, shots and instruments.
+#[must_use]
+pub const fn campaigns() -> &'static [Preset] {
+    CAMPAIGNS
+}
+
+/// A preset, example or campaign by its name.
 ///
 /// # Errors
 /// An unknown name, with those that exist and the nearest of them.
 pub fn preset(name: &str) -> Result<Experiment, UnknownPreset> {
-    let all = || PRESETS.iter().chain(EXAMPLES);
+    let all = || PRESETS.iter().chain(EXAMPLES).chain(CAMPAIGNS);
     let found = all().find(|preset| preset.name == name);
     let experiment = found.and_then(|p| Experiment::from_text(&file_name(p), p.text).ok());
     experiment.ok_or_else(|| UnknownPreset {

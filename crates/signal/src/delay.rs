@@ -36,7 +36,7 @@ fn correlation(earlier: &[f64], later: &[f64], lag: isize) -> f64 {
 }
 
 /// Index of the largest positive value; the first of equals.
-fn largest(values: &[f64]) -> Option<usize> {
+pub(crate) fn largest(values: &[f64]) -> Option<usize> {
     let mut best: Option<usize> = None;
     for (i, value) in values.iter().enumerate() {
         if !value.is_finite() {
@@ -50,7 +50,7 @@ fn largest(values: &[f64]) -> Option<usize> {
 }
 
 /// Where the quartic through values at −2..=2 is largest near 0.
-fn quartic_maximum([a, b, c, d, e]: [f64; 5]) -> f64 {
+pub(crate) fn quartic_maximum([a, b, c, d, e]: [f64; 5]) -> f64 {
     let slope = (a - 8.0 * b + 8.0 * d - e) / 12.0;
     let curvature = (-a + 16.0 * b - 30.0 * c + 16.0 * d - e) / 12.0;
     let third = (-a + 2.0 * b - 2.0 * d + e) / 2.0;

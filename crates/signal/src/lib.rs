@@ -1,21 +1,64 @@
-//! Pulses in sampled slices: picks, delays, power laws.
+//! Pulses in sampled slices: finding, picking, times of flight, curves.
 //!
 //! Knows nothing of chains or files: everything takes plain slices and, where
-//! time matters, a sampling interval in s.
+//! time matters, a sampling interval in s. From samples to a curve:
+//!
+//! 1. [`Cutter`] cuts shots out of a recording given piece by piece.
+//! 2. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
+//!    makes a [`Flight`] of them, with an uncertainty of its own and [`Doubt`]s.
+//! 3. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
+//!    [`power_law_both_errors`], [`chi_square`] and [`coverage`] reduce shots
+//!    to curves and say how far to believe them.
 //!
 //! ```
-//! // Two equal bumps, the second 2.5 samples later.
-//! let bump = |at: f64| -> Vec<f64> {
-//!     (0..60).map(|i| (-((f64::from(i) - at) / 4.0).powi(2)).exp()).collect()
-//! };
-//! let delay_s = hertzchain_signal::delay_by_cross_correlation(&bump(30.0), &bump(32.5), 1e-6);
-//! assert!((delay_s.unwrap() - 2.5e-6).abs() < 1e-10);
+//! use hertzchain_signal::{Channels, Measuring, Shape, measure};
+//!
+//! // Passing at 1 ms, wall at 1.7 ms, returning at 2.45 ms, at 1 MS/s.
+//! let bell = Shape::cos_power(6.0);
+//! let pulse = |at: f64, t: f64| bell.value((t - at) / 60e-6);
+//! let samples: Vec<f64> = (0..4000)
+//!     .map(|i| f64::from(i) * 1e-6)
+//!     .map(|t| pulse(1e-3, t) + 1.6 * pulse(1.7e-3, t) + 0.4 * pulse(2.45e-3, t))
+//!     .collect();
+//! let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default())?;
+//! let flight = shot.flight?;
+//! assert!(shot.found.doubts.is_empty());
+//! assert!((flight.incident_s.value - 0.7e-3).abs() < 1e-8);
+//! # Ok::<(), hertzchain_signal::SignalError>(())
 //! ```
 
+mod cutter;
 mod delay;
+mod droop;
+mod error;
+mod find;
+mod flight;
+mod level;
+mod measure;
 mod pick;
+mod picks;
 mod power_law;
+mod reduce;
+mod running;
+mod saturation;
+mod zero_phase;
 
+pub use cutter::{Cutter, Cutting, Segment, Trigger};
 pub use delay::delay_by_cross_correlation;
+pub use droop::{droop, droop_shift_s, undroop};
+pub use error::SignalError;
+pub use find::{Channels, Doubt, Finding, Found, Place, Polarity, Pulse, Upright, pulses, upright};
+pub use flight::{Estimate, Flight};
+pub use level::{Level, level, median};
+pub use measure::{Measured, Measuring, measure};
 pub use pick::{Peak, largest_peak, onset_s};
+pub use picks::{
+    Method, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
+};
 pub use power_law::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
+pub use reduce::{
+    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups,
+    power_law_both_errors, ratios_at_common, summary,
+};
+pub use saturation::{Rails, saturated_runs};
+pub use zero_phase::LowPass;

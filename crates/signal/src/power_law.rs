@@ -130,7 +130,11 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, F
     })
 }
 
-fn check(abscissas: &[f64], values: &[f64], sigmas: Option<&[f64]>) -> Result<(), FitError> {
+pub(crate) fn check(
+    abscissas: &[f64],
+    values: &[f64],
+    sigmas: Option<&[f64]>,
+) -> Result<(), FitError> {
     for slice in [Some(values), sigmas].into_iter().flatten() {
         if slice.len() != abscissas.len() {
             return Err(FitError::Lengths {

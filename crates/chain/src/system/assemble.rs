@@ -26,6 +26,11 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         spring: spring(&chain.push).filter(|_| !driven),
         push_n: if driven { 0.0 } else { chain.push.force_n() },
         slope_m_s2: chain.gravity_m_s2 * chain.incline_rad.sin(),
+        // Threads carry what hangs.
+        normal_m_s2: match chain.suspension_m {
+            None => chain.gravity_m_s2 * chain.incline_rad.cos(),
+            Some(_) => 0.0,
+        },
         pendulum_per_s2: chain
             .suspension_m
             .map_or(0.0, |length| chain.gravity_m_s2 / length),
@@ -42,6 +47,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         has_memory: false,
         displacement_m: vec![0.0; chain.beads.len() + 2],
         velocity_m_s: vec![0.0; chain.beads.len() + 2],
+        origin_m: vec![0.0; chain.beads.len() + 2].into(),
         scales: Scales {
             speed_m_s: 1.0,
             time_s: 1.0,

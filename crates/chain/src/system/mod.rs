@@ -4,6 +4,7 @@ mod assemble;
 mod check;
 mod contact;
 mod pairs;
+mod resume;
 mod scales;
 mod statics;
 
@@ -79,6 +80,8 @@ pub struct System {
     pub(crate) spring: Option<Spring>,
     pub(crate) push_n: f64,
     pub(crate) slope_m_s2: f64,
+    /// Acceleration with which a body presses on the track.
+    pub(crate) normal_m_s2: f64,
     pub(crate) pendulum_per_s2: f64,
     pub(crate) motion: Option<Motion>,
     pub(crate) periodic: bool,
@@ -87,6 +90,8 @@ pub struct System {
     pub(crate) has_memory: bool,
     pub(crate) displacement_m: Vec<f64>,
     pub(crate) velocity_m_s: Vec<f64>,
+    /// Where displacements begin, seen from the chain's own static equilibrium.
+    pub(crate) origin_m: Arc<[f64]>,
     pub(crate) scales: Scales,
     /// Contacts unlike their left neighbours with what they join: the scales
     /// of another speed follow from them.

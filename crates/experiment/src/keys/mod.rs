@@ -2,6 +2,7 @@
 //! reading, the JSON Schema and the parameter paths all go by these tables.
 
 pub(crate) mod advice;
+mod campaign;
 mod ends;
 pub(crate) mod ranges;
 mod rig;

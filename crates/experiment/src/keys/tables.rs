@@ -1,5 +1,6 @@
 //! Every table of an experiment file.
 
+use super::campaign::CAMPAIGN;
 use super::ends::{DRIVEN, FAR_END, NEAR_END, STRIKER};
 use super::rig::RIG;
 use super::{Fields, Key, Kind, Limits, Need, ranges};
@@ -53,6 +54,7 @@ pub(super) const MATERIAL_NAME: Key = text("material", "name of a material");
 const POISSON: Limits = Limits::new(-1.0, 1.0, false, "between -1 and 1");
 const ACCURACY: Limits = Limits::new(1e-13, 1e-2, true, "between 1e-13 and 1e-2");
 const INCLINE: Limits = Limits::new(0.0, FRAC_PI_2, true, "between 0 and 90 deg");
+const FRICTION: Limits = Limits::new(0.0, 10.0, true, "from 0 to 10");
 const RATIO: Limits = Limits::new(0.0, 100.0, false, "positive and below 100");
 
 static MATERIAL: Fields = Fields {
@@ -115,7 +117,7 @@ static BEADS: Fields = Fields {
     ],
 };
 
-static SECTION: Fields = Fields {
+pub(super) static SECTION: Fields = Fields {
     title: "[[contacts]]",
     keys: &[
         number_of("from", 0, "first contact; default 0, before bead 1"),
@@ -145,6 +147,11 @@ static TRACK: Fields = Fields {
             "gravity",
             Kind::Quantity("m/s^2", ranges::GRAVITY),
             "gravity; default 9.80665 m/s^2",
+        ),
+        Key::new(
+            "friction",
+            Kind::Quantity("1", FRICTION),
+            "dry friction of beads on the track, between shots; default 0.05",
         ),
     ],
 };
@@ -232,7 +239,7 @@ static SOLVER: Fields = Fields {
     ],
 };
 
-static LIQUID: Fields = Fields {
+pub(super) static LIQUID: Fields = Fields {
     title: "[liquid]",
     keys: &[
         text("name", "name of the liquid"),
@@ -316,6 +323,11 @@ pub(crate) static ROOT: Fields = Fields {
             "rig",
             Kind::Table(&RIG),
             "what stands around the chain, for drawings and reports; computes nothing",
+        ),
+        Key::new(
+            "campaign",
+            Kind::Table(&CAMPAIGN),
+            "what a rig does of itself, shot after shot, and the numbers of its parts",
         ),
         Key::new(
             "reading",

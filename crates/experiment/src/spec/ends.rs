@@ -38,6 +38,16 @@ pub(crate) enum Near {
     },
 }
 
+impl Near {
+    /// Speed of the striker in m/s, if there is one.
+    pub(crate) fn speed_m_s(&self) -> Option<f64> {
+        match self {
+            Self::Striker { speed_m_s, .. } => Some(*speed_m_s),
+            Self::Driven { .. } | Self::Free { .. } => None,
+        }
+    }
+}
+
 /// What bead N leans on.
 #[derive(Clone, Debug)]
 pub(crate) enum Far {

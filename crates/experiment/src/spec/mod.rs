@@ -1,19 +1,26 @@
 //! What a file says, typed and in SI, before it becomes a chain.
 
 mod beads;
+mod campaign;
 mod contacts;
 mod ends;
+mod instruments;
 mod layout;
 mod materials;
 mod rig;
 mod setting;
 mod stiffness;
 
+pub use campaign::Campaign;
 pub use contacts::SectionSpec;
+pub use instruments::{
+    Actuator, Amplifier, Laying, LowPass, ORDERS, Photogate, Recorder, TRIGGERS, Trigger,
+};
 pub use rig::{Rig, RigPart, RigPartKind};
 pub use setting::{Liquid, METHODS, Method, Solver};
 
 pub(crate) use beads::{Group, sphere_mass_kg};
+pub(crate) use campaign::CaseSpec;
 pub(crate) use ends::{Far, Near, Shape};
 pub(crate) use materials::{MaterialSpec, Materials, as_key};
 pub(crate) use setting::{Sensors, SolverSpans};
@@ -26,6 +33,9 @@ use hertzchain_chain::chain::STANDARD_GRAVITY_M_S2;
 use hertzchain_chain::{Gap, Initial, Push, Tension};
 use std::ops::Range;
 use std::path::Path;
+
+/// Coefficient of dry friction between beads and track, where a file has none.
+const FRICTION: f64 = 0.05;
 
 /// A file's content.
 #[derive(Clone, Debug)]
@@ -55,6 +65,9 @@ pub(crate) struct Spec {
     pub(crate) solver_spans: SolverSpans,
     pub(crate) liquid: Option<Liquid>,
     pub(crate) rig: Option<Rig>,
+    pub(crate) friction_coefficient: f64,
+    pub(crate) campaign: Campaign,
+    pub(crate) cases: Vec<CaseSpec>,
     pub(crate) reading: Reading,
 }
 
@@ -70,11 +83,11 @@ impl Spec {
             Units::Si => STANDARD_GRAVITY_M_S2,
             Units::Dimensionless => 0.0,
         };
+        let near = ends::near(root, &materials, folder)?;
         let spec = Self {
             title: root.text("title").unwrap_or("untitled").to_owned(),
             units: root.units,
             beads_less: 0,
-            near: ends::near(root, &materials, folder)?,
             push: ends::push(root)?,
             load_span: ["near_end", "track", "far_end"]
                 .into_iter()
@@ -98,6 +111,10 @@ impl Spec {
             solver_spans: SolverSpans::read(root),
             liquid: Liquid::read(root)?,
             rig: Rig::read(root)?,
+            friction_coefficient: track_value("friction")?.unwrap_or(FRICTION),
+            campaign: Campaign::read(root, near.speed_m_s())?,
+            cases: campaign::cases(root, &materials, &groups)?,
+            near,
             reading: reading(root),
             materials,
             groups,

@@ -5,16 +5,16 @@ use num_rational::Ratio;
 use num_traits::{CheckedAdd, CheckedMul};
 use std::fmt;
 
-/// Powers of metre, kilogram, second and radian.
+/// Powers of metre, kilogram, second, radian and ampere.
 ///
 /// The radian counts as a base unit here, so that an angle without its unit,
 /// or a frequency in rad/s, is a mistake and not a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dimension([Exponent; 4]);
+pub struct Dimension([Exponent; 5]);
 
 /// Base units as they are stored, and the places in which they are written.
-const BASE: [&str; 4] = ["m", "kg", "s", "rad"];
-const WRITTEN: [usize; 4] = [1, 0, 2, 3];
+const BASE: [&str; 5] = ["m", "kg", "s", "rad", "A"];
+const WRITTEN: [usize; 5] = [1, 0, 2, 3, 4];
 
 /// What people call a dimension: name, SI unit, an example.
 static NAMES: &[(&str, &str, &str)] = &[
@@ -39,18 +39,24 @@ static NAMES: &[(&str, &str, &str)] = &[
     ("a viscoelastic damping", "N s/m^(3/2)", "4.5e3 N s/m^(3/2)"),
     ("an area", "m^2", "1 mm^2"),
     ("a volume", "m^3", "1 ml"),
+    ("a voltage", "V", "10 V"),
+    ("a charge", "C", "100 pC"),
+    ("a charge sensitivity", "C/N", "20 pC/N"),
+    ("a charge amplification", "V/C", "1 mV/pC"),
 ];
 
 impl Dimension {
     /// Plain numbers.
-    pub const NONE: Self = Self::new(0, 0, 0, 0);
+    pub const NONE: Self = Self::new([0; 4], 0);
 
-    pub(super) const fn new(metre: i64, kilogram: i64, second: i64, radian: i64) -> Self {
+    /// Powers of metre, kilogram, second and radian, and of ampere.
+    pub(super) const fn new([metre, kilogram, second, radian]: [i64; 4], ampere: i64) -> Self {
         Self([
             Ratio::new_raw(metre, 1),
             Ratio::new_raw(kilogram, 1),
             Ratio::new_raw(second, 1),
             Ratio::new_raw(radian, 1),
+            Ratio::new_raw(ampere, 1),
         ])
     }
 

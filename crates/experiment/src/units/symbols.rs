@@ -16,11 +16,16 @@ pub(super) struct Symbol {
 }
 
 /// A symbol whose size is a power of ten.
-const fn si(text: &'static str, tens: i64, [m, kg, s, rad]: [i64; 4]) -> Symbol {
+const fn si(text: &'static str, tens: i64, dimension: [i64; 4]) -> Symbol {
+    electric(text, tens, dimension, 0)
+}
+
+/// A symbol with a power of the ampere.
+const fn electric(text: &'static str, tens: i64, dimension: [i64; 4], ampere: i64) -> Symbol {
     Symbol {
         text,
         prefixable: true,
-        dimension: Dimension::new(m, kg, s, rad),
+        dimension: Dimension::new(dimension, ampere),
         numerator: 1,
         tens,
         rest: 1.0,
@@ -64,6 +69,9 @@ pub(super) static SYMBOLS: &[Symbol] = &[
     si("P", -1, [-1, 1, -1, 0]),
     si("St", -4, [2, 0, -1, 0]),
     si("dyn", -5, [1, 1, -2, 0]),
+    electric("A", 0, [0, 0, 0, 0], 1),
+    electric("C", 0, [0, 0, 1, 0], 1),
+    electric("V", 0, [2, 1, -3, 0], -1),
     other("t", 1, 3, [0, 1, 0, 0]),
     other("in", 254, -4, LENGTH),
     other("micron", 1, -6, LENGTH),

@@ -1,0 +1,100 @@
+//! Between shots: beads ring, fly, slide on the track and come to rest.
+//!
+//! Contacts feel all laws of the chain, the push and the incline act as in a
+//! shot, and every body that can move rubs on the track: at most μ m g cos α,
+//! sliding or sticking. The scheme is nonsmooth time stepping: contact forces
+//! are explicit in a leapfrog, friction is an impulse clamped so that it can
+//! stop a body but never turn it round [Moreau1988]. A stuck body has the
+//! velocity 0 exactly, so a chain in which all are stuck stays as it is for
+//! ever. Steps follow the stiffest contact; `docs/numerics.md` has the
+//! measured accuracy.
+//!
+//! Friction is ours, the paper has none. Rolling is not modelled.
+
+mod columns;
+mod error;
+mod pace;
+mod run;
+mod state;
+
+pub use error::SettleError;
+pub use state::State;
+
+use crate::system::System;
+use run::Slow;
+
+/// How a chain comes to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowPhase {
+    /// Coulomb coefficient μ between a body and the track, 0 or more.
+    pub friction_coefficient: f64,
+    /// Time in s during which every body must stick for the chain to be at rest.
+    pub stuck_for_s: f64,
+    /// Longest time in s that this may take.
+    pub longest_s: f64,
+    /// The striker is taken away where it is this far from bead 1, in m, and
+    /// not coming back by itself; it is put at twice that at least.
+    pub withdrawn_at_m: f64,
+    /// Step as a fraction of the shortest period of the contacts as they are
+    /// now; up to 1/4.
+    pub step: f64,
+}
+
+impl Default for SlowPhase {
+    fn default() -> Self {
+        Self {
+            friction_coefficient: 0.05,
+            stuck_for_s: 1e-3,
+            longest_s: 5.0,
+            withdrawn_at_m: 1e-3,
+            step: 0.05,
+        }
+    }
+}
+
+/// The striker as it was taken away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Withdrawn {
+    /// When, in s.
+    pub time_s: f64,
+    /// Its velocity in m/s then; negative is away from the chain.
+    pub velocity_m_s: f64,
+}
+
+/// A chain at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// When the last body came to rest, in s from the start of the slow phase.
+    pub time_s: f64,
+    /// How many of the contacts 1..=N, without the striker's, are closed.
+    pub closed_contacts: usize,
+    /// Gap in m of every contact 0..=N; 0 where closed, where no contact is,
+    /// and at the striker's once it is withdrawn.
+    pub gaps_m: Vec<f64>,
+    /// When and how fast the striker was withdrawn, if it was.
+    pub withdrawn: Option<Withdrawn>,
+    /// Steps taken, each one force pass.
+    pub steps: u64,
+}
+
+/// Lets a chain come to rest from a state, and leaves it there with all
+/// velocities 0.
+///
+/// `seen` is called at every step with the time in s from the start, the state
+/// and the forces in N of contacts 0..=N then.
+///
+/// What a law remembers of a contact begins anew, as it does in a shot: after a
+/// phase in which an elastic–plastic contact has yielded, its dent is
+/// forgotten, and the state is not one of rest for the next phase.
+///
+/// # Errors
+/// See [`SettleError`]; the state is then the last one reached.
+pub fn settle(
+    system: &System,
+    state: &mut State,
+    slow: &SlowPhase,
+    seen: &mut dyn FnMut(f64, &State, &[f64]),
+) -> Result<Rest, SettleError> {
+    error::check(system, state, slow)?;
+    Slow::new(system, slow, state).run(seen)
+}

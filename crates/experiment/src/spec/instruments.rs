@@ -1,0 +1,210 @@
+//! The parts of a rig in numbers.
+
+use crate::finding::Problem;
+use crate::view::View;
+
+/// How a chain is laid before a series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Laying {
+    /// Mean of the random gaps in m, exponentially distributed.
+    pub gap_scatter_m: f64,
+    /// Standard deviation of bead radii over their mean.
+    pub radius_spread: f64,
+}
+
+/// What launches the striker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Actuator {
+    /// Step of the speeds that can be programmed, in m/s.
+    pub resolution_m_s: f64,
+    /// Standard deviation of the speed from shot to shot, in m/s.
+    pub spread_m_s: f64,
+    /// Slowest shot in m/s.
+    pub least_speed_m_s: f64,
+    /// Fastest shot in m/s.
+    pub most_speed_m_s: f64,
+    /// Standard deviation of the place to which the striker is brought back,
+    /// in m.
+    pub placing_m: f64,
+}
+
+/// What measures the striker's speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Photogate {
+    /// Standard deviation of a measured speed in m/s.
+    pub error_m_s: f64,
+    /// Way of the striker from the gate to bead 1 in m.
+    pub way_m: f64,
+}
+
+/// What turns forces into voltages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amplifier {
+    /// Charge of the sensor bead's disc in C/N.
+    pub sensitivity_c_n: f64,
+    /// Charge of the wall's disc in C/N.
+    pub wall_sensitivity_c_n: f64,
+    /// Voltage for a charge in V/C.
+    pub gain_v_c: f64,
+    /// Corner of the low-pass in Hz.
+    pub low_pass_hz: f64,
+    /// Order of the low-pass.
+    pub order: LowPass,
+    /// Corner of the high-pass in Hz.
+    pub high_pass_hz: f64,
+    /// Standard deviation of each sample's noise in V.
+    pub noise_v: f64,
+}
+
+/// Low-pass of an amplifier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LowPass {
+    /// One pole.
+    First,
+    /// Two poles, Butterworth.
+    Second,
+}
+
+/// Names of low-passes in a file.
+pub const ORDERS: &[&str] = &["first", "second"];
+
+/// What turns voltages into records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recorder {
+    /// Bits of a sample, at most 16.
+    pub bits: u32,
+    /// Samples a second in Hz.
+    pub sampling_hz: f64,
+    /// Largest voltage either way, in V.
+    pub range_v: f64,
+    /// Voltage of no signal.
+    pub offset_v: f64,
+    /// Length of a record in s.
+    pub record_s: f64,
+    /// Part of it before the trigger in s.
+    pub before_s: f64,
+    /// What starts a record.
+    pub trigger: Trigger,
+}
+
+/// What starts a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trigger {
+    /// The striker in the photogate.
+    Photogate,
+    /// The channel, when it passes a level in V upward.
+    Level(f64),
+}
+
+/// Names of triggers in a file.
+pub const TRIGGERS: &[&str] = &["photogate", "level"];
+
+/// A quantity of a table, or its default.
+fn quantity(table: Option<&View<'_>>, key: &str, default: f64) -> Result<f64, Problem> {
+    let given = table.map_or(Ok(None), |table| table.quantity(key))?;
+    Ok(given.unwrap_or(default))
+}
+
+impl Laying {
+    pub(super) fn read(table: Option<&View<'_>>) -> Result<Self, Problem> {
+        Ok(Self {
+            gap_scatter_m: quantity(table, "gap_scatter", 5e-6)?,
+            radius_spread: quantity(table, "radius_spread", 0.0)?,
+        })
+    }
+}
+
+impl Actuator {
+    pub(super) fn read(table: Option<&View<'_>>) -> Result<Self, Problem> {
+        let actuator = Self {
+            resolution_m_s: quantity(table, "resolution", 1.5e-4)?,
+            spread_m_s: quantity(table, "spread", 0.003)?,
+            least_speed_m_s: quantity(table, "least_speed", 0.05)?,
+            most_speed_m_s: quantity(table, "most_speed", 2.5)?,
+            placing_m: quantity(table, "placing", 20e-6)?,
+        };
+        match table {
+            Some(table) if actuator.least_speed_m_s >= actuator.most_speed_m_s => {
+                let message = "the slowest shot is not slower than the fastest";
+                let label = "expected `least_speed` below `most_speed`";
+                Err(Problem::new(&table.span(), message, label))
+            }
+            _ => Ok(actuator),
+        }
+    }
+}
+
+impl Photogate {
+    pub(super) fn read(table: Option<&View<'_>>) -> Result<Self, Problem> {
+        Ok(Self {
+            error_m_s: quantity(table, "error", 5e-4)?,
+            way_m: quantity(table, "way", 1e-3)?,
+        })
+    }
+}
+
+impl Amplifier {
+    pub(super) fn read(table: Option<&View<'_>>) -> Result<Self, Problem> {
+        let sensitivity_c_n = quantity(table, "sensitivity", 10e-12)?;
+        Ok(Self {
+            sensitivity_c_n,
+            wall_sensitivity_c_n: quantity(table, "wall_sensitivity", sensitivity_c_n)?,
+            gain_v_c: quantity(table, "gain", 1e9)?,
+            low_pass_hz: quantity(table, "low_pass", 180e3)?,
+            order: match table.and_then(|table| table.text("order")) {
+                Some("first") => LowPass::First,
+                _ => LowPass::Second,
+            },
+            high_pass_hz: quantity(table, "high_pass", 0.5)?,
+            noise_v: quantity(table, "noise", 1.5e-3)?,
+        })
+    }
+}
+
+/// Most samples of a record: a quarter of a minute at 1 MHz.
+const MOST_SAMPLES: f64 = 1.6e7;
+
+impl Recorder {
+    pub(super) fn read(table: Option<&View<'_>>) -> Result<Self, Problem> {
+        let bits = table.map_or(Ok(None), |table| table.count("bits"))?;
+        let level = table.and_then(|table| table.text("trigger")) == Some("level");
+        let recorder = Self {
+            bits: bits.and_then(|bits| u32::try_from(bits).ok()).unwrap_or(16),
+            sampling_hz: quantity(table, "sampling", 1e6)?,
+            range_v: quantity(table, "range", 10.0)?,
+            offset_v: quantity(table, "offset", 0.0)?,
+            record_s: quantity(table, "record", 0.1)?,
+            before_s: quantity(table, "before", 2e-3)?,
+            trigger: match level {
+                true => Trigger::Level(quantity(table, "level", 0.02)?),
+                false => Trigger::Photogate,
+            },
+        };
+        match table {
+            Some(table) => recorder.checked(table),
+            None => Ok(recorder),
+        }
+    }
+
+    /// Samples of a record.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        // Rounded: 0.1 s at 1 MHz are 100,000 samples.
+        (self.record_s * self.sampling_hz).round() as usize
+    }
+
+    fn checked(self, table: &View<'_>) -> Result<Self, Problem> {
+        let samples = self.record_s * self.sampling_hz;
+        let problem = |key, message, label| Problem::new(&table.span_of(key), message, label);
+        if !(2.0..=MOST_SAMPLES).contains(&samples.round()) {
+            let message = format!("a record of {samples:.0} samples cannot be taken");
+            let label = "expected from 2 to 16 million samples";
+            return Err(problem("record", message, label));
+        }
+        if self.before_s >= self.record_s {
+            let message = "nothing of the record is after the trigger".to_owned();
+            return Err(problem("before", message, "expected less than `record`"));
+        }
+        Ok(self)
+    }
+}

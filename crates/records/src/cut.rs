@@ -1,0 +1,162 @@
+//! Streams of samples, cut into records.
+
+use crate::error::{RecordError, name};
+use crate::numbers::Number;
+use crate::record::{Channel, Record, Samples};
+use std::io::Read;
+use std::path::PathBuf;
+
+/// Most samples of a channel in one record: a GiB of `f64`.
+pub(crate) const MOST_SAMPLES: usize = 1 << 27;
+
+/// Samples of several channels that come one after the other.
+pub(crate) trait Stream {
+    /// The next `count` samples of every chosen channel.
+    fn take(&mut self, count: usize) -> Result<Vec<Samples>, RecordError>;
+}
+
+/// What all records of a stream share.
+#[derive(Clone, Debug)]
+pub(crate) struct Head {
+    pub file: PathBuf,
+    /// Group or array in the file.
+    pub part: Option<String>,
+    pub names: Vec<String>,
+    pub interval_s: f64,
+    /// Samples of a channel, in all.
+    pub total: usize,
+    /// Samples of a channel in a record.
+    pub each: usize,
+}
+
+impl Head {
+    /// Whether several records come of it.
+    fn several(&self) -> bool {
+        self.total > self.each
+    }
+
+    fn source(&self, shot: u64) -> String {
+        let part = self
+            .part
+            .as_ref()
+            .map_or(String::new(), |part| format!(", {part}"));
+        let shot = match self.several() {
+            true => format!(", shot {shot}"),
+            false => String::new(),
+        };
+        name(&self.file) + &part + &shot
+    }
+
+    /// A record of this stream.
+    pub fn record(&self, shot: u64, samples: Vec<Samples>) -> Record {
+        let channels = self.names.iter().zip(samples);
+        Record {
+            source: self.source(shot),
+            file: self.file.clone(),
+            shot: self.several().then_some(shot),
+            interval_s: self.interval_s,
+            channels: channels
+                .map(|(name, samples)| Channel {
+                    name: name.clone(),
+                    samples,
+                })
+                .collect(),
+            speed_m_s: None,
+            speed_error_m_s: None,
+            case: None,
+            pretrigger: None,
+        }
+    }
+}
+
+/// An iterator over a stream's records.
+pub(crate) struct Cut<S> {
+    head: Head,
+    stream: S,
+    done: usize,
+    shot: u64,
+}
+
+impl<S: Stream> Cut<S> {
+    pub fn new(head: Head, stream: S) -> Self {
+        Self {
+            head,
+            stream,
+            done: 0,
+            shot: 0,
+        }
+    }
+}
+
+impl<S: Stream> Iterator for Cut<S> {
+    type Item = Result<Record, RecordError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let left = self.head.total.saturating_sub(self.done);
+        let count = left.min(self.head.each);
+        if count == 0 {
+            return None;
+        }
+        self.done += count;
+        self.shot += 1;
+        if count > MOST_SAMPLES {
+            self.done = self.head.total;
+            return Some(Err(RecordError::TooLong {
+                source_name: self.head.source(self.shot),
+                most: MOST_SAMPLES,
+            }));
+        }
+        let taken = self.stream.take(count);
+        if taken.is_err() {
+            self.done = self.head.total;
+        }
+        Some(taken.map(|samples| self.head.record(self.shot, samples)))
+    }
+}
+
+/// Raw numbers of several channels, sample by sample or record by record.
+pub(crate) struct Raw<R> {
+    pub reader: R,
+    pub file: PathBuf,
+    pub number: Number,
+    /// Channels that are stored.
+    pub stored: usize,
+    /// Those of them that are wanted.
+    pub chosen: Vec<usize>,
+    /// Whether a record stores one channel after the other.
+    pub planar: bool,
+}
+
+impl<R: Read> Stream for Raw<R> {
+    fn take(&mut self, count: usize) -> Result<Vec<Samples>, RecordError> {
+        let wide = self.number.width();
+        let bytes = count
+            .checked_mul(self.stored)
+            .and_then(|n| n.checked_mul(wide));
+        let bytes = bytes.filter(|bytes| *bytes <= MOST_SAMPLES * 8);
+        let bytes = bytes.ok_or_else(|| RecordError::TooLong {
+            source_name: name(&self.file),
+            most: MOST_SAMPLES,
+        })?;
+        let mut raw = Vec::new();
+        // Grows with what there is, whatever a damaged header promises.
+        let mut limited = self.reader.by_ref().take(bytes as u64);
+        let read = limited.read_to_end(&mut raw);
+        let read = read.map_err(|cause| RecordError::reading(&self.file, cause))?;
+        if read < bytes {
+            return Err(RecordError::truncated(
+                name(&self.file),
+                format!("{read} of {bytes} bytes of a record"),
+            ));
+        }
+        let plane = count * wide;
+        let one = |channel: &usize| match self.planar {
+            true => {
+                let bytes = raw.get(channel * plane..(channel + 1) * plane);
+                self.number.samples(bytes.unwrap_or_default(), 0, 1)
+            }
+            false => self.number.samples(&raw, *channel, self.stored),
+        };
+        Ok(self.chosen.iter().map(one).collect())
+    }
+}

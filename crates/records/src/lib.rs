@@ -1,0 +1,30 @@
+//! Records on disk: what a rig's sensors gave, sampled and digitised.
+//!
+//! Writes series of a virtual campaign as HDF5 ([`SeriesWriter`]) and reads
+//! anybody's recordings, one record at a time ([`read`]): HDF5 of ours, CSV,
+//! NPY and NPZ, WAV and LabVIEW TDMS. Knows nothing of chains.
+//!
+//! The reader never opens the true values that a virtual campaign keeps beside
+//! its samples, so that no analysis peeks by accident.
+
+mod channels;
+mod check;
+mod csv;
+mod cut;
+mod error;
+mod format;
+mod numbers;
+mod numpy;
+mod options;
+mod read;
+mod record;
+mod series;
+mod tdms;
+mod wav;
+
+pub use error::RecordError;
+pub use format::Format;
+pub use options::{ReadOptions, Rows};
+pub use read::{Records, read};
+pub use record::{Channel, Record, Samples};
+pub use series::{SeriesInfo, SeriesWriter, ShotRow, truth};

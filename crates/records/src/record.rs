@@ -1,0 +1,136 @@
+//! One shot as a rig recorded it.
+
+use std::path::PathBuf;
+
+/// What one or two sensors gave during one shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Which file and which shot in it, as it is told to people.
+    pub source: String,
+    /// Which file.
+    pub file: PathBuf,
+    /// Number of the shot, if the file holds several or says.
+    pub shot: Option<u64>,
+    /// Time between samples in s.
+    pub interval_s: f64,
+    /// The channels, all of the same length: one that sums both sensors, or two.
+    pub channels: Vec<Channel>,
+    /// Speed of the striker in m/s, if the file says.
+    pub speed_m_s: Option<f64>,
+    /// Standard error of that speed in m/s, if the file says.
+    pub speed_error_m_s: Option<f64>,
+    /// Which section of the chain was wet and with what, if the file says.
+    pub case: Option<String>,
+    /// Samples before the trigger, if the file says.
+    pub pretrigger: Option<usize>,
+}
+
+impl Record {
+    /// Number of samples of a channel.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.channels
+            .first()
+            .map_or(0, |channel| channel.samples.len())
+    }
+
+    /// Whether there are no samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// What one input of the digitiser gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name in the file, or its number from 1.
+    pub name: String,
+    /// Its samples.
+    pub samples: Samples,
+}
+
+/// Samples, kept as small as they came.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// Numbers in the file's unit, mostly V.
+    Volts(Vec<f64>),
+    /// Readings of a 16-bit converter: V = count · `volts_per_count` + `offset_v`.
+    Counts {
+        /// The readings.
+        counts: Vec<i16>,
+        /// Size of a step in V.
+        volts_per_count: f64,
+        /// Voltage of reading 0 in V.
+        offset_v: f64,
+    },
+}
+
+impl Samples {
+    /// How many.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Volts(volts) => volts.len(),
+            Self::Counts { counts, .. } => counts.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// All of them in V.
+    #[must_use]
+    pub fn volts(&self) -> Vec<f64> {
+        match self {
+            Self::Volts(volts) => volts.clone(),
+            Self::Counts {
+                counts,
+                volts_per_count,
+                offset_v,
+            } => counts
+                .iter()
+                .map(|count| f64::from(*count) * volts_per_count + offset_v)
+                .collect(),
+        }
+    }
+
+    /// Lowest and highest voltage that the converter can tell, if its range is
+    /// known: samples there are clipped.
+    #[must_use]
+    pub fn range_v(&self) -> Option<(f64, f64)> {
+        let Self::Counts {
+            volts_per_count,
+            offset_v,
+            ..
+        } = self
+        else {
+            return None;
+        };
+        let at = |count: i16| f64::from(count) * volts_per_count + offset_v;
+        let (a, b) = (at(i16::MIN), at(i16::MAX));
+        Some((a.min(b), a.max(b)))
+    }
+
+    /// The part from `start`, at most `count` long.
+    pub(crate) fn part(&self, start: usize, count: usize) -> Self {
+        fn cut<T: Copy>(of: &[T], start: usize, count: usize) -> Vec<T> {
+            of.iter().skip(start).take(count).copied().collect()
+        }
+        match self {
+            Self::Volts(volts) => Self::Volts(cut(volts, start, count)),
+            Self::Counts {
+                counts,
+                volts_per_count,
+                offset_v,
+            } => Self::Counts {
+                counts: cut(counts, start, count),
+                volts_per_count: *volts_per_count,
+                offset_v: *offset_v,
+            },
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Names in a series' file, for writer and reader alike.
+
+/// Attribute that tells our files, and its value.
+pub(super) const FORMAT: (&str, &str) = ("format", "hertzchain series");
+/// Version of this layout.
+pub(super) const VERSION: (&str, i64) = ("format_version", 1);
+
+/// Readings of the converter, shots × samples.
+pub(super) const SAMPLES: &str = "samples";
+/// Numbers of the shots; the scale of the first axis.
+pub(super) const SHOT: &str = "shot";
+/// The second axis, which has no numbers of its own.
+pub(super) const SAMPLE: &str = "sample";
+/// Speeds that the striker was told, in m/s.
+pub(super) const PROGRAMMED: &str = "programmed_speed";
+/// Speeds that the photogate measured, in m/s.
+pub(super) const MEASURED: &str = "measured_speed";
+/// Group of what only a simulation knows. The reader never opens it.
+pub(super) const TRUTH: &str = "truth";
+
+/// Attributes of the samples: the library reads numbers of datasets only.
+pub(super) const INTERVAL: &str = "sampling_interval_s";
+pub(super) const VOLTS_PER_COUNT: &str = "volts_per_count";
+pub(super) const OFFSET: &str = "offset_v";
+pub(super) const PRETRIGGER: &str = "pretrigger_samples";
+
+/// Attributes of the file.
+pub(super) const SERIES: &str = "series";
+pub(super) const CASE: &str = "case";
+pub(super) const SEED: &str = "seed";
+pub(super) const EXPERIMENT: &str = "experiment";
+/// Standard error of the measured speed in m/s; written if the rig tells one.
+pub(super) const SPEED_ERROR: &str = "measured_speed_error_m_s";

@@ -1,0 +1,10 @@
+//! Our own files: one HDF5 file a series.
+
+mod layout;
+mod read;
+mod truth;
+mod write;
+
+pub(crate) use read::open;
+pub use truth::truth;
+pub use write::{SeriesInfo, SeriesWriter, ShotRow};

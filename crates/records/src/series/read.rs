@@ -1,0 +1,131 @@
+//! Reading series, shot by shot. True values are not looked at.
+
+use super::layout;
+use crate::channels::{chosen, interval_s};
+use crate::error::{RecordError, name};
+use crate::options::ReadOptions;
+use crate::read::Raw;
+use crate::record::{Channel, Record, Samples};
+use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
+use std::path::{Path, PathBuf};
+
+/// Opens a series of ours.
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", told(&error));
+    let open = H5File::open(file).map_err(foreign)?;
+    let kind = attribute_text(&open, layout::FORMAT.0);
+    if kind.as_deref() != Some(layout::FORMAT.1) {
+        let detail = "it is HDF5, but no series of a virtual campaign; export its samples as NPY";
+        return Err(RecordError::malformed(file, "a series", detail));
+    }
+    chosen(file, &[layout::SAMPLES.to_owned()], options)?;
+    let samples = open.dataset(layout::SAMPLES).map_err(foreign)?;
+    let number = |name: &str| attribute_number(&samples, name).map_err(foreign);
+    let shape = samples.shape();
+    let &[shots, length] = shape.as_slice() else {
+        let detail = format!("samples have the axes {shape:?}, not shots and samples");
+        return Err(RecordError::malformed(file, "a series", detail));
+    };
+    if shots == 0 || length == 0 {
+        return Err(RecordError::Empty {
+            source_name: name(file),
+        });
+    }
+    let shelf = Shelf {
+        file: file.to_owned(),
+        interval_s: interval_s(file, Some(number(layout::INTERVAL)?), options)?,
+        volts_per_count: number(layout::VOLTS_PER_COUNT)?,
+        offset_v: number(layout::OFFSET)?,
+        pretrigger: number(layout::PRETRIGGER)? as usize,
+        case: attribute_text(&open, layout::CASE),
+        speed_error_m_s: attribute_text(&open, layout::SPEED_ERROR)
+            .and_then(|text| text.trim().parse().ok()),
+        numbers: column(&open, layout::SHOT, shots).map_err(foreign)?,
+        speeds: column(&open, layout::MEASURED, shots).map_err(foreign)?,
+        samples,
+        length,
+    };
+    Ok(Box::new((0..shots).map(move |row| shelf.record(row))))
+}
+
+/// An open series.
+struct Shelf {
+    file: PathBuf,
+    interval_s: f64,
+    volts_per_count: f64,
+    offset_v: f64,
+    pretrigger: usize,
+    case: Option<String>,
+    speed_error_m_s: Option<f64>,
+    numbers: Vec<i64>,
+    speeds: Vec<f64>,
+    samples: H5Dataset,
+    length: usize,
+}
+
+impl Shelf {
+    fn record(&self, row: usize) -> Result<Record, RecordError> {
+        let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
+        let told_shot = shot.map_or(row.to_string(), |shot| shot.to_string());
+        let source = format!("{}, shot {told_shot}", name(&self.file));
+        let counts = self
+            .samples
+            .read_slice::<i16>(&[row, 0], &[1, self.length])
+            .map_err(|error| RecordError::truncated(source.clone(), told(&error)))?;
+        let speed = self.speeds.get(row).copied();
+        Ok(Record {
+            source,
+            file: self.file.clone(),
+            shot,
+            interval_s: self.interval_s,
+            channels: vec![Channel {
+                name: layout::SAMPLES.to_owned(),
+                samples: Samples::Counts {
+                    counts,
+                    volts_per_count: self.volts_per_count,
+                    offset_v: self.offset_v,
+                },
+            }],
+            speed_m_s: speed.filter(|speed| speed.is_finite()),
+            speed_error_m_s: self.speed_error_m_s,
+            case: self.case.clone(),
+            pretrigger: Some(self.pretrigger),
+        })
+    }
+}
+
+fn column<T: rust_hdf5::H5Type>(
+    open: &H5File,
+    name: &str,
+    count: usize,
+) -> Result<Vec<T>, Hdf5Error> {
+    let column = open.dataset(name)?.read_raw::<T>()?;
+    match column.len() == count {
+        true => Ok(column),
+        false => Err(Hdf5Error::InvalidState(format!(
+            "{name} has {} rows where samples have {count}",
+            column.len()
+        ))),
+    }
+}
+
+fn attribute_text(open: &H5File, name: &str) -> Option<String> {
+    open.attr_string(name).ok()
+}
+
+fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
+    let missing = || Hdf5Error::NotFound(name.to_owned());
+    let attribute = of.attr(name)?;
+    let floats = attribute.read_numeric_as::<f64>();
+    let whole = || attribute.read_numeric_as::<u64>();
+    let value = match floats {
+        Ok(floats) => floats.first().copied(),
+        Err(_) => whole()?.first().map(|whole| *whole as f64),
+    };
+    value.ok_or_else(missing)
+}
+
+/// What the library says, after the likeliest reason.
+fn told(error: &Hdf5Error) -> String {
+    format!("cut short or damaged ({error})")
+}

@@ -1,0 +1,27 @@
+//! What only a simulation knows of its shots: for tests of analyses, never for
+//! an analysis.
+
+use super::layout;
+use crate::error::RecordError;
+use rust_hdf5::{H5File, Hdf5Error};
+use std::path::Path;
+
+/// The columns of true values of a series, by name.
+///
+/// Records that [`read`](crate::read) gives do not have them.
+///
+/// # Errors
+/// Files that are not series of ours.
+pub fn truth(file: &Path) -> Result<Vec<(String, Vec<f64>)>, RecordError> {
+    columns(file).map_err(|error| RecordError::malformed(file, "a series", error))
+}
+
+fn columns(file: &Path) -> Result<Vec<(String, Vec<f64>)>, Hdf5Error> {
+    let open = H5File::open(file)?;
+    let names = open.root_group().group(layout::TRUTH)?.dataset_names()?;
+    let column = |name: String| {
+        let path = format!("{}/{name}", layout::TRUTH);
+        Ok((name, open.dataset(&path)?.read_raw::<f64>()?))
+    };
+    names.into_iter().map(column).collect()
+}

@@ -1,0 +1,393 @@
+//! Writing a series: beside its place, shot by shot, renamed when complete.
+
+use super::layout;
+use crate::error::{RecordError, name};
+use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Effort of the compression. Noise takes half of 16 bits whatever the effort,
+/// and time triples from here to the highest.
+const DEFLATE: u32 = 3;
+
+/// What Unix systems call a full disk; the library keeps its text alone.
+const NO_SPACE: i32 = 28;
+
+/// Most samples in a chunk: chunks are read whole.
+const MOST_IN_CHUNK: usize = 1 << 19;
+
+/// What all shots of a series share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeriesInfo {
+    /// Time between samples in s.
+    pub interval_s: f64,
+    /// Size of the converter's step in V.
+    pub volts_per_count: f64,
+    /// Voltage of reading 0 in V.
+    pub offset_v: f64,
+    /// Samples before the trigger.
+    pub pretrigger: usize,
+    /// Samples of every shot.
+    pub samples_per_shot: usize,
+    /// Number of the series in its campaign.
+    pub series: u64,
+    /// Which section of the chain is wet and with what.
+    pub case: String,
+    /// The campaign's seed.
+    pub seed: u64,
+    /// The whole experiment file.
+    pub experiment: String,
+    /// Further attributes: name, text. `measured_speed_error_m_s` is read back as
+    /// the standard error of measured speeds.
+    pub more: Vec<(String, String)>,
+}
+
+/// One shot of a series.
+#[derive(Clone, Copy, Debug)]
+pub struct ShotRow<'a> {
+    /// Its number.
+    pub shot: u64,
+    /// Speed that the striker was told, in m/s.
+    pub programmed_speed_m_s: f64,
+    /// Speed that the photogate measured, in m/s.
+    pub measured_speed_m_s: f64,
+    /// Readings of the converter.
+    pub samples: &'a [i16],
+    /// What only a simulation knows; the same names, whose endings are the units,
+    /// for every shot of a series.
+    pub truth: &'a [(&'static str, f64)],
+}
+
+/// Writes the shots of one series into one HDF5 file.
+///
+/// The file grows beside its place, with the ending `.part`, and gets its name
+/// when it is finished: what has its name is whole, whenever the program is
+/// stopped. A writer that is dropped unfinished removes its part.
+pub struct SeriesWriter {
+    path: PathBuf,
+    part: PathBuf,
+    /// `None` once finished.
+    open: Option<Open>,
+    samples_per_shot: usize,
+    table: Table,
+}
+
+/// The growing file.
+struct Open {
+    file: H5File,
+    samples: H5Dataset,
+}
+
+/// What is small and written last, a column each.
+#[derive(Default)]
+struct Table {
+    shots: Vec<i64>,
+    programmed: Vec<f64>,
+    measured: Vec<f64>,
+    truth: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl std::fmt::Debug for SeriesWriter {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("SeriesWriter")
+            .field("path", &self.path)
+            .field("shots", &self.table.shots.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl SeriesWriter {
+    /// Starts the file of a series; a part that was left there is started anew.
+    ///
+    /// # Errors
+    /// [`RecordError::Unwritable`]; [`RecordError::Empty`] without samples.
+    pub fn create(path: &Path, info: &SeriesInfo) -> Result<Self, RecordError> {
+        if info.samples_per_shot == 0 {
+            return Err(RecordError::Empty {
+                source_name: name(path),
+            });
+        }
+        let part = beside(path);
+        let started = start(&part, info).map_err(|error| unwritable(path, &error));
+        let open = started.inspect_err(|_| remove(&part))?;
+        Ok(Self {
+            path: path.to_owned(),
+            part,
+            open: Some(open),
+            samples_per_shot: info.samples_per_shot,
+            table: Table::default(),
+        })
+    }
+
+    /// Writes one shot.
+    ///
+    /// # Errors
+    /// [`RecordError::Misfit`] if it has not the series' samples or true values;
+    /// [`RecordError::Unwritable`], after which the series cannot be finished.
+    pub fn push(&mut self, row: &ShotRow<'_>) -> Result<(), RecordError> {
+        self.fits(row)?;
+        let at = self.table.shots.len();
+        let open = self.open.as_ref().ok_or_else(|| self.lost())?;
+        let written = append(&open.samples, at, row.samples);
+        written.map_err(|error| unwritable(&self.path, &error))?;
+        self.table.push(row);
+        Ok(())
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`RecordError::Empty`] without shots, [`RecordError::Unwritable`].
+    pub fn finish(mut self) -> Result<PathBuf, RecordError> {
+        if self.table.shots.is_empty() {
+            return Err(RecordError::Empty {
+                source_name: name(&self.path),
+            });
+        }
+        let open = self.open.take().ok_or_else(|| self.lost())?;
+        let written = self.table.write(&open).and_then(|()| {
+            let Open { file, samples } = open;
+            drop(samples);
+            file.close()
+        });
+        let failed = |error: &dyn std::error::Error| RecordError::Unwritable {
+            file: name(&self.path),
+            detail: error.to_string(),
+        };
+        if let Err(error) = written {
+            remove(&self.part);
+            return Err(unwritable(&self.path, &error));
+        }
+        fs::rename(&self.part, &self.path).map_err(|error| failed(&error))?;
+        Ok(self.path.clone())
+    }
+
+    fn fits(&self, row: &ShotRow<'_>) -> Result<(), RecordError> {
+        let misfit = |detail: String| RecordError::Misfit {
+            file: name(&self.path),
+            shot: row.shot,
+            detail,
+        };
+        if row.samples.len() != self.samples_per_shot {
+            return Err(misfit(format!(
+                "{} samples in place of {}",
+                row.samples.len(),
+                self.samples_per_shot
+            )));
+        }
+        if i64::try_from(row.shot).is_err() {
+            return Err(misfit("its number is beyond all bounds".to_owned()));
+        }
+        let known = self.table.truth.iter().map(|column| column.0);
+        if !self.table.shots.is_empty() && !known.eq(row.truth.iter().map(|value| value.0)) {
+            return Err(misfit("other true values than before".to_owned()));
+        }
+        Ok(())
+    }
+
+    fn lost(&self) -> RecordError {
+        RecordError::Unwritable {
+            file: name(&self.path),
+            detail: "it is closed".to_owned(),
+        }
+    }
+}
+
+impl Drop for SeriesWriter {
+    fn drop(&mut self) {
+        if let Some(open) = self.open.take() {
+            drop(open);
+            remove(&self.part);
+        }
+    }
+}
+
+impl Table {
+    fn push(&mut self, row: &ShotRow<'_>) {
+        if self.shots.is_empty() {
+            self.truth = row
+                .truth
+                .iter()
+                .map(|value| (value.0, Vec::new()))
+                .collect();
+        }
+        self.shots.push(i64::try_from(row.shot).unwrap_or(i64::MAX));
+        self.programmed.push(row.programmed_speed_m_s);
+        self.measured.push(row.measured_speed_m_s);
+        for (column, value) in self.truth.iter_mut().zip(row.truth) {
+            column.1.push(value.1);
+        }
+    }
+
+    fn write(&self, open: &Open) -> Result<(), Hdf5Error> {
+        let Open { file, samples } = open;
+        let count = self.shots.len();
+        let shots = file
+            .new_dataset::<i64>()
+            .shape([count])
+            .create(layout::SHOT)?;
+        shots.write_raw(&self.shots)?;
+        describe(&shots, "number of the shot", "1")?;
+        shots.set_scale(Some(layout::SHOT))?;
+        samples.attach_scale(0, &shots)?;
+        let axis = sample_axis(file, samples)?;
+        samples.attach_scale(1, &axis)?;
+        let root = file.root_group();
+        for (name, what, values) in [
+            (
+                layout::PROGRAMMED,
+                "speed told to the striker",
+                &self.programmed,
+            ),
+            (layout::MEASURED, "speed by the photogate", &self.measured),
+        ] {
+            column(&root, name, what, "m s-1", values)?.attach_scale(0, &shots)?;
+        }
+        let truth = file.create_group(layout::TRUTH)?;
+        truth.set_attr_string("comment", "known to the simulation, not to the rig")?;
+        for (name, values) in &self.truth {
+            column(&truth, name, "true value", unit(name), values)?.attach_scale(0, &shots)?;
+        }
+        Ok(())
+    }
+}
+
+/// The second axis as netCDF has dimensions without values.
+fn sample_axis(file: &H5File, samples: &H5Dataset) -> Result<H5Dataset, Hdf5Error> {
+    let count = samples.shape().get(1).copied().unwrap_or(1);
+    let axis = file
+        .new_dataset::<f32>()
+        .shape([count])
+        .chunk(&[count])
+        .shuffle_deflate(DEFLATE)
+        .create(layout::SAMPLE)?;
+    let nothing = "This is a netCDF dimension but not a netCDF variable.";
+    axis.set_scale(Some(&format!("{nothing}{count:10}")))?;
+    Ok(axis)
+}
+
+/// A column of numbers with its unit.
+fn column(
+    group: &rust_hdf5::H5Group,
+    name: &str,
+    what: &str,
+    unit: &str,
+    values: &[f64],
+) -> Result<H5Dataset, Hdf5Error> {
+    let column = group
+        .new_dataset::<f64>()
+        .shape([values.len()])
+        .create(name)?;
+    column.write_raw(values)?;
+    describe(&column, what, unit)?;
+    Ok(column)
+}
+
+fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
+    for (name, text) in [("long_name", what), ("units", unit)] {
+        of.new_attr::<rust_hdf5::VarLenUnicode>()
+            .shape(())
+            .create(name)?
+            .write_string(text)?;
+    }
+    Ok(())
+}
+
+/// The unit that a name ends in, as CF conventions write it.
+fn unit(name: &str) -> &'static str {
+    const ENDINGS: &[(&str, &str)] = &[
+        ("_m_s", "m s-1"),
+        ("_s", "s"),
+        ("_m", "m"),
+        ("_n", "N"),
+        ("_v", "V"),
+        ("_j", "J"),
+    ];
+    let lower = name.to_ascii_lowercase();
+    let found = ENDINGS.iter().find(|ending| lower.ends_with(ending.0));
+    found.map_or("1", |ending| ending.1)
+}
+
+fn beside(path: &Path) -> PathBuf {
+    let mut part = path.as_os_str().to_owned();
+    part.push(".part");
+    PathBuf::from(part)
+}
+
+/// Best effort: what is left is started anew the next time.
+fn remove(part: &Path) {
+    let _ = fs::remove_file(part);
+}
+
+fn start(part: &Path, info: &SeriesInfo) -> Result<Open, Hdf5Error> {
+    let file = H5File::create(part)?;
+    attributes(&file, info)?;
+    let samples = file
+        .new_dataset::<i16>()
+        .shape([0, info.samples_per_shot])
+        .chunk(&[1, info.samples_per_shot.min(MOST_IN_CHUNK)])
+        .max_shape(&[None, Some(info.samples_per_shot)])
+        .shuffle_deflate(DEFLATE)
+        .create(layout::SAMPLES)?;
+    describe(&samples, "voltage of the summed sensors", "V")?;
+    sampling(&samples, info)?;
+    Ok(Open { file, samples })
+}
+
+/// How samples were taken, with the sampling interval; what xarray and every
+/// reader of CF conventions turn counts into V with.
+fn sampling(samples: &H5Dataset, info: &SeriesInfo) -> Result<(), Hdf5Error> {
+    for (name, value) in [
+        (layout::INTERVAL, info.interval_s),
+        (layout::VOLTS_PER_COUNT, info.volts_per_count),
+        (layout::OFFSET, info.offset_v),
+        ("scale_factor", info.volts_per_count),
+        ("add_offset", info.offset_v),
+    ] {
+        let attribute = samples.new_attr::<f64>().shape(()).create(name)?;
+        attribute.write_numeric(&value)?;
+    }
+    let pretrigger = samples.new_attr::<u64>().shape(());
+    pretrigger
+        .create(layout::PRETRIGGER)?
+        .write_numeric(&(info.pretrigger as u64))
+}
+
+fn attributes(file: &H5File, info: &SeriesInfo) -> Result<(), Hdf5Error> {
+    file.set_attr_string(layout::FORMAT.0, layout::FORMAT.1)?;
+    file.set_attr_numeric(layout::VERSION.0, &layout::VERSION.1)?;
+    file.set_attr_numeric(layout::SERIES, &info.series)?;
+    file.set_attr_numeric(layout::SEED, &info.seed)?;
+    file.set_attr_string(layout::CASE, &info.case)?;
+    file.set_attr_string(layout::EXPERIMENT, &info.experiment)?;
+    for (name, text) in &info.more {
+        file.set_attr_string(name, text)?;
+    }
+    Ok(())
+}
+
+/// One row more, in chunks of which the last is filled up with zeros.
+fn append(samples: &H5Dataset, at: usize, row: &[i16]) -> Result<(), Hdf5Error> {
+    let chunk = row.len().min(MOST_IN_CHUNK);
+    let chunks = row.len().div_ceil(chunk);
+    for (number, part) in row.chunks(chunk).enumerate() {
+        let mut bytes: Vec<u8> = part.iter().flat_map(|count| count.to_le_bytes()).collect();
+        bytes.resize(2 * chunk, 0);
+        samples.write_chunk(at * chunks + number, &bytes)?;
+    }
+    samples.extend(&[at + 1, row.len()])
+}
+
+fn unwritable(path: &Path, error: &Hdf5Error) -> RecordError {
+    let text = error.to_string();
+    let full = std::io::Error::from_raw_os_error(NO_SPACE).to_string();
+    let advice = match text.contains(&full) {
+        true => "; make room and run again",
+        false => "",
+    };
+    RecordError::Unwritable {
+        file: name(path),
+        detail: text + advice,
+    }
+}

@@ -1,0 +1,78 @@
+//! A whole campaign: every series a file, several at once.
+
+use crate::error::RigError;
+use crate::keep::{Folder, fingerprint};
+use crate::plan::{Plan, Series};
+use crate::recording;
+use crate::shard::Shard;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How far a campaign is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Shots fired in this run.
+    pub fired: u64,
+    /// Shots to be fired in this run.
+    pub shots: u64,
+}
+
+/// What a run has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// Series that were finished before.
+    pub kept: usize,
+    /// Series run now.
+    pub run: usize,
+    /// Shots fired now.
+    pub shots: u64,
+    /// Bytes of all files of this part.
+    pub bytes: u64,
+}
+
+/// Runs the series of a part that a folder does not have yet, and calls
+/// `watch` after every shot.
+///
+/// Files depend on neither the number of threads nor the order of series; a
+/// run that is broken off and begun again ends with the same bytes.
+///
+/// # Errors
+/// A folder that can't be used, a shot that can't be computed, a recording
+/// that can't be written: finished files stay as they are.
+pub fn campaign(
+    plan: &Plan,
+    out: &Path,
+    shard: Shard,
+    watch: &(dyn Fn(Progress) + Sync),
+) -> Result<Done, RigError> {
+    let folder = Folder::open(out, plan)?;
+    let dealt = plan.series.iter().enumerate();
+    let part: Vec<&Series> = dealt
+        .filter(|(at, _)| shard.holds(*at))
+        .map(|(_, series)| series)
+        .collect();
+    let due: Vec<&Series> = part
+        .iter()
+        .copied()
+        .filter(|series| !folder.has(series))
+        .collect();
+    let fired = AtomicU64::new(0);
+    let shots = plan.shots(due.len());
+    let inputs = format!("{:016x}", fingerprint(plan));
+    watch(Progress { fired: 0, shots });
+    due.par_iter().with_max_len(1).try_for_each(|series| {
+        let seen = || {
+            let fired = fired.fetch_add(1, Ordering::Relaxed) + 1;
+            watch(Progress { fired, shots });
+        };
+        recording::write(plan, series, &folder.file(series), &inputs, &seen)
+    })?;
+    let size = |series: &&Series| folder.file(series).metadata().map_or(0, |data| data.len());
+    Ok(Done {
+        kept: part.len() - due.len(),
+        run: due.len(),
+        shots,
+        bytes: part.iter().map(size).sum(),
+    })
+}

@@ -1,0 +1,121 @@
+//! From forces to a record: amplifier, trigger, noise, converter.
+
+use crate::amplifier::Amplifier;
+use crate::chance::Chance;
+use crate::converter::Converter;
+use crate::tape::Tape;
+use hertzchain_experiment::{Amplifier as AmplifierNumbers, Recorder, Trigger};
+
+/// Forces are taped this many times as densely as they are sampled, so that
+/// straight lines between them are as good as the pulse.
+const DENSER: usize = 4;
+
+/// A level that is not passed within this time in s after the striker's touch
+/// triggers nothing: the record then starts as if it had been then.
+const TRIGGER_WITHIN_S: f64 = 0.02;
+
+/// When the samples of a shot are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    start_s: f64,
+    interval_s: f64,
+    samples: usize,
+    before: usize,
+    /// Further samples in which a level may be passed.
+    spare: usize,
+}
+
+/// What the recorder has stored of a shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Readings of the converter.
+    pub samples: Vec<i16>,
+    /// Time in s from the first sample to the striker's touch.
+    pub touch_s: f64,
+}
+
+impl Window {
+    /// Of a shot whose striker passed the gate at this time in s, 0 being the
+    /// touch. The sampling clock knows nothing of the shot.
+    #[must_use]
+    pub fn new(recorder: &Recorder, gate_s: f64, chance: &mut Chance) -> Self {
+        let interval_s = recorder.sampling_hz.recip();
+        let samples = recorder.samples();
+        let before = (recorder.before_s * recorder.sampling_hz).round() as usize;
+        let phase = chance.uniform();
+        let (trigger_s, spare) = match recorder.trigger {
+            Trigger::Photogate => (gate_s, 0),
+            Trigger::Level(_) => (0.0, (TRIGGER_WITHIN_S * recorder.sampling_hz) as usize),
+        };
+        Self {
+            start_s: trigger_s - (before as f64 + phase) * interval_s,
+            interval_s,
+            samples,
+            before: before.min(samples),
+            spare,
+        }
+    }
+
+    /// A tape for all of it.
+    #[must_use]
+    pub fn tape(&self) -> Tape {
+        let length = (self.samples + self.spare).max(1) * DENSER;
+        Tape::new(self.start_s, self.interval_s / DENSER as f64, length)
+    }
+
+    /// The record of a tape.
+    #[must_use]
+    pub fn record(
+        &self,
+        tape: Tape,
+        amplifier: &AmplifierNumbers,
+        recorder: &Recorder,
+        noise: &mut Chance,
+    ) -> Record {
+        let mut volts = self.amplified(tape, amplifier);
+        if amplifier.noise_v > 0.0 {
+            volts
+                .iter_mut()
+                .for_each(|v| *v += amplifier.noise_v * noise.normal());
+        }
+        let first = match recorder.trigger {
+            Trigger::Photogate => 0,
+            Trigger::Level(level_v) => self.passed(&volts, level_v - recorder.offset_v),
+        };
+        let converter = Converter::new(recorder);
+        let stored = volts.iter().skip(first).take(self.samples);
+        Record {
+            samples: stored.map(|v| converter.reading(*v)).collect(),
+            touch_s: -(self.start_s + first as f64 * self.interval_s),
+        }
+    }
+
+    /// The amplifier's voltage at every sample.
+    fn amplified(&self, tape: Tape, amplifier: &AmplifierNumbers) -> Vec<f64> {
+        let mut amplifier = Amplifier::new(amplifier, self.interval_s / DENSER as f64);
+        let forces_n = tape.into_forces_n();
+        let mut volts = Vec::with_capacity(forces_n.len() / DENSER);
+        for denser in forces_n.chunks_exact(DENSER) {
+            for (at, [sensor_n, wall_n]) in denser.iter().enumerate() {
+                let now = amplifier.next(*sensor_n, *wall_n);
+                if at == 0 {
+                    volts.push(now);
+                }
+            }
+        }
+        volts
+    }
+
+    /// The first sample of a record that a level triggers.
+    fn passed(&self, volts: &[f64], level_v: f64) -> usize {
+        let after = volts.iter().skip(self.before).take(self.spare);
+        let mut below = false;
+        for (first, v) in after.enumerate() {
+            if below && *v >= level_v {
+                return first;
+            }
+            below = *v < level_v;
+        }
+        0
+    }
+}

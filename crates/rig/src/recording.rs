@@ -1,0 +1,95 @@
+//! A series as a file.
+
+use crate::converter::Converter;
+use crate::error::RigError;
+use crate::plan::{Plan, Series};
+use crate::series::{Fired, run};
+use hertzchain_experiment::Recorder;
+use hertzchain_records::{SeriesInfo, SeriesWriter, ShotRow};
+use std::path::Path;
+
+/// True values of a shot, by name; the endings are the units.
+pub type Truth = Vec<(&'static str, f64)>;
+
+/// Runs a series into a file, which has its name once it is whole.
+///
+/// # Errors
+/// A shot that can't be computed, a file that can't be written.
+pub(crate) fn write(
+    plan: &Plan,
+    series: &Series,
+    path: &Path,
+    inputs: &str,
+    seen: &dyn Fn(),
+) -> Result<(), RigError> {
+    let mut writer = SeriesWriter::create(path, &info(plan, series, inputs))?;
+    run(plan, series, &mut |fired| {
+        writer.push(&ShotRow {
+            shot: u64::from(fired.number),
+            programmed_speed_m_s: fired.programmed_m_s,
+            measured_speed_m_s: fired.measured_m_s,
+            samples: &fired.record.samples,
+            truth: &truth(&fired),
+        })?;
+        seen();
+        Ok(())
+    })?;
+    writer.finish()?;
+    Ok(())
+}
+
+fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
+    let campaign = plan.experiment.campaign();
+    let recorder: &Recorder = &campaign.recorder;
+    let text = |name: &str, value: f64| (name.to_owned(), value.to_string());
+    SeriesInfo {
+        interval_s: recorder.sampling_hz.recip(),
+        volts_per_count: Converter::new(recorder).volts_per_count(),
+        offset_v: 0.0,
+        pretrigger: (recorder.before_s * recorder.sampling_hz).round() as usize,
+        samples_per_shot: recorder.samples(),
+        series: u64::from(series.number),
+        case: plan.case(series).name.clone(),
+        seed: plan.seed,
+        experiment: plan.experiment.text().to_owned(),
+        more: vec![
+            ("title".to_owned(), plan.experiment.title().to_owned()),
+            ("inputs".to_owned(), inputs.to_owned()),
+            text("measured_speed_error_m_s", campaign.photogate.error_m_s),
+            text("beads", plan.experiment.beads() as f64),
+            text("sensor_bead", plan.experiment.sensor_bead() as f64),
+            text("taps", campaign.taps as f64),
+            text("tap_speed_m_s", campaign.tap_speed_m_s),
+            text("high_pass_hz", campaign.amplifier.high_pass_hz),
+        ],
+    }
+}
+
+/// What only a simulation knows of a shot.
+#[must_use]
+pub fn truth(fired: &Fired) -> Truth {
+    let shot = &fired.shot;
+    let open = |gaps_m: &[f64]| gaps_m.iter().filter(|gap| **gap > 0.0).count() as f64;
+    let largest = |gaps_m: &[f64]| gaps_m.iter().copied().fold(0.0, f64::max);
+    let (before_m, after_m) = (&shot.gaps_before_m[..], &shot.gaps_after_m[..]);
+    vec![
+        ("speed_m_s", fired.speed_m_s),
+        ("touch_s", fired.record.touch_s),
+        ("incident_peak_s", shot.peaks_s[0]),
+        ("wall_peak_s", shot.peaks_s[1]),
+        ("reflected_peak_s", shot.peaks_s[2]),
+        ("incident_tof_s", shot.incident_s),
+        ("reflected_tof_s", shot.reflected_s),
+        ("incident_peak_n", shot.peaks_n[0]),
+        ("wall_peak_n", shot.peaks_n[1]),
+        ("reflected_peak_n", shot.peaks_n[2]),
+        ("rebound_m_s", shot.rebound_m_s),
+        ("rest_s", shot.rest_s),
+        ("open_before", open(before_m)),
+        ("gaps_before_m", before_m.iter().sum()),
+        ("largest_gap_before_m", largest(before_m)),
+        ("open_after", open(after_m)),
+        ("gaps_after_m", after_m.iter().sum()),
+        ("largest_gap_after_m", largest(after_m)),
+    ]
+}

@@ -1,0 +1,122 @@
+//! One shot: the wave, and what follows until rest.
+
+use crate::bench::Bench;
+use crate::error::ShotError;
+use crate::tape::{Tape, Taping};
+use hertzchain_chain::observe::Passages;
+use hertzchain_chain::settle::{Rest, State};
+use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
+use hertzchain_chain::{Sensor, System};
+
+/// Largest error per step of the wave: times of flight right to some 1e-7,
+/// a tenth of a nanosecond.
+const TOLERANCE: f64 = 1e-8;
+
+/// The wave loop hands over to the slow scheme when the reflected pulse has
+/// passed the sensor, or after this time in s.
+const LONGEST_WAVE_S: f64 = 0.02;
+
+/// What happened in the chain.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Incident time of flight in s, by peaks; NaN if no pulse was seen.
+    pub incident_s: f64,
+    /// Reflected time of flight in s; NaN likewise.
+    pub reflected_s: f64,
+    /// Times in s after the first touch of the incident, the wall's and the
+    /// reflected peak.
+    pub peaks_s: [f64; 3],
+    /// Their heights in N.
+    pub peaks_n: [f64; 3],
+    /// Velocity in m/s with which the striker went for good; negative is away
+    /// from the chain, NaN if it stayed at it.
+    pub rebound_m_s: f64,
+    /// Gaps in m of contacts 1..=N before the shot.
+    pub gaps_before_m: Vec<f64>,
+    /// And after it.
+    pub gaps_after_m: Vec<f64>,
+    /// When the chain was at rest again, in s after the first touch.
+    pub rest_s: f64,
+}
+
+/// Shoots with a speed in m/s and tapes the forces of both sensors.
+///
+/// # Errors
+/// A shot that can't be computed.
+pub fn shoot(
+    bench: &mut Bench<'_>,
+    sensor_bead: usize,
+    speed_m_s: f64,
+    tape: &mut Tape,
+) -> Result<Shot, ShotError> {
+    let gaps_before_m = bench.gaps_m();
+    let (system, shot) = bench.aim(speed_m_s)?;
+    let wall = shot.beads();
+    let mut passages = Passages::new(sensor_bead, wall, true);
+    let outcome = {
+        let sensors = [Sensor::Bead(sensor_bead), Sensor::Contact(wall)];
+        let mut taping = Taping { tape, sensors };
+        let method = DormandPrince {
+            tolerance: TOLERANCE,
+        };
+        let limits = Limits::until(LONGEST_WAVE_S);
+        run(&shot, &method, limits, &mut [&mut passages, &mut taping])?
+    };
+    let rest = slow(bench, (&system, &shot), &outcome, sensor_bead, tape)?;
+    Ok(told(
+        &passages,
+        gaps_before_m,
+        bench.gaps_m(),
+        &rest,
+        outcome.time_s,
+    ))
+}
+
+/// The slow phase after a wave, on the same tape.
+fn slow(
+    bench: &mut Bench<'_>,
+    (system, shot): (&System, &System),
+    outcome: &Outcome,
+    sensor_bead: usize,
+    tape: &mut Tape,
+) -> Result<Rest, ShotError> {
+    let still_n = |contact: usize| shot.static_contact(contact).force_n;
+    let contacts = [sensor_bead - 1, sensor_bead, shot.beads()];
+    let still_n = contacts.map(still_n);
+    let mut note = |time_s: f64, forces_n: &[f64]| {
+        let moving = |at: usize| forces_n.get(contacts[at]).map_or(0.0, |n| n - still_n[at]);
+        let sensor_n = 0.5 * (moving(0) + moving(1));
+        tape.note(outcome.time_s + time_s, [sensor_n, moving(2)]);
+    };
+    bench.rest_after(system, State::after(shot, outcome), &mut note)
+}
+
+fn told(
+    passages: &Passages,
+    gaps_before_m: Vec<f64>,
+    gaps_after_m: Vec<f64>,
+    rest: &Rest,
+    wave_s: f64,
+) -> Shot {
+    let nothing = (f64::NAN, f64::NAN);
+    let [incident, wall, reflected] = match passages.peaks() {
+        Ok((incident, wall, reflected)) => [
+            (incident.time_s, incident.value),
+            (wall.time_s, wall.value),
+            reflected.map_or(nothing, |peak| (peak.time_s, peak.value)),
+        ],
+        Err(_) => [nothing; 3],
+    };
+    Shot {
+        incident_s: wall.0 - incident.0,
+        reflected_s: reflected.0 - wall.0,
+        peaks_s: [incident.0, wall.0, reflected.0],
+        peaks_n: [incident.1, wall.1, reflected.1],
+        rebound_m_s: rest
+            .withdrawn
+            .map_or(f64::NAN, |striker| striker.velocity_m_s),
+        gaps_before_m,
+        gaps_after_m,
+        rest_s: wave_s + rest.time_s,
+    }
+}

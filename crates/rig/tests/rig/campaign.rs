@@ -1,0 +1,173 @@
+//! Campaigns: files that depend on nothing but their inputs.
+
+use crate::small::{experiment, plan};
+use hertzchain_rig::{Plan, Progress, RigError, Shard, campaign};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// A folder that is gone at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path =
+            std::env::temp_dir().join(format!("hertzchain-rig-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+
+    /// All recordings by name.
+    fn recordings(&self) -> BTreeMap<String, Vec<u8>> {
+        let entries = std::fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().path());
+        let recordings = entries.filter(|path| path.extension().is_some_and(|end| end == "h5"));
+        let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+        recordings
+            .map(|path| (name(&path), std::fs::read(&path).unwrap()))
+            .collect()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn shard(text: &str) -> Shard {
+    text.parse().unwrap()
+}
+
+fn quiet(_: Progress) {}
+
+fn with_threads(threads: usize, plan: &Plan, out: &Scratch) {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| campaign(plan, &out.0, Shard::WHOLE, &quiet))
+        .unwrap();
+}
+
+#[test]
+fn one_seed_gives_one_campaign_whatever_the_threads_and_another_seed_another() {
+    let plan = plan(&[]);
+    let (one, three, other) = (
+        Scratch::new("one"),
+        Scratch::new("three"),
+        Scratch::new("other"),
+    );
+    with_threads(1, &plan, &one);
+    with_threads(3, &plan, &three);
+    assert_eq!(one.recordings().len(), 6);
+    assert!(one.recordings() == three.recordings());
+    with_threads(2, &Plan::new(&experiment(&[]), Some(8)).unwrap(), &other);
+    for (name, bytes) in one.recordings() {
+        assert!(other.recordings()[&name] != bytes, "{name}");
+    }
+}
+
+#[test]
+fn parts_dealt_out_equal_the_whole() {
+    let plan = plan(&[]);
+    let (whole, dealt) = (Scratch::new("whole"), Scratch::new("dealt"));
+    campaign(&plan, &whole.0, Shard::WHOLE, &quiet).unwrap();
+    let mut series = 0;
+    for part in ["2/4", "1/4", "4/4", "3/4"] {
+        series += campaign(&plan, &dealt.0, shard(part), &quiet).unwrap().run;
+    }
+    assert_eq!(series, plan.series.len());
+    assert!(whole.recordings() == dealt.recordings());
+}
+
+#[test]
+fn parts_that_do_not_exist_are_refused() {
+    for text in ["0/4", "5/4", "1/0", "1", "a/b", "", "1/4/2", "-1/4"] {
+        assert!(text.parse::<Shard>().is_err(), "{text}");
+    }
+}
+
+#[test]
+fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
+    let plan = plan(&[]);
+    let out = Scratch::new("kept");
+    campaign(&plan, &out.0, Shard::WHOLE, &quiet).unwrap();
+    let before = out.recordings();
+    let lost = before.keys().nth(2).unwrap();
+    std::fs::remove_file(out.0.join(lost)).unwrap();
+    std::fs::write(out.0.join(format!("{lost}.part")), b"half a file").unwrap();
+    let done = campaign(&plan, &out.0, Shard::WHOLE, &quiet).unwrap();
+    assert_eq!((done.kept, done.run, done.shots), (5, 1, 3));
+    assert!(out.recordings() == before);
+    assert_eq!(
+        done.bytes,
+        before.values().map(|bytes| bytes.len() as u64).sum::<u64>()
+    );
+}
+
+#[test]
+fn recordings_of_two_campaigns_do_not_mix() {
+    let out = Scratch::new("mixed");
+    campaign(&plan(&[]), &out.0, shard("1/6"), &quiet).unwrap();
+    let other = plan(&[("friction = 0.05", "friction = 0.06")]);
+    let error = campaign(&other, &out.0, Shard::WHOLE, &quiet).unwrap_err();
+    assert!(matches!(error, RigError::AnotherCampaign { .. }), "{error}");
+    let set = experiment(&[]).set(&[("track.friction", 0.06)]).unwrap();
+    let set = Plan::new(&set, None).unwrap();
+    assert!(campaign(&set, &out.0, Shard::WHOLE, &quiet).is_err());
+    std::fs::remove_file(out.0.join("campaign.toml")).unwrap();
+    let error = campaign(&plan(&[]), &out.0, Shard::WHOLE, &quiet).unwrap_err();
+    assert!(error.to_string().contains("no campaign.toml"), "{error}");
+}
+
+#[test]
+fn progress_counts_every_shot_once() {
+    let out = Scratch::new("progress");
+    let seen = Mutex::new(Vec::new());
+    let watch = |progress: Progress| seen.lock().unwrap().push(progress);
+    campaign(&plan(&[]), &out.0, shard("1/2"), &watch).unwrap();
+    let mut fired: Vec<u64> = seen.into_inner().unwrap().iter().map(|p| p.fired).collect();
+    fired.sort_unstable();
+    assert_eq!(fired, (0..=9).collect::<Vec<u64>>());
+}
+
+#[test]
+fn a_folder_that_is_a_file_is_a_clear_error() {
+    let out = Scratch::new("file");
+    std::fs::write(&out.0, b"").unwrap();
+    let error = campaign(&plan(&[]), &out.0, Shard::WHOLE, &quiet).unwrap_err();
+    assert!(error.to_string().contains("cannot write into"), "{error}");
+    std::fs::remove_file(&out.0).unwrap();
+}
+
+#[test]
+fn a_campaign_of_what_no_rig_can_do_says_why() {
+    let refused = |name: &str| {
+        let preset = hertzchain_experiment::preset(name).unwrap();
+        Plan::new(&preset, None).unwrap_err().to_string()
+    };
+    assert!(refused("tapered").contains("wall"));
+    assert!(Plan::new(&hertzchain_experiment::preset("dry").unwrap(), None).is_ok());
+}
+
+/// Records carry the speed, true values stay in a group of their own.
+#[test]
+fn a_recording_is_read_back_with_its_speeds_and_its_true_values_apart() {
+    let out = Scratch::new("read");
+    let plan = plan(&[]);
+    campaign(&plan, &out.0, shard("1/6"), &quiet).unwrap();
+    let path = out.0.join(format!("{}.h5", plan.series[0].name));
+    let truth = hertzchain_records::truth(&path).unwrap();
+    let column = |name: &str| {
+        truth
+            .iter()
+            .find(|(found, _)| found == name)
+            .unwrap()
+            .1
+            .clone()
+    };
+    assert_eq!(column("speed_m_s").len(), 3);
+    assert!(column("incident_tof_s").iter().all(|tof_s| *tof_s > 0.0));
+}

@@ -1,0 +1,13 @@
+//! The virtual rig.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+mod amplifier;
+mod campaign;
+mod instruments;
+mod record;
+mod series;
+mod small;

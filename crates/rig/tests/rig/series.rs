@@ -1,0 +1,99 @@
+//! Series: motion carried from impact to impact.
+
+use crate::small::{SAME_SPEED, plan, shots};
+use hertzchain_rig::{Fired, Plan};
+
+/// Incident times of flight in s.
+fn incident_s(shots: &[Fired]) -> Vec<f64> {
+    shots.iter().map(|fired| fired.shot.incident_s).collect()
+}
+
+/// The largest difference of two series' incident times of flight in s.
+fn moved_s(one: &Plan, two: &Plan) -> f64 {
+    let (one, two) = (shots(one, 0), shots(two, 0));
+    let pairs = incident_s(&one).into_iter().zip(incident_s(&two));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// Ten times the errors of a time of flight, some 0.1 ns.
+const SEEN_S: f64 = 1e-9;
+
+#[test]
+fn every_shot_has_a_pulse_at_both_sensors_and_one_that_returns() {
+    let plan = plan(&[]);
+    for series in 0..plan.series.len() {
+        for fired in shots(&plan, series) {
+            let shot = &fired.shot;
+            assert!(shot.incident_s > 0.0 && shot.reflected_s > 0.0, "{shot:?}");
+            assert!(shot.rest_s > shot.peaks_s[2]);
+            assert_eq!(fired.record.samples.len(), 10_000);
+            assert!(fired.record.samples.iter().any(|sample| *sample > 100));
+        }
+    }
+}
+
+#[test]
+fn friction_changes_times_of_flight() {
+    let other = plan(&[SAME_SPEED, ("friction = 0.05", "friction = 0.15")]);
+    assert!(moved_s(&plan(&[SAME_SPEED]), &other) > SEEN_S);
+}
+
+#[test]
+fn taps_change_times_of_flight() {
+    let none = plan(&[SAME_SPEED, ("taps = 2", "taps = 0")]);
+    assert!(moved_s(&plan(&[SAME_SPEED]), &none) > SEEN_S);
+}
+
+#[test]
+fn seating_scatter_changes_times_of_flight() {
+    let other = plan(&[SAME_SPEED, ("\"5 um\"", "\"50 um\"")]);
+    assert!(moved_s(&plan(&[SAME_SPEED]), &other) > SEEN_S);
+}
+
+#[test]
+fn sizes_of_beads_change_times_of_flight() {
+    let other = plan(&[SAME_SPEED, ("radius_spread = 0", "radius_spread = 0.001")]);
+    assert!(moved_s(&plan(&[SAME_SPEED]), &other) > SEEN_S);
+}
+
+#[test]
+fn a_shot_leaves_what_the_next_one_finds() {
+    let push = "[near_end]\npush = \"spring\"\nforce = \"0.24 N\"\nstiffness = \"100 N/m\"";
+    let loose = plan(&[
+        SAME_SPEED,
+        (push, ""),
+        ("incline = \"0.2 deg\"", "incline = \"0 deg\""),
+        ("taps = 2", "taps = 0"),
+    ]);
+    let shots = shots(&loose, 2);
+    for pair in shots.windows(2) {
+        // Another material law of the same chain: rest overlaps are 0 without load.
+        assert_eq!(pair[0].shot.gaps_after_m, pair[1].shot.gaps_before_m);
+    }
+    let after = &shots[0].shot.gaps_after_m;
+    assert!(after.iter().any(|gap_m| *gap_m > 1e-6), "{after:?}");
+}
+
+/// The actuator's and the gate's chance does not depend on taps.
+#[test]
+fn the_same_shots_are_fired_whatever_the_number_of_taps() {
+    let fired = |taps: &str| -> Vec<(f64, f64)> {
+        let shots = shots(&plan(&[("taps = 2", taps)]), 1);
+        shots
+            .iter()
+            .map(|fired| (fired.speed_m_s, fired.measured_m_s))
+            .collect()
+    };
+    assert_eq!(fired("taps = 0"), fired("taps = 3"));
+}
+
+#[test]
+fn series_and_shots_differ_and_a_seed_repeats_them() {
+    let plan = plan(&[]);
+    let (one, again) = (shots(&plan, 1), shots(&plan, 1));
+    for (a, b) in one.iter().zip(&again) {
+        assert_eq!(a.record, b.record);
+    }
+    assert!(one[0].record != one[1].record);
+    assert!(one[0].speed_m_s != shots(&plan, 4)[0].speed_m_s);
+}

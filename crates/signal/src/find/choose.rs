@@ -1,0 +1,182 @@
+//! Which maximum is which pulse.
+
+use super::Finding;
+use super::smooth::Maximum;
+use super::track::{BLOCK, Track};
+
+/// Beads a wave passes while a sensor bead sees half its maximum or more, in a
+/// row of equal Hertz beads: the wave passes 33 beads in 16 such times.
+const BEADS_A_WIDTH: f64 = 2.07;
+/// How far off that may be, either way, in rows with losses or a push.
+const LOOSELY: f64 = 2.5;
+/// Earliest return in a summed channel, as a share of the incident time: before
+/// that comes what the wall's own pulse trails behind.
+const EARLIEST: f64 = 0.6;
+
+/// The chosen maxima.
+#[derive(Default)]
+pub(super) struct Chosen {
+    pub(super) passing: Option<Maximum>,
+    pub(super) wall: Option<Maximum>,
+    pub(super) returning: Option<Maximum>,
+    pub(super) order_doubtful: bool,
+}
+
+/// Largest of the maxima between two samples.
+pub(super) fn largest(maxima: &[Maximum], from: f64, to: f64) -> Option<Maximum> {
+    let inside = |m: &&Maximum| (m.at as f64) > from && (m.at as f64) < to;
+    let higher = |best: Maximum, next: Maximum| {
+        if next.height > best.height {
+            next
+        } else {
+            best
+        }
+    };
+    maxima.iter().filter(inside).copied().reduce(higher)
+}
+
+/// When the wall's pulse can come after the passing one, in samples.
+fn due(finding: &Finding, width: f64) -> (f64, f64) {
+    finding.beads.map_or((width, f64::INFINITY), |beads| {
+        let expected = expected(beads, width);
+        ((expected / LOOSELY).max(width), expected * LOOSELY)
+    })
+}
+
+/// Incident time that the width of the passing pulse lets expect, in samples.
+fn expected((beads, sensor): (usize, usize), width: f64) -> f64 {
+    (beads as f64 - sensor as f64 + 0.5) / BEADS_A_WIDTH * width
+}
+
+/// Largest block of a track between two samples, as a sample.
+pub(super) fn largest_block(track: &Track<'_>, from: f64, to: f64) -> Option<usize> {
+    let block = |sample: f64| (sample / BLOCK as f64).clamp(0.0, track.blocks.len() as f64);
+    let range = block(from) as usize..block(to) as usize;
+    let higher = |best: usize, next: usize| {
+        let larger = track.block_height(next) > track.block_height(best);
+        if larger { next } else { best }
+    };
+    range.reduce(higher).map(|block| block * BLOCK)
+}
+
+/// Last sample that matters in a summed channel: three incident times after the wall's pulse.
+pub(super) fn end_of_interest(track: &Track<'_>, finding: &Finding) -> usize {
+    let (from, to) = due(finding, track.width);
+    let passing = track.first as f64 + 0.5 * track.width;
+    let wall = largest_block(track, passing + from, passing + to);
+    let end = wall.map_or(passing, |wall| {
+        let wall = wall as f64;
+        wall + 3.0 * (wall - passing)
+    });
+    (end + 3.0 * track.width) as usize
+}
+
+/// Passing, wall, returning in one channel, in this order.
+pub(super) fn summed(maxima: &[Maximum], track: &Track<'_>, finding: &Finding) -> Chosen {
+    let width = track.width;
+    let start = track.first as f64 - width;
+    let first = largest(maxima, start, track.first as f64 + 1.5 * width);
+    let Some(first) = first.or_else(|| largest(maxima, start, f64::INFINITY)) else {
+        return Chosen::default();
+    };
+    let (from, to) = due(finding, width);
+    let began = first.at as f64;
+    let Some(wall) = largest(maxima, began + from, began + to) else {
+        return Chosen {
+            passing: Some(first),
+            ..Chosen::default()
+        };
+    };
+    let wall = sooner(maxima, first, wall, finding, width);
+    let reached = wall.at as f64;
+    let passing = largest(maxima, 0.0, reached - width).unwrap_or(first);
+    let incident = reached - passing.at as f64;
+    let latest = reached + latest_return(finding) * incident;
+    let returning = largest(maxima, reached + (EARLIEST * incident).max(width), latest);
+    let order_doubtful = doubtful(maxima, [first, passing, wall], returning, finding, width);
+    Chosen {
+        passing: Some(passing),
+        wall: Some(wall),
+        returning,
+        order_doubtful,
+    }
+}
+
+/// The wall's pulse, if what was taken for it is the return: another pulse
+/// stands half way, where a sensor bead at rest shows none. One of half the
+/// height will do; less if the passing pulse's width says that half way is right.
+fn sooner(
+    maxima: &[Maximum],
+    first: Maximum,
+    wall: Maximum,
+    finding: &Finding,
+    width: f64,
+) -> Maximum {
+    let (began, whole) = (first.at as f64, (wall.at - first.at) as f64);
+    let half_way = largest(maxima, began + 0.4 * whole, began + 0.6 * whole);
+    let least = finding.beads.map_or(0.5, |beads| {
+        let expected = expected(beads, width);
+        let nearer = (0.5 * whole / expected).ln().abs() < (whole / expected).ln().abs();
+        if nearer { 0.2 } else { f64::INFINITY }
+    });
+    half_way
+        .filter(|other| other.height >= least * wall.height)
+        .unwrap_or(wall)
+}
+
+/// Latest return in incident times: before the wall is reached a second time.
+fn latest_return(finding: &Finding) -> f64 {
+    finding.beads.map_or(2.0, |(beads, sensor)| {
+        let to_and_fro = 2.0 * sensor as f64 / (beads - sensor) as f64;
+        (0.9 * (2.0 + to_and_fro)).min(3.0)
+    })
+}
+
+/// Whether something else could be the wall's or the returning pulse.
+fn doubtful(
+    maxima: &[Maximum],
+    [first, passing, wall]: [Maximum; 3],
+    returning: Option<Maximum>,
+    finding: &Finding,
+    width: f64,
+) -> bool {
+    let (began, incident) = (passing.at as f64, (wall.at - passing.at) as f64);
+    let between = largest(maxima, began + 0.25 * incident, began + 0.75 * incident);
+    let rival = between.is_some_and(|other| other.height > 0.35 * wall.height);
+    let odd_return = returning.is_some_and(|back| {
+        let ratio = (back.at - wall.at) as f64 / incident;
+        back.height > 0.9 * wall.height || !(0.8..1.8).contains(&ratio)
+    });
+    let odd_time = finding.beads.is_some_and(|beads| {
+        let ratio = incident / expected(beads, width);
+        !(0.5..2.0).contains(&ratio)
+    });
+    first.at != passing.at || rival || odd_return || odd_time
+}
+
+/// As [`summed`], with the wall in a channel of its own.
+pub(super) fn separate(sensor: &[Maximum], wall: &[Maximum], track: &Track<'_>) -> Chosen {
+    let Some(wall) = largest(wall, 0.0, f64::INFINITY) else {
+        return Chosen {
+            passing: largest(sensor, 0.0, f64::INFINITY),
+            ..Chosen::default()
+        };
+    };
+    let reached = wall.at as f64;
+    let Some(passing) = largest(sensor, 0.0, reached) else {
+        return Chosen {
+            wall: Some(wall),
+            order_doubtful: true,
+            ..Chosen::default()
+        };
+    };
+    let incident = reached - passing.at as f64;
+    let early = (passing.at as f64) < track.first as f64 - track.width;
+    let late = passing.at as f64 > track.first as f64 + 2.0 * track.width;
+    Chosen {
+        passing: Some(passing),
+        wall: Some(wall),
+        returning: largest(sensor, reached, reached + 3.0 * incident),
+        order_doubtful: early || late,
+    }
+}

@@ -1,0 +1,97 @@
+//! What is doubtful about the pulses found.
+
+use super::smooth::Smooth;
+use super::track::Track;
+use super::{Doubt, Finding, Place, Pulse};
+use crate::{Rails, saturated_runs};
+
+/// One pulse with the channel and the smoothed stretch it was found in.
+pub(super) struct Seen<'a, 'b> {
+    pub(super) pulse: Pulse,
+    pub(super) track: &'a Track<'b>,
+    pub(super) smooth: &'a Smooth,
+}
+
+/// Height over noise below which a pulse is low: 20 dB.
+const LOW: f64 = 10.0;
+
+impl Seen<'_, '_> {
+    /// Doubts about this pulse alone, given the samples between which it has no neighbour.
+    pub(super) fn doubts(&self, finding: &Finding, alone: (usize, usize)) -> Vec<Doubt> {
+        let place = self.pulse.place;
+        let noise = self.track.upright.level.noise;
+        let checks = [
+            (self.saturated(finding), Doubt::Saturation(place)),
+            (self.split(alone), Doubt::Split(place)),
+            (self.pulse.height < LOW * noise, Doubt::LowSignal(place)),
+            (self.cut_off(), Doubt::RecordTooShort),
+        ];
+        let raised = checks.into_iter().filter(|(raised, _)| *raised);
+        raised.map(|(_, doubt)| doubt).collect()
+    }
+
+    fn saturated(&self, finding: &Finding) -> bool {
+        saturated(
+            self.track.samples,
+            self.track.extremes,
+            &self.pulse,
+            finding,
+        )
+    }
+
+    /// Another maximum within five widths, a quarter as high or more.
+    fn split(&self, (from, to): (usize, usize)) -> bool {
+        let reach = (5.0 * self.pulse.width_samples) as usize;
+        let from = from.max(self.pulse.at.saturating_sub(reach));
+        let to = to.min(self.pulse.at + reach);
+        let drop = (5.0 * self.smooth.noise).max(0.1 * self.pulse.height);
+        let maxima = self.smooth.maxima(drop);
+        let near = maxima.iter().filter(|m| (from..=to).contains(&m.at));
+        near.filter(|m| m.height >= 0.25 * self.pulse.height)
+            .count()
+            > 1
+    }
+
+    fn cut_off(&self) -> bool {
+        let (from, to) = self.pulse.extent;
+        from == 0 || to + 1 >= self.track.samples.len()
+    }
+}
+
+/// Whether a pulse has a run of samples at the record's extremes, or any on a known rail.
+pub(super) fn saturated(
+    samples: &[f64],
+    (low, high): (f64, f64),
+    pulse: &Pulse,
+    finding: &Finding,
+) -> bool {
+    // A round top of a hundred steps has a run of a tenth of its width.
+    let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
+    let own = (Rails { low, high }, longest);
+    let (rails, shortest) = finding.rails.map_or(own, |rails| (rails, 1));
+    let (from, to) = pulse.extent;
+    let inside = samples.get(from..=to).unwrap_or_default();
+    !saturated_runs(inside, rails, shortest).is_empty()
+}
+
+/// Whether the signal between two pulses of one channel stays above a tenth of the lower.
+pub(super) fn overlap(one: &Seen<'_, '_>, other: &Seen<'_, '_>) -> bool {
+    let between = one.pulse.at..=other.pulse.at;
+    let lowest = between.map(|i| one.smooth.height(i));
+    let valley = lowest.fold(f64::INFINITY, f64::min);
+    let lower = one.pulse.height.min(other.pulse.height);
+    valley > (0.1 * lower).max(5.0 * one.smooth.noise)
+}
+
+/// Whether the record ends before a return could have been missed.
+pub(super) fn ends_early(passing: &Pulse, wall: &Pulse, samples: usize) -> bool {
+    let incident = wall.at.saturating_sub(passing.at);
+    (samples as f64) < wall.at as f64 + 1.8 * incident as f64
+}
+
+/// Missing pulses.
+pub(super) fn missing(found: &[Option<Pulse>; 3]) -> impl Iterator<Item = Doubt> {
+    let places = [Place::Passing, Place::Wall, Place::Returning];
+    let pairs = places.into_iter().zip(found);
+    pairs.filter_map(|(place, pulse)| pulse.is_none().then_some(Doubt::Missing(place)))
+}

@@ -1,0 +1,130 @@
+//! What a finder found, and what it doubts.
+
+use std::fmt;
+
+use crate::Level;
+
+/// One of the three pulses of a shot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Place {
+    /// At the sensor bead, on the way in.
+    Passing,
+    /// At the wall.
+    Wall,
+    /// At the sensor bead, on the way back.
+    Returning,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Passing => "passing",
+            Self::Wall => "wall",
+            Self::Returning => "returning",
+        })
+    }
+}
+
+/// What is doubtful about a record or its pulses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Doubt {
+    /// A pulse stands on an end of the digitiser's range.
+    Saturation(Place),
+    /// A pulse was not found.
+    Missing(Place),
+    /// Another maximum of at least a quarter of its height stands near a pulse.
+    Split(Place),
+    /// Between two pulses the signal does not fall to a tenth of the lower one.
+    Overlap(Place, Place),
+    /// A pulse is less than ten times as high as the noise.
+    LowSignal(Place),
+    /// The record begins or ends within a pulse, or before the returning pulse was due.
+    RecordTooShort,
+    /// Pulses may have been taken for one another.
+    Order,
+    /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
+    FewQuietSamples,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Saturation(place) => write!(f, "{place} pulse saturated"),
+            Self::Missing(place) => write!(f, "{place} pulse missing"),
+            Self::Split(place) => write!(f, "{place} pulse split"),
+            Self::Overlap(one, other) => write!(f, "{one} and {other} pulse overlap"),
+            Self::LowSignal(place) => write!(f, "{place} pulse low"),
+            Self::RecordTooShort => f.write_str("record too short"),
+            Self::Order => f.write_str("order of pulses doubtful"),
+            Self::FewQuietSamples => f.write_str("few quiet samples"),
+        }
+    }
+}
+
+/// A channel's offset, noise and direction: what turns its samples upright.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Upright {
+    /// 1 when pulses point up, −1 when down.
+    pub sign: f64,
+    /// Offset and noise.
+    pub level: Level,
+}
+
+impl Upright {
+    /// A sample as height above the baseline, pulses up.
+    #[must_use]
+    pub fn height(&self, sample: f64) -> f64 {
+        self.sign * (sample - self.level.offset)
+    }
+}
+
+/// A pulse, roughly: good enough to know where to pick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse {
+    /// Which.
+    pub place: Place,
+    /// Sample of its largest maximum, from 0.
+    pub at: usize,
+    /// Height of that above the baseline, in the samples' unit.
+    pub height: f64,
+    /// Full width at half maximum about it, in samples.
+    pub width_samples: f64,
+    /// First and last sample above a tenth of the height.
+    pub extent: (usize, usize),
+}
+
+/// The pulses of a shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// At the sensor bead, on the way in.
+    pub passing: Option<Pulse>,
+    /// At the wall.
+    pub wall: Option<Pulse>,
+    /// At the sensor bead, on the way back.
+    pub returning: Option<Pulse>,
+    /// What is doubtful; empty for a clean record. In order, none twice.
+    pub doubts: Vec<Doubt>,
+    /// The sensor's, or the summed, channel.
+    pub sensor: Upright,
+    /// The wall's channel; the same as the sensor's if both are summed.
+    pub wall_channel: Upright,
+}
+
+impl Found {
+    /// The pulses found, in order.
+    pub fn pulses(&self) -> impl Iterator<Item = &Pulse> {
+        [&self.passing, &self.wall, &self.returning]
+            .into_iter()
+            .flatten()
+    }
+
+    /// What turns the channel of this pulse upright.
+    #[must_use]
+    pub fn upright(&self, place: Place) -> &Upright {
+        match place {
+            Place::Wall => &self.wall_channel,
+            Place::Passing | Place::Returning => &self.sensor,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Where a shot's pulses are, from the samples alone.
+
+mod choose;
+mod doubts;
+mod found;
+mod options;
+mod smooth;
+mod track;
+
+pub use found::{Doubt, Found, Place, Pulse, Upright};
+pub use options::{Channels, Finding, Polarity};
+
+use crate::error::SignalError;
+use choose::Chosen;
+use doubts::Seen;
+use smooth::{Maximum, Smooth};
+use track::Track;
+
+/// Finds the passing, the wall's and the returning pulse of one shot.
+///
+/// The rules are those of a computed shot: the wall's pulse is the largest
+/// maximum at the wall, the passing pulse the largest before it at the sensor,
+/// the returning one the largest at the sensor within three incident times
+/// after it. In a summed channel the wall's pulse is the largest after the
+/// first pulse; the return is looked for from 0.6 incident times after it until
+/// the wall could be reached again. One shot a record: cut longer ones first.
+///
+/// Signals are smoothed for this only as far as their noise asks for, over at
+/// most a quarter of a pulse. A pulse must rise and fall by five deviations
+/// of the noise left.
+///
+/// # Errors
+/// Too few, not finite or constant samples; no pulse at all; channels of
+/// different lengths; options out of range. A missing wall or return is no
+/// error but a [`Doubt`].
+pub fn pulses(channels: Channels<'_>, finding: &Finding) -> Result<Found, SignalError> {
+    finding.check()?;
+    match channels {
+        Channels::Summed(samples) => summed(samples, finding),
+        Channels::Separate { sensor, wall } => separate(sensor, wall, finding),
+    }
+}
+
+/// Offset, noise and direction of one channel, without looking for all its pulses.
+///
+/// # Errors
+/// As [`pulses`].
+pub fn upright(samples: &[f64], polarity: Polarity) -> Result<Upright, SignalError> {
+    Track::new(samples, polarity).map(|track| track.upright)
+}
+
+/// Doubts about saturation, seen in samples as they were recorded: filters
+/// leave no rail behind.
+pub(crate) fn saturated_as_recorded(
+    recorded: Channels<'_>,
+    found: &Found,
+    finding: &Finding,
+) -> Vec<Doubt> {
+    let stands = |pulse: &&Pulse| {
+        let samples = match pulse.place {
+            Place::Wall => recorded.wall(),
+            Place::Passing | Place::Returning => recorded.sensor(),
+        };
+        doubts::saturated(samples, track::extremes(samples), pulse, finding)
+    };
+    let saturated = found.pulses().filter(stands);
+    saturated
+        .map(|pulse| Doubt::Saturation(pulse.place))
+        .collect()
+}
+
+fn summed(samples: &[f64], finding: &Finding) -> Result<Found, SignalError> {
+    let track = Track::new(samples, finding.polarity)?;
+    let end = choose::end_of_interest(&track, finding);
+    let (smooth, maxima) = look(&track, end);
+    let chosen = choose::summed(&maxima, &track, finding);
+    Ok(gather(
+        &chosen,
+        (&track, &smooth),
+        (&track, &smooth),
+        finding,
+    ))
+}
+
+fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Found, SignalError> {
+    if sensor.len() != wall.len() {
+        return Err(SignalError::Lengths {
+            sensor: sensor.len(),
+            wall: wall.len(),
+        });
+    }
+    let track = Track::new(sensor, finding.polarity)?;
+    let wall = Track::new(wall, finding.wall_polarity)?;
+    let began = track.first;
+    let reached = wall.first + wall.width as usize;
+    let end = reached + 4 * reached.saturating_sub(began) + 3 * track.width as usize;
+    let (sensor_smooth, sensor_maxima) = look(&track, end);
+    let (wall_smooth, wall_maxima) = look(&wall, end);
+    let chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+    let (sensor, wall) = ((&track, &sensor_smooth), (&wall, &wall_smooth));
+    Ok(gather(&chosen, sensor, wall, finding))
+}
+
+/// Smoothes a track from before its first pulse on, and finds its maxima.
+fn look(track: &Track<'_>, end: usize) -> (Smooth, Vec<Maximum>) {
+    let start = track.first.saturating_sub((3.0 * track.width) as usize);
+    let range = (start as f64, end as f64);
+    let highest = choose::largest_block(track, range.0, range.1)
+        .map_or(0.0, |at| track.block_height(at / track::BLOCK));
+    let smooth = Smooth::of(track, start..end, highest);
+    let least = (5.0 * smooth.noise).max(0.005 * highest);
+    let mut maxima = smooth.maxima(least);
+    maxima.retain(|m| m.height > least);
+    (smooth, maxima)
+}
+
+type Looked<'a, 'b> = (&'a Track<'b>, &'a Smooth);
+
+fn gather(
+    chosen: &Chosen,
+    sensor: Looked<'_, '_>,
+    wall: Looked<'_, '_>,
+    finding: &Finding,
+) -> Found {
+    let see = |(track, smooth), place, maximum: Option<Maximum>| {
+        maximum.map(|maximum| seen(track, smooth, place, &maximum))
+    };
+    let seen = [
+        see(sensor, Place::Passing, chosen.passing),
+        see(wall, Place::Wall, chosen.wall),
+        see(sensor, Place::Returning, chosen.returning),
+    ];
+    let [passing, at_wall, returning] = seen.each_ref().map(|s| s.as_ref().map(|s| s.pulse));
+    let mut doubts: Vec<Doubt> = doubts::missing(&[passing, at_wall, returning]).collect();
+    doubts.extend(each(&seen, finding, std::ptr::eq(sensor.0, wall.0)));
+    if let (Some(first), Some(second), None) = (passing, at_wall, returning)
+        && doubts::ends_early(&first, &second, sensor.0.samples.len())
+    {
+        doubts.push(Doubt::RecordTooShort);
+    }
+    doubts.extend(chosen.order_doubtful.then_some(Doubt::Order));
+    let rough = [sensor.0, wall.0]
+        .iter()
+        .any(|t| t.upright.level.quiet_samples == 0);
+    doubts.extend(rough.then_some(Doubt::FewQuietSamples));
+    doubts.sort_unstable();
+    doubts.dedup();
+    Found {
+        passing,
+        wall: at_wall,
+        returning,
+        doubts,
+        sensor: sensor.0.upright,
+        wall_channel: wall.0.upright,
+    }
+}
+
+/// Doubts about each pulse and about neighbours.
+fn each(seen: &[Option<Seen<'_, '_>>; 3], finding: &Finding, one_channel: bool) -> Vec<Doubt> {
+    let seen: Vec<&Seen<'_, '_>> = seen.iter().flatten().collect();
+    let mut doubts = Vec::new();
+    for (i, here) in seen.iter().enumerate() {
+        let middle = |other: &Seen<'_, '_>| usize::midpoint(other.pulse.at, here.pulse.at);
+        let before = i.checked_sub(1).and_then(|i| seen.get(i));
+        let after = seen.get(i + 1);
+        let from = before.map_or(0, |other| middle(other));
+        let to = after.map_or(usize::MAX, |other| middle(other));
+        doubts.extend(here.doubts(finding, (from, to)));
+        if let Some(next) = after
+            && one_channel
+            && doubts::overlap(here, next)
+        {
+            doubts.push(Doubt::Overlap(here.pulse.place, next.pulse.place));
+        }
+    }
+    doubts
+}
+
+fn seen<'a, 'b>(
+    track: &'a Track<'b>,
+    smooth: &'a Smooth,
+    place: Place,
+    maximum: &Maximum,
+) -> Seen<'a, 'b> {
+    let (from, to) = smooth.reach(maximum, 0.1 * maximum.height);
+    let last = track.samples.len().saturating_sub(1);
+    let pulse = Pulse {
+        place,
+        at: maximum.at,
+        height: maximum.height,
+        width_samples: smooth.width(maximum),
+        extent: (from as usize, (to.ceil() as usize).min(last)),
+    };
+    Seen {
+        pulse,
+        track,
+        smooth,
+    }
+}

@@ -1,0 +1,102 @@
+//! From a shot's samples to its times of flight.
+
+use std::borrow::Cow;
+
+use crate::error::SignalError;
+use crate::find::saturated_as_recorded;
+use crate::{
+    Channels, Finding, Flight, Found, LowPass, Method, Polarity, pick, pulses, undroop, upright,
+};
+
+/// What is done to a shot's samples, and how pulses are picked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Measuring {
+    /// What is known before.
+    pub finding: Finding,
+    /// How pulses' times are told.
+    pub method: Method,
+    /// Time constant in s of the amplifier's high-pass, if its droop is to be taken out.
+    pub high_pass_s: Option<f64>,
+    /// A low-pass without delay, if one is wanted.
+    pub low_pass: Option<LowPass>,
+}
+
+/// A measured shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Where its pulses are, and what is doubtful.
+    pub found: Found,
+    /// Times of flight; an error says what is missing.
+    pub flight: Result<Flight, SignalError>,
+}
+
+/// Finds and picks the pulses of one shot.
+///
+/// # Errors
+/// As [`pulses`], [`undroop`] and [`LowPass::apply`]. A shot whose pulses are
+/// found in part is no error: its `flight` is.
+pub fn measure(
+    channels: Channels<'_>,
+    interval_s: f64,
+    measuring: &Measuring,
+) -> Result<Measured, SignalError> {
+    SignalError::positive("sampling interval in s", interval_s)?;
+    let finding = &measuring.finding;
+    let recorded = channels;
+    let conditioned = |samples, polarity| measuring.conditioned(samples, interval_s, polarity);
+    let (sensor, wall);
+    let channels = match channels {
+        Channels::Summed(samples) => {
+            sensor = conditioned(samples, finding.polarity)?;
+            Channels::Summed(&sensor)
+        }
+        Channels::Separate {
+            sensor: one,
+            wall: other,
+        } => {
+            sensor = conditioned(one, finding.polarity)?;
+            wall = conditioned(other, finding.wall_polarity)?;
+            Channels::Separate {
+                sensor: &sensor,
+                wall: &wall,
+            }
+        }
+    };
+    let rails = finding.rails.filter(|_| !measuring.conditions());
+    let mut found = pulses(channels, &Finding { rails, ..*finding })?;
+    if measuring.conditions() {
+        let saturated = saturated_as_recorded(recorded, &found, finding);
+        found.doubts.extend(saturated);
+        found.doubts.sort_unstable();
+        found.doubts.dedup();
+    }
+    let picks = pick(channels, interval_s, &found, &measuring.method, rails);
+    let flight = picks.map(crate::Picks::flight);
+    Ok(Measured { found, flight })
+}
+
+impl Measuring {
+    /// Whether samples are changed before pulses are looked for.
+    fn conditions(&self) -> bool {
+        self.high_pass_s.is_some() || self.low_pass.is_some()
+    }
+
+    fn conditioned<'a>(
+        &self,
+        samples: &'a [f64],
+        interval_s: f64,
+        polarity: Polarity,
+    ) -> Result<Cow<'a, [f64]>, SignalError> {
+        let mut samples = Cow::Borrowed(samples);
+        if let Some(time_constant_s) = self.high_pass_s {
+            let offset = upright(&samples, polarity)?.level.offset;
+            let samples = samples.to_mut();
+            samples.iter_mut().for_each(|x| *x -= offset);
+            undroop(samples, interval_s, time_constant_s)?;
+        }
+        if let Some(low_pass) = self.low_pass {
+            samples = Cow::Owned(low_pass.apply(&samples, interval_s)?);
+        }
+        Ok(samples)
+    }
+}

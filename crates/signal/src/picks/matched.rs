@@ -1,0 +1,136 @@
+//! A shape fitted to the whole pulse.
+
+use super::normal::{MOST, Normal, Solution};
+use super::{Picked, Shape, Sight};
+use crate::Pulse;
+use crate::error::SignalError;
+
+/// Height, time in samples, width in samples, offset.
+#[derive(Clone, Copy)]
+struct Model {
+    height: f64,
+    time: f64,
+    width: f64,
+    offset: f64,
+}
+
+/// Parameters of a model.
+const PARAMETERS: usize = 4;
+/// Steps after which a fit is given up.
+const STEPS: usize = 60;
+
+/// Time in samples: Levenberg–Marquardt's least squares of four parameters;
+/// covariance noise² (JᵀJ)⁻¹. Samples on a rail tell nothing and are left out.
+pub(super) fn pick(
+    sight: &Sight<'_>,
+    pulse: &Pulse,
+    shape: &Shape,
+    width: f64,
+) -> Result<Picked, SignalError> {
+    let no_fit = || SignalError::NoPick {
+        place: pulse.place,
+        what: "fit of the shape",
+    };
+    let data = Data::about(sight, pulse, width);
+    let (model, left) = data.fit(pulse, shape).ok_or_else(no_fit)?;
+    let solution = data.normal(&model, shape).0.solve().ok_or_else(no_fit)?;
+    let noise = sight.broad_noise(pulse);
+    let sigma = |k: usize| noise * solution.inverse[k][k].sqrt();
+    let freedom = data.points.len().saturating_sub(PARAMETERS).max(1);
+    Ok(Picked {
+        time_s: model.time,
+        sigma_s: sigma(1),
+        height: model.height,
+        height_sigma: sigma(0),
+        width_s: model.width,
+        misfit: sight.misfit((left / freedom as f64).sqrt()),
+    })
+}
+
+/// Samples to be fitted: their numbers and heights.
+struct Data {
+    points: Vec<(f64, f64)>,
+}
+
+impl Data {
+    fn about(sight: &Sight<'_>, pulse: &Pulse, width: f64) -> Self {
+        let half = (0.5 * width * pulse.width_samples).max(3.0);
+        let at = pulse.at as f64;
+        let (first, heights) = sight.window(at - half, at + half);
+        let raw = sight.samples[first..first + heights.len()].iter();
+        let free = |x: &f64| sight.rails.is_none_or(|r| *x > r.low && *x < r.high);
+        let points = heights.iter().zip(raw).enumerate();
+        let points = points.filter(|(_, (_, raw))| free(raw));
+        let points = points.map(|(i, (height, _))| ((first + i) as f64, *height));
+        Self {
+            points: points.collect(),
+        }
+    }
+
+    /// The best model and its sum of squares.
+    fn fit(&self, pulse: &Pulse, shape: &Shape) -> Option<(Model, f64)> {
+        let mut model = Model {
+            height: pulse.height,
+            time: pulse.at as f64,
+            width: pulse.width_samples,
+            offset: 0.0,
+        };
+        let (mut normal, mut left) = self.normal(&model, shape);
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            let step = normal.damped(1.0 + damping).solve()?;
+            let next = model.moved(&step);
+            let tried = next.sound(pulse).then(|| self.normal(&next, shape));
+            if let Some((there, squares)) = tried.filter(|(_, squares)| *squares <= left) {
+                let done = (next.time - model.time).abs() < 1e-9 * pulse.width_samples;
+                (model, normal, left) = (next, there, squares);
+                damping *= 0.1;
+                if done {
+                    return Some((model, left));
+                }
+            } else if damping > 1e8 {
+                // No step makes it better: this is the least, to rounding.
+                return model.sound(pulse).then_some((model, left));
+            } else {
+                damping *= 10.0;
+            }
+        }
+        None
+    }
+
+    /// Normal equations of a step from a model, and the model's sum of squares.
+    fn normal(&self, model: &Model, shape: &Shape) -> (Normal, f64) {
+        let mut normal = Normal::new(PARAMETERS);
+        let mut squares = 0.0;
+        for (at, height) in &self.points {
+            let z = (at - model.time) / model.width;
+            let (value, slope) = shape.value_slope(z);
+            let miss = height - model.offset - model.height * value;
+            let by_time = -model.height * slope / model.width;
+            let mut row = [0.0; MOST];
+            row[..PARAMETERS].copy_from_slice(&[value, by_time, by_time * z, 1.0]);
+            normal.add(&row, miss);
+            squares += miss * miss;
+        }
+        (normal, squares)
+    }
+}
+
+impl Model {
+    fn moved(&self, step: &Solution) -> Self {
+        let [height, time, width, offset, ..] = step.values;
+        Self {
+            height: self.height + height,
+            time: self.time + time,
+            width: self.width + width,
+            offset: self.offset + offset,
+        }
+    }
+
+    /// Still the same pulse: upright, near where it was, not out of all proportion.
+    fn sound(&self, pulse: &Pulse) -> bool {
+        let widths = self.width / pulse.width_samples;
+        let moved = (self.time - pulse.at as f64).abs();
+        self.height > 0.0 && (0.2..5.0).contains(&widths) && moved < pulse.width_samples
+    }
+}

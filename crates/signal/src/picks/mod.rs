@@ -1,0 +1,276 @@
+//! Times of pulses found, by four methods, each with its uncertainty.
+
+mod bound;
+mod correlation;
+mod local_model;
+mod matched;
+pub(crate) mod normal;
+mod onset;
+pub(crate) mod polynomial;
+mod shape;
+
+pub use bound::{cramer_rao_of_samples_s, cramer_rao_s};
+pub use shape::Shape;
+
+use crate::error::SignalError;
+use crate::{Channels, Found, Place, Pulse, Rails, Upright};
+
+/// How a pulse's time is told. What each is worth: docs/measuring.md.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Method {
+    /// Time of the maximum of a polynomial fitted about the largest sample.
+    ///
+    /// *Bias:* none for symmetric pulses; of a skewed one, what the polynomial
+    /// leaves over: less with higher degree or smaller width. The only method
+    /// that means the maximum whatever the shape. Where noise leaves this fit no
+    /// maximum, degree 4 over 1.2 widths is tried, then a parabola over 0.8.
+    LocalModel {
+        /// Degree of the polynomial, 2 to 8.
+        degree: usize,
+        /// Full width of the fit, in full widths at half maximum of the pulse.
+        width: f64,
+    },
+    /// Time at which the rising flank passes a share of the maximum.
+    ///
+    /// *Bias:* against maxima, the difference of the two pulses' rise times
+    /// from that share: first order in a difference of widths. A drifting
+    /// baseline shifts it.
+    Onset {
+        /// Share of the maximum, between 0 and 1.
+        fraction: f64,
+    },
+    /// Time at which a template fits best, by its correlation with the signal.
+    ///
+    /// *Bias:* none for pulses that differ in height alone, nor for symmetric
+    /// ones of different widths; for pulses of different skewness a share of
+    /// the width.
+    CrossCorrelation(Template),
+    /// Time of a shape fitted with its height, width and offset free.
+    ///
+    /// *Bias:* none if both pulses have the shape, whatever their widths; for
+    /// skewed pulses a share of the width that is the same for both only if
+    /// their skewness is.
+    MatchedShape {
+        /// The shape.
+        shape: Shape,
+        /// Full width of the fit, in full widths at half maximum of the pulse.
+        width: f64,
+    },
+}
+
+/// What signals are correlated with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Template {
+    /// The passing pulse itself.
+    Passing,
+    /// A shape, as wide at half maximum as the passing pulse is.
+    Shape(Shape),
+    /// A shape of a given full width at half maximum in s.
+    Fixed(Shape, f64),
+}
+
+impl Default for Method {
+    /// The local model of degree 6 over 0.8 widths: on pulses of a chain with
+    /// losses its bias is a thousandth of a width, for three times the least
+    /// possible spread that a fit of the whole pulse has.
+    fn default() -> Self {
+        Self::LocalModel {
+            degree: 6,
+            width: 0.8,
+        }
+    }
+}
+
+/// A pulse as picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picked {
+    /// Its time, in s after the first sample.
+    pub time_s: f64,
+    /// Standard deviation of that by the record's noise; bias is not in it.
+    pub sigma_s: f64,
+    /// Height above the baseline, or above the fit's own offset, in the samples' unit.
+    pub height: f64,
+    /// Standard deviation of that by the record's noise.
+    pub height_sigma: f64,
+    /// Full width at half maximum in s.
+    pub width_s: f64,
+    /// What the fit leaves over noise: near 1 if the model describes the
+    /// pulse. `None` if nothing was fitted or there is no noise.
+    pub misfit: Option<f64>,
+}
+
+/// One channel with what turns it upright, as pickers see it.
+pub(crate) struct Sight<'a> {
+    pub(crate) samples: &'a [f64],
+    pub(crate) upright: Upright,
+    pub(crate) rails: Option<Rails>,
+}
+
+impl Sight<'_> {
+    /// Heights from sample `from` to `to`, clipped to the record, and the first's number.
+    fn window(&self, from: f64, to: f64) -> (usize, Vec<f64>) {
+        let end = self.samples.len();
+        let first = (from.floor().max(0.0) as usize).min(end);
+        let last = ((to.ceil().max(0.0) as usize).saturating_add(1)).clamp(first, end);
+        let heights = self.samples[first..last].iter();
+        let heights = heights.map(|x| self.upright.height(*x)).collect();
+        (first, heights)
+    }
+
+    /// Noise of one sample; that of a digitiser's rounding if the record shows none.
+    fn noise(&self, pulse: &Pulse) -> f64 {
+        let noise = self.upright.level.noise;
+        if noise > 0.0 {
+            return noise;
+        }
+        let reach = 2.0 * pulse.width_samples;
+        let (_, near) = self.window(pulse.at as f64 - reach, pulse.at as f64 + reach);
+        let steps = near.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let step = steps.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+        if step.is_finite() {
+            step / 12.0_f64.sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// As [`Self::noise`], for what averages over many samples.
+    fn broad_noise(&self, pulse: &Pulse) -> f64 {
+        self.noise(pulse) * self.upright.level.correlation.sqrt()
+    }
+
+    /// `left` over the noise, if there is noise.
+    fn misfit(&self, left: f64) -> Option<f64> {
+        let noise = self.upright.level.noise;
+        (noise > 0.0).then(|| left / noise)
+    }
+}
+
+/// The three pulses of a shot as picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picks {
+    /// At the sensor bead, on the way in.
+    pub passing: Picked,
+    /// At the wall.
+    pub wall: Picked,
+    /// At the sensor bead, on the way back, if it was found and could be picked.
+    pub returning: Option<Picked>,
+}
+
+/// Picks the pulses that were found.
+///
+/// # Errors
+/// No passing or no wall's pulse; no maximum or crossing where one of these is;
+/// options out of range. A return that cannot be picked is left out.
+pub fn pick(
+    channels: Channels<'_>,
+    interval_s: f64,
+    found: &Found,
+    method: &Method,
+    rails: Option<Rails>,
+) -> Result<Picks, SignalError> {
+    SignalError::positive("sampling interval in s", interval_s)?;
+    method.check()?;
+    let need = |pulse: &Option<Pulse>, place| pulse.ok_or(SignalError::Missing { place });
+    let passing = need(&found.passing, Place::Passing)?;
+    let wall = need(&found.wall, Place::Wall)?;
+    let sensor = Sight {
+        samples: channels.sensor(),
+        upright: found.sensor,
+        rails,
+    };
+    let at_wall = Sight {
+        samples: channels.wall(),
+        upright: found.wall_channel,
+        rails,
+    };
+    let picker = Picker::new(method, &sensor, &passing, interval_s)?;
+    let finish = |picked: Picked| picked.in_seconds(interval_s);
+    let picked = |pulse: Pulse| picker.pick(&sensor, &pulse).ok();
+    let returning = found.returning.and_then(picked);
+    Ok(Picks {
+        passing: finish(picker.pick(&sensor, &passing)?),
+        wall: finish(picker.pick(&at_wall, &wall)?),
+        returning: returning.map(finish),
+    })
+}
+
+impl Picked {
+    /// From samples to s.
+    fn in_seconds(self, interval_s: f64) -> Self {
+        Self {
+            time_s: self.time_s * interval_s,
+            sigma_s: self.sigma_s * interval_s,
+            width_s: self.width_s * interval_s,
+            ..self
+        }
+    }
+}
+
+impl Method {
+    fn check(&self) -> Result<(), SignalError> {
+        let within = |name, value: f64, low: f64, high: f64, expected| {
+            let good = value >= low && value <= high;
+            good.then_some(()).ok_or(SignalError::Option {
+                name,
+                value,
+                expected,
+            })
+        };
+        let wide = "a number from 0.2 to 4";
+        match self {
+            Self::LocalModel { degree, width } => {
+                let degree = *degree as f64;
+                within("degree of the local model", degree, 2.0, 8.0, "2 to 8")?;
+                within("width of the local model", *width, 0.2, 4.0, wide)
+            }
+            Self::Onset { fraction } => {
+                let expected = "a share of the maximum from 0.02 to 0.95";
+                within("threshold", *fraction, 0.02, 0.95, expected)
+            }
+            Self::CrossCorrelation(Template::Fixed(_, width_s)) => {
+                SignalError::positive("width of the template in s", *width_s)
+            }
+            Self::CrossCorrelation(_) => Ok(()),
+            Self::MatchedShape { width, .. } => within("width of the fit", *width, 0.2, 4.0, wide),
+        }
+    }
+}
+
+/// A method made ready for one shot; times in samples.
+enum Picker<'a> {
+    Local { degree: usize, width: f64 },
+    Onset(f64),
+    Correlation(correlation::Correlator),
+    Matched(&'a Shape, f64),
+}
+
+impl<'a> Picker<'a> {
+    fn new(
+        method: &'a Method,
+        sensor: &Sight<'_>,
+        passing: &Pulse,
+        interval_s: f64,
+    ) -> Result<Self, SignalError> {
+        Ok(match method {
+            Method::LocalModel { degree, width } => Self::Local {
+                degree: *degree,
+                width: *width,
+            },
+            Method::Onset { fraction } => Self::Onset(*fraction),
+            Method::MatchedShape { shape, width } => Self::Matched(shape, *width),
+            Method::CrossCorrelation(template) => Self::Correlation(correlation::Correlator::new(
+                template, sensor, passing, interval_s,
+            )?),
+        })
+    }
+
+    fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        match self {
+            Self::Local { degree, width } => local_model::pick(sight, pulse, *degree, *width),
+            Self::Onset(fraction) => onset::pick(sight, pulse, *fraction),
+            Self::Correlation(correlator) => correlator.pick(sight, pulse),
+            Self::Matched(shape, width) => matched::pick(sight, pulse, shape, *width),
+        }
+    }
+}

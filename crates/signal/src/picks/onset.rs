@@ -1,0 +1,68 @@
+//! Where the rising flank passes a share of the maximum.
+
+use super::local_model;
+use super::polynomial::Polynomial;
+use super::{Picked, Sight};
+use crate::Pulse;
+use crate::error::SignalError;
+
+/// Half the width of the fit of the flank, in full widths at half maximum.
+const REACH: f64 = 0.18;
+
+/// Time in samples.
+///
+/// The maximum h is that of a local model. The last sample below f h before it
+/// is where the flank passes, roughly; a cubic fitted about that says where,
+/// finely. Variance: (var(cubic) + f² var(h))/slope².
+pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Picked, SignalError> {
+    let top = local_model::roughly(sight, pulse)?;
+    let no_crossing = || SignalError::NoPick {
+        place: pulse.place,
+        what: "rising flank",
+    };
+    let threshold = fraction * top.height;
+    let rough = rough(sight, pulse, top.time_s, threshold).ok_or_else(no_crossing)?;
+    let (fit, u) = fit(sight, pulse, rough, threshold).ok_or_else(no_crossing)?;
+    let noise = sight.broad_noise(pulse);
+    let slope = fit.course(u).slope / fit.half();
+    let of_value = noise * noise * fit.value_variance(u);
+    let of_height = (fraction * top.height_sigma).powi(2);
+    Ok(Picked {
+        time_s: fit.sample(u),
+        sigma_s: (of_value + of_height).sqrt() / slope,
+        misfit: sight.misfit(fit.left),
+        ..top
+    })
+}
+
+/// Middle between the last sample below the threshold before the top and the
+/// first above it near that: noise moves both apart, not their middle.
+fn rough(sight: &Sight<'_>, pulse: &Pulse, top: f64, threshold: f64) -> Option<f64> {
+    let reach = 2.5 * pulse.width_samples + 2.0;
+    let (first, heights) = sight.window(top - reach, top);
+    let last = heights.iter().rposition(|h| *h < threshold)?;
+    let span = (0.4 * pulse.width_samples) as usize;
+    let early = last.saturating_sub(span);
+    let above = heights[early..].iter().position(|h| *h >= threshold);
+    let earliest = above.map_or(last, |i| (early + i).min(last + 1));
+    Some(first as f64 + 0.5 * (last as f64 + earliest as f64))
+}
+
+fn fit(sight: &Sight<'_>, pulse: &Pulse, rough: f64, threshold: f64) -> Option<(Polynomial, f64)> {
+    let half = (REACH * pulse.width_samples).max(2.0);
+    let (first, heights) = sight.window(rough - 3.0 * half, rough + 3.0 * half);
+    let through = |centre, half, degree| {
+        let fit = Polynomial::through(&heights, first as f64, centre, half, degree)?;
+        let u = fit.rise_through(threshold)?;
+        Some((fit, u))
+    };
+    // A second time about the place just found, for a window that noise did not choose.
+    let again = |(fit, u): (Polynomial, f64), half, degree| {
+        let centre = fit.sample(u);
+        through(centre, half, degree).unwrap_or((fit, u))
+    };
+    let cubic = through(rough, half, 3).map(|once| again(once, half, 3));
+    // Noise can bend a cubic away from the threshold; a longer line meets it.
+    let longer = 1.4 * half;
+    cubic.or_else(|| through(rough, longer, 1).map(|once| again(once, longer, 1)))
+}

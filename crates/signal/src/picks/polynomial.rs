@@ -1,0 +1,158 @@
+//! A polynomial through a few samples, with its covariance.
+
+use super::normal::{MOST, Normal, Solution};
+
+/// A polynomial in u = (sample − centre)/half, fitted where |u| ≤ 1.
+pub(crate) struct Polynomial {
+    centre: f64,
+    half: f64,
+    degree: usize,
+    solution: Solution,
+    /// Root mean square of what it leaves, over its degrees of freedom.
+    pub(crate) left: f64,
+}
+
+/// Value, slope and bend of a polynomial at one place, in units of u.
+pub(crate) struct Course {
+    pub(crate) value: f64,
+    pub(crate) slope: f64,
+    pub(crate) bend: f64,
+}
+
+impl Polynomial {
+    /// Through `values`, the first of which is sample `first`.
+    ///
+    /// The degree is lowered where there are too few samples for it. `None`
+    /// when fewer than three samples lie within reach.
+    pub(crate) fn through(
+        values: &[f64],
+        first: f64,
+        centre: f64,
+        half: f64,
+        degree: usize,
+    ) -> Option<Self> {
+        let low = (centre - half - first).ceil().max(0.0);
+        let high = (centre + half - first).floor();
+        if high < low || high.is_nan() {
+            return None;
+        }
+        let part = values.get(low as usize..values.len().min(high as usize + 1))?;
+        let degree = degree.min(MOST - 1).min(part.len().checked_sub(2)?);
+        let mut normal = Normal::new(degree + 1);
+        let at = |i: usize| (first + low + i as f64 - centre) / half;
+        for (i, value) in part.iter().enumerate() {
+            normal.add(&powers(at(i)), *value);
+        }
+        let mut polynomial = Self {
+            centre,
+            half,
+            degree,
+            solution: normal.solve()?,
+            left: 0.0,
+        };
+        let miss = |(i, value): (usize, &f64)| (value - polynomial.course(at(i)).value).powi(2);
+        let squares: f64 = part.iter().enumerate().map(miss).sum();
+        polynomial.left = (squares / (part.len() - degree - 1) as f64).sqrt();
+        (degree > 0).then_some(polynomial)
+    }
+
+    pub(crate) fn course(&self, u: f64) -> Course {
+        let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
+        for c in self.solution.values[..=self.degree].iter().rev() {
+            bend = bend * u + 2.0 * slope;
+            slope = slope * u + value;
+            value = value * u + c;
+        }
+        Course { value, slope, bend }
+    }
+
+    /// Sample at u.
+    pub(crate) fn sample(&self, u: f64) -> f64 {
+        self.centre + self.half * u
+    }
+
+    /// Samples in one unit of u.
+    pub(crate) fn half(&self) -> f64 {
+        self.half
+    }
+
+    /// Where the slope falls through 0, found from u = 0.
+    pub(crate) fn top(&self) -> Option<f64> {
+        self.newton(|here| (here.bend < 0.0).then(|| -here.slope / here.bend))
+    }
+
+    /// Where the value rises through `height`, found from u = 0.
+    pub(crate) fn rise_through(&self, height: f64) -> Option<f64> {
+        self.newton(|here| (here.slope > 0.0).then(|| (height - here.value) / here.slope))
+    }
+
+    fn newton(&self, step: impl Fn(&Course) -> Option<f64>) -> Option<f64> {
+        let mut u = 0.0_f64;
+        for _ in 0..30 {
+            let by = step(&self.course(u))?;
+            u += by.clamp(-0.5, 0.5);
+            if u.is_nan() || u.abs() > 1.2 {
+                return None;
+            }
+            if by.abs() < 1e-12 {
+                break;
+            }
+        }
+        Some(u)
+    }
+
+    /// Variance of the value at u for unit noise.
+    pub(crate) fn value_variance(&self, u: f64) -> f64 {
+        self.solution.variance(&powers(u))
+    }
+
+    /// Variance of the slope at u for unit noise.
+    pub(crate) fn slope_variance(&self, u: f64) -> f64 {
+        let mut row = [0.0; MOST];
+        let below = powers(u);
+        for k in 1..MOST {
+            row[k] = k as f64 * below[k - 1];
+        }
+        self.solution.variance(&row)
+    }
+}
+
+fn powers(u: f64) -> [f64; MOST] {
+    let mut row = [1.0; MOST];
+    for k in 1..MOST {
+        row[k] = row[k - 1] * u;
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_through_its_own_samples_is_exact() {
+        let of = |t: f64| 3.0 - 0.02 * (t - 30.3).powi(2) + 1e-4 * (t - 30.3).powi(3);
+        let values: Vec<f64> = (0..40).map(|i| of(10.0 + f64::from(i))).collect();
+        let fit = Polynomial::through(&values, 10.0, 31.0, 12.0, 4).unwrap();
+        // Rounding.
+        assert!((fit.sample(fit.top().unwrap()) - 30.3).abs() < 1e-10);
+        assert!(fit.left < 1e-12);
+    }
+
+    #[test]
+    fn a_mean_has_the_variance_of_a_mean() {
+        let values = [1.0; 11];
+        let fit = Polynomial::through(&values, 0.0, 5.0, 5.0, 1).unwrap();
+        // At the centre a straight line is the mean of 11: rounding.
+        assert!((fit.value_variance(0.0) - 1.0 / 11.0).abs() < 1e-12);
+        // Σ u² over −1, −0.8 … 1 is 4.4.
+        assert!((fit.slope_variance(0.0) - 1.0 / 4.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn too_few_samples_make_no_fit() {
+        assert!(Polynomial::through(&[1.0, 2.0], 0.0, 0.0, 5.0, 4).is_none());
+        assert!(Polynomial::through(&[1.0; 9], 0.0, 100.0, 5.0, 4).is_none());
+        assert!(Polynomial::through(&[1.0; 9], 0.0, f64::NAN, 5.0, 4).is_none());
+    }
+}

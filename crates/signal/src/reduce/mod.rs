@@ -1,0 +1,16 @@
+//! From shots to curves: groups of one speed, ratios, fits with errors in both
+//! coordinates, and how far stated errors can be believed.
+
+mod chi_square;
+mod coverage;
+mod groups;
+mod ratios;
+mod summary;
+mod york;
+
+pub use chi_square::{ChiSquare, chi_square};
+pub use coverage::{Coverage, coverage};
+pub use groups::groups;
+pub use ratios::{Point, Ratio, ratios_at_common};
+pub use summary::{Summary, summary};
+pub use york::power_law_both_errors;

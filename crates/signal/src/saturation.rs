@@ -1,0 +1,54 @@
+//! Runs of samples at an end of the digitiser's range.
+
+use std::ops::Range;
+
+/// The two ends of a digitiser's range, in the samples' unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rails {
+    /// Nothing below this can be recorded.
+    pub low: f64,
+    /// Nothing above this can be recorded.
+    pub high: f64,
+}
+
+/// Runs of at least `shortest` samples in a row on or beyond a rail.
+///
+/// Without knowledge of the digitiser give the record's own extremes and a
+/// `shortest` that no round top reaches: a bell of width w (full width at
+/// half maximum, in samples) and H steps high has some 0.9 w/√H equal samples.
+#[must_use]
+pub fn saturated_runs(samples: &[f64], rails: Rails, shortest: usize) -> Vec<Range<usize>> {
+    let stuck = |x: &f64| *x <= rails.low || *x >= rails.high;
+    let mut runs = Vec::new();
+    let mut from = None;
+    for (i, x) in samples.iter().enumerate() {
+        match (stuck(x), from) {
+            (true, None) => from = Some(i),
+            (false, Some(start)) => {
+                runs.push(start..i);
+                from = None;
+            }
+            _ => {}
+        }
+    }
+    runs.extend(from.map(|start| start..samples.len()));
+    runs.retain(|run| run.len() >= shortest.max(1));
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_at_either_rail_are_found_also_at_the_end() {
+        let samples = [0.0, 5.0, 5.0, 5.0, 1.0, -5.0, 0.0, 5.0, 5.0];
+        let rails = Rails {
+            low: -5.0,
+            high: 5.0,
+        };
+        assert_eq!(saturated_runs(&samples, rails, 2), [1..4, 7..9]);
+        assert_eq!(saturated_runs(&samples, rails, 1).len(), 3);
+        assert!(saturated_runs(&[], rails, 1).is_empty());
+    }
+}

@@ -1,0 +1,283 @@
+//! Pulses are found whatever the offset, polarity and noise, and doubts are raised where due.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+mod common;
+
+use common::{Scene, channels};
+use hertzchain_signal::{
+    Channels, Doubt, Finding, Found, Place, Polarity, Rails, SignalError, pulses,
+};
+
+fn find(samples: &[f64]) -> Found {
+    pulses(Channels::Summed(samples), &Finding::default()).unwrap()
+}
+
+/// Every pulse within `widths` of its width of where it is.
+fn assert_found(scene: &Scene, found: &Found, widths: f64) {
+    for (pulse, (at, _, width)) in [found.passing, found.wall, found.returning]
+        .into_iter()
+        .zip(scene.pulses)
+    {
+        let pulse = pulse.unwrap_or_else(|| panic!("{found:?}"));
+        let off = (pulse.at as f64 * scene.interval_s - at).abs();
+        assert!(off < widths * width, "{pulse:?} {at}");
+    }
+}
+
+#[test]
+fn clean_pulses_are_found_to_a_sample_and_without_doubt() {
+    for (offset, sign, samples) in [(0.0, 1.0, 4000), (-7.5, -1.0, 4000), (1e3, 1.0, 100_000)] {
+        let scene = Scene {
+            offset,
+            sign,
+            samples,
+            ..Scene::default()
+        };
+        let found = find(&scene.summed());
+        // Half a sample, and rounding of equal neighbours.
+        assert_found(&scene, &found, 0.02);
+        assert_eq!(found.doubts, []);
+        let pair = scene.separate();
+        let found = pulses(channels(&pair), &Finding::default()).unwrap();
+        assert_found(&scene, &found, 0.02);
+        assert_eq!(found.doubts, []);
+        assert_eq!(found.sensor.sign, sign);
+    }
+}
+
+#[test]
+fn heights_and_widths_are_near_the_pulses_own() {
+    let scene = Scene::default();
+    let found = find(&scene.summed());
+    for (pulse, (_, height, width)) in found.pulses().zip(scene.pulses) {
+        // Half a sample off the top of a bell 50 samples wide.
+        assert!((pulse.height / height - 1.0).abs() < 1e-3);
+        assert!((pulse.width_samples * 1e-6 / width - 1.0).abs() < 1e-2);
+    }
+}
+
+#[test]
+fn pulses_are_found_at_20_db() {
+    for (interval_s, samples) in [(1e-6, 4000), (2e-6, 2000), (1e-6, 100_000)] {
+        for seed in 0..60 {
+            let scene = Scene {
+                interval_s,
+                samples,
+                noise: 0.1,
+                seed,
+                offset: 0.3,
+                sign: if seed % 2 == 0 { 1.0 } else { -1.0 },
+                ..Scene::default()
+            };
+            let found = find(&scene.summed());
+            // The flat top in noise of a tenth.
+            assert_found(&scene, &found, 0.4);
+            let pair = scene.separate();
+            let found = pulses(channels(&pair), &Finding::default()).unwrap();
+            assert_found(&scene, &found, 0.4);
+            // The returning pulse is 13 dB above the noise, and said to be low.
+            assert!(found.doubts.contains(&Doubt::LowSignal(Place::Returning)));
+        }
+    }
+}
+
+#[test]
+fn a_short_lead_is_doubted_but_the_pulses_are_found() {
+    let scene = Scene {
+        pulses: [
+            (70e-6, 1.0, 60e-6),
+            (770e-6, 1.6, 52e-6),
+            (1550e-6, 0.45, 66e-6),
+        ],
+        noise: 0.01,
+        samples: 3000,
+        ..Scene::default()
+    };
+    let found = find(&scene.summed());
+    assert_found(&scene, &found, 0.1);
+    assert!(found.doubts.contains(&Doubt::FewQuietSamples));
+}
+
+#[test]
+fn saturation_is_seen_with_and_without_known_rails() {
+    let scene = Scene {
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    let clipped: Vec<f64> = scene.summed().iter().map(|x| x.min(1.2)).collect();
+    let found = find(&clipped);
+    assert_eq!(found.doubts, [Doubt::Saturation(Place::Wall)]);
+    let finding = Finding {
+        rails: Some(Rails {
+            low: -1.2,
+            high: 1.2,
+        }),
+        ..Finding::default()
+    };
+    let found = pulses(Channels::Summed(&clipped), &finding).unwrap();
+    assert_eq!(found.doubts, [Doubt::Saturation(Place::Wall)]);
+}
+
+#[test]
+fn a_coarse_digitiser_does_not_look_saturated() {
+    // 200 steps to the top of the wall's pulse.
+    let samples: Vec<f64> = Scene::default()
+        .summed()
+        .iter()
+        .map(|x| (x * 125.0).round())
+        .collect();
+    assert_eq!(find(&samples).doubts, []);
+}
+
+#[test]
+fn missing_pulses_are_named() {
+    let mut scene = Scene {
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    scene.pulses[2].1 = 0.0;
+    let found = find(&scene.summed());
+    assert_eq!(found.doubts, [Doubt::Missing(Place::Returning)]);
+    scene.pulses[1].1 = 0.0;
+    let found = find(&scene.summed());
+    let both = [
+        Doubt::Missing(Place::Wall),
+        Doubt::Missing(Place::Returning),
+    ];
+    assert_eq!(found.doubts, both);
+}
+
+#[test]
+fn a_record_that_ends_early_is_too_short() {
+    let scene = Scene {
+        samples: 2000,
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    let found = find(&scene.summed());
+    assert!(found.doubts.contains(&Doubt::RecordTooShort));
+    assert!(found.doubts.contains(&Doubt::Missing(Place::Returning)));
+}
+
+#[test]
+fn a_fragment_beside_a_pulse_splits_it() {
+    let scene = Scene::default();
+    let fragment = Scene {
+        pulses: [(2.44e-3, 0.2, 60e-6), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0)],
+        ..Scene::default()
+    };
+    let both: Vec<f64> = scene
+        .summed()
+        .iter()
+        .zip(fragment.summed())
+        .map(|(a, b)| a + b)
+        .collect();
+    assert_eq!(find(&both).doubts, [Doubt::Split(Place::Returning)]);
+}
+
+#[test]
+fn pulses_that_run_into_each_other_overlap() {
+    let scene = Scene {
+        pulses: [
+            (800e-6, 1.0, 100e-6),
+            (950e-6, 1.6, 100e-6),
+            (1120e-6, 0.9, 100e-6),
+        ],
+        ..Scene::default()
+    };
+    let found = find(&scene.summed());
+    assert!(
+        found
+            .doubts
+            .contains(&Doubt::Overlap(Place::Passing, Place::Wall))
+    );
+}
+
+#[test]
+fn a_weak_pulse_of_the_wall_is_told_from_the_return() {
+    // The wall's disc is less sensitive than the bead's: its pulse is the lowest.
+    let scene = Scene {
+        pulses: [
+            (800e-6, 1.0, 45e-6),
+            (1520e-6, 0.2, 45e-6),
+            (2260e-6, 0.5, 45e-6),
+        ],
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    let finding = Finding {
+        beads: Some((40, 7)),
+        ..Finding::default()
+    };
+    let found = pulses(Channels::Summed(&scene.summed()), &finding).unwrap();
+    assert_found(&scene, &found, 0.1);
+    assert!(found.doubts.contains(&Doubt::Order));
+    // Without it a pulse half way must be half as high, and is doubted too.
+    let mut strong = scene;
+    strong.pulses[1].1 = 0.3;
+    let found = find(&strong.summed());
+    assert_found(&strong, &found, 0.1);
+    assert!(found.doubts.contains(&Doubt::Order));
+}
+
+#[test]
+fn a_stated_polarity_is_obeyed() {
+    let scene = Scene {
+        sign: -1.0,
+        noise: 0.01,
+        ..Scene::default()
+    };
+    let finding = |polarity| Finding {
+        polarity,
+        ..Finding::default()
+    };
+    let samples = scene.summed();
+    let found = pulses(Channels::Summed(&samples), &finding(Polarity::Negative)).unwrap();
+    assert_found(&scene, &found, 0.1);
+    let wrong = pulses(Channels::Summed(&samples), &finding(Polarity::Positive));
+    assert!(
+        matches!(wrong, Err(SignalError::NoPulse { .. })),
+        "{wrong:?}"
+    );
+}
+
+#[test]
+fn noise_alone_is_no_pulse() {
+    for seed in 0..40 {
+        let scene = Scene {
+            pulses: [(0.0, 0.0, 1.0); 3],
+            samples: 20_000,
+            noise: 1.0,
+            seed,
+            ..Scene::default()
+        };
+        let found = pulses(Channels::Summed(&scene.summed()), &Finding::default());
+        assert!(
+            matches!(found, Err(SignalError::NoPulse { .. })),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn records_that_hold_nothing_say_why() {
+    let on = |samples: &[f64]| pulses(Channels::Summed(samples), &Finding::default()).unwrap_err();
+    assert!(matches!(on(&[]), SignalError::TooShort { found: 0, .. }));
+    assert!(matches!(on(&[3.0; 500]), SignalError::Constant { .. }));
+    let mut bad = Scene::default().summed();
+    bad[77] = f64::INFINITY;
+    assert!(matches!(on(&bad), SignalError::NotFinite { index: 77, .. }));
+    let pair = (vec![0.0; 100], vec![0.0; 99]);
+    let lengths = pulses(channels(&pair), &Finding::default());
+    assert!(matches!(lengths, Err(SignalError::Lengths { .. })));
+    let finding = Finding {
+        beads: Some((7, 7)),
+        ..Finding::default()
+    };
+    let beads = pulses(Channels::Summed(&Scene::default().summed()), &finding);
+    assert!(matches!(beads, Err(SignalError::Option { .. })));
+}
