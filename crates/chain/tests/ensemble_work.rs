@@ -38,6 +38,53 @@ fn the_dry_shot_costs_this_many_force_passes() {
     }
 }
 
+#[test]
+fn wet_shots_and_single_precision_cost_as_many_passes_as_their_time_has_steps() {
+    // Wet pulses take longer to come back; the precision changes no step.
+    for (wet, passes) in [(false, 785), (true, 817)] {
+        let mut chain = row(40, 0.5, dry());
+        if wet {
+            chain.sections[0].contacts = 0..=6;
+            chain.sections.push(Section {
+                contacts: 7..=40,
+                laws: vec![hertz(), viscoelastic()],
+                material: Some(Material {
+                    shear_viscosity_pa_s: 1e5,
+                    bulk_viscosity_pa_s: 1e5,
+                    ..chain.beads[0].material
+                }),
+            });
+        }
+        let system = [System::new(&chain).unwrap()];
+        for precision in PRECISIONS {
+            let flown = fire_all_in(precision, &system, (0.16, 1e-2), &settings(40));
+            let flown = flown.into_iter().next().unwrap().unwrap();
+            assert_eq!(flown.work.force_passes, passes, "{precision:?}, wet: {wet}");
+        }
+    }
+}
+
+#[test]
+fn a_hundred_thousand_beads_cost_what_moves_and_keep_the_bits() {
+    let system = [System::new(&row(100_000, 0.5, dry())).unwrap()];
+    for precision in PRECISIONS {
+        let [part, whole] = [false, true].map(|whole_chain| {
+            let settings = Settings {
+                whole_chain,
+                end: End::Duration,
+                ..settings(100_000)
+            };
+            let time_s = 60.0 * system[0].scales().time_s;
+            let flown = fire_all_in(precision, &system, (0.1, time_s), &settings);
+            flown.into_iter().next().unwrap().unwrap()
+        });
+        if let Some(difference) = difference(&part, &whole) {
+            panic!("{precision:?}: {difference}");
+        }
+        assert!(part.bodies_looked_at * 500 < whole.bodies_looked_at);
+    }
+}
+
 /// One shot alone and a full block, in both precisions.
 fn every_number_of_lanes() -> impl Iterator<Item = (Precision, usize)> {
     let lanes = |precision: Precision| [1, precision.lanes()].map(|lanes| (precision, lanes));

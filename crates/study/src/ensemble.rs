@@ -12,7 +12,7 @@ use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked};
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
-use hertzchain_chain::observe::Passages;
+use hertzchain_chain::observe::{Passages, RETURN_WITHIN};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
 
@@ -204,8 +204,13 @@ fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
     let Ok([sensor, wall]) = <[_; 2]>::try_from(flown.signals) else {
         return None;
     };
-    let passages = Passages::from_signals(sensor, wall, flown.time_s);
+    let passages = Passages::from_signals(sensor, wall, flown.time_s, plan.duration_s.is_none());
     let passage = passages.passage().ok()?;
+    // Where what came last changes what came first, looks between steps are too coarse.
+    let searched_s = RETURN_WITHIN * passage.tof_incident_s();
+    if plan.duration_s.is_none() && flown.time_s < passage.wall.time_s + searched_s {
+        return None;
+    }
     let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;
     Some(Shot {
         flight: Flight::picked(plan.pick, &passages, &passage),

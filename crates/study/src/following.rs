@@ -32,7 +32,7 @@ impl Following {
     pub(crate) fn new(plan: &Plan, end: &End) -> Self {
         let wall = has_wall(&plan.chain.far);
         Self {
-            passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall),
+            passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), end.at_reflection),
             end: *end,
             sensor_bead: plan.sensor_bead,
             bead_over_striker: bead_over_striker(plan),

@@ -57,6 +57,10 @@ impl Number<8> for f64 {
     /// [Goldschmidt1964] makes a root of 28 bits of it and a step on the
     /// residual one of 42, 2e-13; elsewhere the hardware's root is as fast.
     #[inline(always)]
+    #[cfg_attr(
+        not(target_arch = "x86_64"),
+        allow(unused_variables, reason = "other hardware takes roots of 0 itself")
+    )]
     fn roots<S: Simd>(simd: S, d: f64x8<S>, positive: u64) -> f64x8<S> {
         match simd.level() {
             #[cfg(target_arch = "x86_64")]
@@ -87,6 +91,10 @@ impl Number<16> for f32 {
 
     /// As in double precision; one step leaves rounding alone.
     #[inline(always)]
+    #[cfg_attr(
+        not(target_arch = "x86_64"),
+        allow(unused_variables, reason = "other hardware takes roots of 0 itself")
+    )]
     fn roots<S: Simd>(simd: S, d: f32x16<S>, positive: u64) -> f32x16<S> {
         match simd.level() {
             #[cfg(target_arch = "x86_64")]

@@ -3,7 +3,6 @@
 use super::number::Number;
 use super::record::Samples;
 use crate::observe::RETURN_WITHIN;
-use std::ops::Range;
 
 /// When a shot is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +53,9 @@ impl Peak {
 /// Follows the pulse of one lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passing {
+    /// The sensor's largest maximum so far.
+    highest: Peak,
+    /// The same before the wall's largest sample.
     incident: Peak,
     wall: Peak,
     returned: Peak,
@@ -71,37 +73,38 @@ impl Passing {
         step: usize,
     ) {
         let unseen = self.seen + 1..step + 1;
-        if wall.crest() > self.wall.value {
+        // A wall that is pressed harder than ever tells of a larger pulse: what
+        // the sensor has shown until then is that pulse on its way in.
+        let at_wall = wall.crest() > self.wall.value;
+        let at_sensor = sensor.crest().max(self.now) > self.highest.value;
+        if at_wall || at_sensor {
             for at in unseen.clone() {
-                self.wall.look(wall.at(at), at);
+                self.look_for_maximum(sensor, at);
+                if at_wall && self.wall.look(wall.at(at), at) {
+                    (self.incident, self.returned) = (self.highest, Peak::default());
+                }
             }
-            self.returned = Peak::default();
         }
-        let before_the_wall = self.wall.value == 0.0 || self.seen < self.wall.step;
-        let incident = before_the_wall && sensor.crest() > self.incident.value;
-        let returned = step as f64 > self.back() && sensor.crest() > self.returned.value;
-        if incident || returned {
-            self.look_at_sensor(sensor, unseen);
+        let back = self.back();
+        if step as f64 > back && sensor.crest() > self.returned.value {
+            for at in unseen.filter(|&at| at as f64 > back) {
+                self.returned.look(sensor.at(at), at);
+            }
         }
         self.now = sensor.at(step);
         self.seen = step;
     }
 
-    /// Before the wall's peak the largest sample is that of the pulse going
-    /// in, long after it that of the pulse coming back.
-    fn look_at_sensor<N: Number<W>, const W: usize>(
+    /// Keeps the sample before one, if it is a maximum and the highest yet.
+    fn look_for_maximum<N: Number<W>, const W: usize>(
         &mut self,
         sensor: Samples<'_, N, W>,
-        unseen: Range<usize>,
+        at: usize,
     ) {
-        let back = self.back();
-        for at in unseen {
-            let value = sensor.at(at);
-            if at < self.wall.step || self.wall.value == 0.0 {
-                self.incident.look(value, at);
-            }
-            if at as f64 > back {
-                self.returned.look(value, at);
+        if at > 2 {
+            let [before, value, after] = [at - 2, at - 1, at].map(|at| sensor.at(at));
+            if value >= before && value > after {
+                self.highest.look(value, at - 1);
             }
         }
     }

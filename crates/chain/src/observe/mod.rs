@@ -5,7 +5,7 @@ mod separation;
 mod signal;
 mod tracer;
 
-pub(crate) use passage::RETURN_WITHIN;
+pub use passage::RETURN_WITHIN;
 pub use passage::{Flank, Passage, PassageError, Passages};
 pub use separation::{Apart, Separation};
 pub(crate) use signal::KEPT;

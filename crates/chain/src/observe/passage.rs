@@ -63,7 +63,7 @@ pub type Flank = f64;
 const REPORTED: f64 = 0.05;
 
 /// The reflected pulse is looked for until tw + this · (tw − t7).
-pub(crate) const RETURN_WITHIN: f64 = 3.0;
+pub const RETURN_WITHIN: f64 = 3.0;
 
 impl Passage {
     /// Incident time of flight in s.
@@ -94,13 +94,14 @@ impl Passages {
         }
     }
 
-    /// From the signals of a sensor bead and of the wall, followed until a time in s.
+    /// From the signals of a sensor bead and of the wall, followed until a time
+    /// in s; `ends_shot` as for [`Passages::new`].
     #[must_use]
-    pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64) -> Self {
+    pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64, ends_shot: bool) -> Self {
         let mut passages = Self {
             sensor,
             wall,
-            ends_shot: false,
+            ends_shot,
             until_s,
             seen: (0, 0),
             best: None,
@@ -130,15 +131,26 @@ impl Passages {
         }
     }
 
+    /// The wall's largest maximum and the sensor's before it. Where the search
+    /// ends the shot, what the wall sees after its end is another pulse, whatever
+    /// else the shot is followed for.
     fn incident_and_wall(&self) -> Result<(Maximum, Maximum), PassageError> {
+        let mut wall: Option<Maximum> = None;
+        let mut incident = None;
+        for &peak in self.wall.maxima() {
+            let over = |(incident, wall)| peak.time_s > search_ends_s(incident, wall);
+            if self.ends_shot && incident.zip(wall).is_some_and(over) {
+                break;
+            }
+            if peak.value > wall.map_or(0.0, |wall| wall.value) {
+                wall = Some(peak);
+                incident = largest(self.sensor.maxima(), |other| other.time_s < peak.time_s);
+            }
+        }
         let duration_s = self.until_s;
-        let wall = largest(self.wall.maxima(), |_| true)
-            .ok_or(PassageError::NoWallPulse { duration_s })?;
-        let incident = largest(self.sensor.maxima(), |peak| peak.time_s < wall.time_s).ok_or(
-            PassageError::NoIncidentPulse {
-                wall_s: wall.time_s,
-            },
-        )?;
+        let wall = wall.ok_or(PassageError::NoWallPulse { duration_s })?;
+        let wall_s = wall.time_s;
+        let incident = incident.ok_or(PassageError::NoIncidentPulse { wall_s })?;
         Ok((incident, wall))
     }
 
@@ -203,8 +215,7 @@ impl Observer for Passages {
         self.update();
         match self.best {
             Some((incident, wall)) if self.ends_shot => {
-                let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
-                if piece.time_s(1.0) > until {
+                if piece.time_s(1.0) > search_ends_s(incident, wall) {
                     Flow::Finished
                 } else {
                     Flow::Continue
@@ -215,10 +226,14 @@ impl Observer for Passages {
     }
 }
 
+/// Until when the reflected pulse is looked for, in s.
+fn search_ends_s(incident: Maximum, wall: Maximum) -> f64 {
+    wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s)
+}
+
 /// Whether a maximum of the sensor bead lies in (tw, tw + 3 (tw − t7)].
 fn returns(peak: &Maximum, incident: Maximum, wall: Maximum) -> bool {
-    let until = wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s);
-    peak.time_s > wall.time_s && peak.time_s <= until
+    peak.time_s > wall.time_s && peak.time_s <= search_ends_s(incident, wall)
 }
 
 fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
