@@ -39,7 +39,7 @@ pub(super) fn pick(
         height: top.value,
         height_sigma: noise * fit.value_variance(u).sqrt(),
         width_s: pulse.width_samples,
-        misfit: sight.misfit(fit.left),
+        misfit: sight.misfit(pulse, fit.left),
     })
 }
 

@@ -43,7 +43,7 @@ pub(super) fn pick(
         height: model.height,
         height_sigma: sigma(0),
         width_s: model.width,
-        misfit: sight.misfit((left / freedom as f64).sqrt()),
+        misfit: sight.misfit(pulse, (left / freedom as f64).sqrt()),
     })
 }
 

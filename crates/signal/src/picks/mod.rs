@@ -117,21 +117,18 @@ impl Sight<'_> {
         (first, heights)
     }
 
-    /// Noise of one sample; that of a digitiser's rounding if the record shows none.
+    /// Noise of one sample; at least a digitiser's rounding, which a quiet
+    /// stretch between two of its steps does not show.
     fn noise(&self, pulse: &Pulse) -> f64 {
-        let noise = self.upright.level.noise;
-        if noise > 0.0 {
-            return noise;
-        }
         let reach = 2.0 * pulse.width_samples;
         let (_, near) = self.window(pulse.at as f64 - reach, pulse.at as f64 + reach);
-        let steps = near.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let step = steps.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
-        if step.is_finite() {
-            step / 12.0_f64.sqrt()
-        } else {
-            0.0
-        }
+        let differences = near.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let differ = differences.filter(|d| *d > 0.0);
+        // Of samples that are not rounded, the least of some hundred differences is
+        // far below their noise.
+        let step = differ.fold(f64::INFINITY, f64::min);
+        let rounding = if step.is_finite() { step } else { 0.0 } / 12.0_f64.sqrt();
+        self.upright.level.noise.max(rounding)
     }
 
     /// As [`Self::noise`], for what averages over many samples.
@@ -140,8 +137,8 @@ impl Sight<'_> {
     }
 
     /// `left` over the noise, if there is noise.
-    fn misfit(&self, left: f64) -> Option<f64> {
-        let noise = self.upright.level.noise;
+    fn misfit(&self, pulse: &Pulse, left: f64) -> Option<f64> {
+        let noise = self.noise(pulse);
         (noise > 0.0).then(|| left / noise)
     }
 }
