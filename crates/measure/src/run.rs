@@ -19,6 +19,8 @@ pub struct Options {
     pub measuring: Measuring,
     /// Speeds and cases of files.
     pub list: Option<ShotList>,
+    /// Standard error of speeds in m/s where nobody else tells one.
+    pub speed_error_m_s: Option<f64>,
 }
 
 /// What came of a set of recordings.
@@ -75,6 +77,7 @@ fn named(mut record: Record, options: &Options) -> Record {
         record.speed_error_m_s = entry.speed_error_m_s.or(record.speed_error_m_s);
         record.case = entry.case.clone().or(record.case);
     }
+    record.speed_error_m_s = record.speed_error_m_s.or(options.speed_error_m_s);
     record
 }
 
