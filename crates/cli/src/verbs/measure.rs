@@ -31,7 +31,7 @@ const FITTED_WIDTHS: f64 = 1.6;
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let files = files(&arguments.records)?;
+    let files = files(&arguments.records, arguments.shots.as_deref())?;
     let options = options(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let bar = bar();
@@ -59,8 +59,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     judge(&measured)
 }
 
-/// Files, and those of folders in order of their names.
-fn files(given: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+/// Files, and those of folders in order of their names; the table of shots may
+/// lie among them.
+fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let mut files = Vec::new();
     for path in given {
         match path.is_dir() {
@@ -68,6 +69,8 @@ fn files(given: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             false => files.push(path.clone()),
         }
     }
+    let list = list.and_then(|list| list.canonicalize().ok());
+    files.retain(|file| list.is_none() || file.canonicalize().ok() != list);
     Ok(files)
 }
 
