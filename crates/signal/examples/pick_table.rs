@@ -62,7 +62,7 @@ fn dry_shot() -> Source {
 
 fn methods() -> [(&'static str, Method); 4] {
     [
-        ("local model", Method::default()),
+        ("maximum", Method::default()),
         ("onset at 50 %", Method::Onset { fraction: 0.5 }),
         ("correlation", Method::CrossCorrelation(Template::Passing)),
         (

@@ -93,8 +93,19 @@ pub struct Pulse {
     pub height: f64,
     /// Full width at half maximum about it, in samples.
     pub width_samples: f64,
+    /// Parts of that before and after the maximum.
+    pub sides_samples: (f64, f64),
     /// First and last sample above a tenth of the height.
     pub extent: (usize, usize),
+}
+
+impl Pulse {
+    /// Twice the shorter side: the width of a bell as steep as the steeper flank.
+    /// What a pulse trails behind does not widen it.
+    #[must_use]
+    pub fn steep_width_samples(&self) -> f64 {
+        2.0 * self.sides_samples.0.min(self.sides_samples.1)
+    }
 }
 
 /// The pulses of a shot.
