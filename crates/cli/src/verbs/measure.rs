@@ -51,10 +51,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let all = results::json(&measured, &curves);
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&summary::text(&measured, &curves))?,
+        false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
     }
     if let Some(folder) = folder {
-        write(folder, &measured, &curves, &all)?;
+        write(folder, &measured, (&curves, &grouping.reference), &all)?;
     }
     judge(&measured)
 }
@@ -203,7 +203,7 @@ fn bar() -> ProgressBar {
 fn write(
     mut folder: Folder,
     measured: &Measurement,
-    curves: &Curves,
+    (curves, reference): (&Curves, &str),
     all: &serde_json::Value,
 ) -> Result<(), Failure> {
     folder.write("shots.csv", shots_csv(&measured.shots).as_bytes())?;
@@ -217,7 +217,7 @@ fn write(
     }
     if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {
         folder.write("ratios.csv", ratios_csv(curves).as_bytes())?;
-        folder.figure("ratios", &pictures::ratios(curves))?;
+        folder.figure("ratios", &pictures::ratios(curves, reference))?;
     }
     eprint!("Written:\n{}", folder.list());
     Ok(())

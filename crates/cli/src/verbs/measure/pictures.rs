@@ -1,8 +1,8 @@
 //! Figures of what was measured.
 
-use hertzchain_figures::{Chart, Dash, Figure, Legend, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
 use hertzchain_measure::{Case, Curves, Example, SpeedRow};
-use hertzchain_signal::{Flight, Ratio, Summary};
+use hertzchain_signal::{FitError, Flight, PowerLaw, Ratio, Summary};
 
 /// Examples that fit on a page.
 const MOST: usize = 4;
@@ -71,18 +71,26 @@ pub fn times(curves: &Curves) -> Figure {
     };
     let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
     for (number, case) in curves.cases.iter().enumerate() {
-        incident = with_curve(incident, case, number, |row| Some(row.incident_s));
-        reflected = with_curve(reflected, case, number, |row| row.reflected_s);
+        let laws = &case.laws;
+        incident = with_curve(incident, (number, case), &laws.incident, |row| {
+            Some(row.incident_s)
+        });
+        reflected = with_curve(reflected, (number, case), &laws.reflected, |row| {
+            row.reflected_s
+        });
     }
     let figure = Figure::double_column(75.0).columns(2).letters();
     figure.panel(incident).panel(reflected)
 }
 
-/// Points of a case.
+/// Width of a fit's line in points: the data lie on top.
+const FIT_WIDTH: f64 = 0.7;
+
+/// Points of a case and their power law.
 fn with_curve(
     chart: Chart,
-    case: &Case,
-    number: usize,
+    (number, case): (usize, &Case),
+    law: &Result<PowerLaw, FitError>,
     of: impl Fn(&SpeedRow) -> Option<Summary>,
 ) -> Chart {
     let known: Vec<(&SpeedRow, Summary)> = case
@@ -101,7 +109,15 @@ fn with_curve(
         .marker(marker(number))
         .y_error(&column(&|point| 1e6 * bar(point.1.error)))
         .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
-    chart.with(points)
+    let fitted = column(&|point| match law {
+        Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
+        Err(_) => f64::NAN,
+    });
+    let colour = Colour::PALETTE[number % Colour::PALETTE.len()];
+    let line = Series::line("", &speeds, &fitted).dash(Dash::Solid);
+    chart
+        .with(points.colour(colour))
+        .with(line.colour(colour).width(FIT_WIDTH))
 }
 
 fn marker(number: usize) -> Marker {
@@ -113,11 +129,11 @@ fn marker(number: usize) -> Marker {
 }
 
 /// Ratios of times to the reference's, with error bars.
-pub fn ratios(curves: &Curves) -> Figure {
+pub fn ratios(curves: &Curves, reference: &str) -> Figure {
     let chart = |title: &str| {
         Chart::new(
             "Speed of the striker (m/s)",
-            "Time of flight over reference",
+            &format!("Time of flight over {reference}"),
         )
         .x_log()
         .title(title)

@@ -9,7 +9,7 @@ use hertzchain_signal::{Estimate, FitError, PowerLaw, Summary};
 const MOST_SHOTS: usize = 30;
 
 /// Tables and fits.
-pub fn text(measured: &Measurement, curves: &Curves) -> String {
+pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
     if curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS {
         text += &shots(&measured.shots);
@@ -20,7 +20,7 @@ pub fn text(measured: &Measurement, curves: &Curves) -> String {
     for wet in &curves.ratios {
         text += &format!(
             "\n{}\n",
-            heading(&format!("{} over reference", named(&wet.case)))
+            heading(&format!("{} over {reference}", named(&wet.case)))
         );
         for ratio in &wet.incident {
             let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
