@@ -38,32 +38,62 @@ pub struct Measurement {
 
 /// Reads and measures recordings; `seen` is told how many records are done.
 ///
-/// Holds a batch of records at a time: a recording may be larger than memory.
-/// Results do not depend on the number of threads.
+/// Holds two batches of records at a time, one being read while the other is
+/// measured: a recording may be larger than memory. Results do not depend on the
+/// number of threads.
 #[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, seen: &mut dyn FnMut(usize)) -> Measurement {
     let mut measurement = Measurement::default();
-    for file in files {
-        let mut batch = Vec::new();
-        let mut waiting = 0;
-        for record in read(file, &options.reading) {
-            match record {
-                Ok(record) => {
-                    waiting += record.len() * record.channels.len();
-                    batch.push(named(record, options));
-                }
-                Err(error) => measurement.refused.push(error),
-            }
-            if waiting >= BATCH {
-                seen(batch.len());
-                measurement.take(std::mem::take(&mut batch), options);
-                waiting = 0;
+    let mut records = files.iter().flat_map(|file| read(file, &options.reading));
+    let mut refused = Vec::new();
+    let mut batch = gather(&mut records, options, &mut refused);
+    while !batch.is_empty() {
+        let cases = measurement.cases();
+        let mut done = Vec::new();
+        // Readers stay in this thread; the others measure meanwhile.
+        let next = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| done = measured(&batch, &cases, options));
+            gather(&mut records, options, &mut refused)
+        });
+        seen(batch.len());
+        measurement.keep(done, batch);
+        batch = next;
+    }
+    measurement.refused = refused;
+    measurement
+}
+
+/// The next records that can be read, as many as are measured together.
+fn gather(
+    records: &mut dyn Iterator<Item = Result<Record, RecordError>>,
+    options: &Options,
+    refused: &mut Vec<RecordError>,
+) -> Vec<Record> {
+    let mut batch = Vec::new();
+    let mut waiting = 0;
+    while waiting < BATCH {
+        match records.next() {
+            None => break,
+            Some(Err(error)) => refused.push(error),
+            Some(Ok(record)) => {
+                waiting += record.len() * record.channels.len();
+                batch.push(named(record, options));
             }
         }
-        seen(batch.len());
-        measurement.take(batch, options);
     }
-    measurement
+    batch
+}
+
+/// A shot, and its samples if it may become an example.
+type Done = (Shot, Option<Vec<Vec<f64>>>);
+
+fn measured(batch: &[Record], cases: &[String], options: &Options) -> Vec<Done> {
+    let one = |record: &Record| {
+        let (shot, volts) = Shot::of(record, &options.measuring);
+        let worth = shot.flight.is_ok() && !cases.contains(&shot.case);
+        (shot, worth.then_some(volts))
+    };
+    batch.par_iter().map(one).collect()
 }
 
 /// A record with what the list says of it.
@@ -82,16 +112,8 @@ fn named(mut record: Record, options: &Options) -> Record {
 }
 
 impl Measurement {
-    fn take(&mut self, batch: Vec<Record>, options: &Options) {
-        let measured: Vec<(Shot, Option<Vec<Vec<f64>>>)> = batch
-            .par_iter()
-            .map(|record| {
-                let (shot, volts) = Shot::of(record, &options.measuring);
-                let worth = shot.flight.is_ok() && !self.has_example(&shot.case);
-                (shot, worth.then_some(volts))
-            })
-            .collect();
-        for ((shot, volts), record) in measured.into_iter().zip(batch) {
+    fn keep(&mut self, done: Vec<Done>, batch: Vec<Record>) {
+        for ((shot, volts), record) in done.into_iter().zip(batch) {
             self.samples += (record.len() * record.channels.len()) as u64;
             if let Some(volts) = volts.filter(|_| !self.has_example(&shot.case)) {
                 self.examples.push(Example {
@@ -102,6 +124,12 @@ impl Measurement {
             }
             self.shots.push(shot);
         }
+    }
+
+    /// Cases that have an example.
+    fn cases(&self) -> Vec<String> {
+        let cases = self.examples.iter().map(|example| &example.shot.case);
+        cases.cloned().collect()
     }
 
     fn has_example(&self, case: &str) -> bool {

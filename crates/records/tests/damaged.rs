@@ -76,8 +76,8 @@ fn each_failing_is_one_clear_report() {
         ),
         (
             "stops.csv",
-            "1.5,2\n2.5,1\n3.5,2\n1.5,1\n2.5,2\n4.5",
-            "line 6 stops in the middle",
+            "1.5,2\n2.5,1\n3.5,2\n1.5,1\n2.5,2\n1.5,3\n0.5,2\n1.5,1\n2.5,2\n4.5",
+            "line 10 stops in the middle",
         ),
         ("other.xyz", "\u{1}\u{2}\u{3}", "none of HDF5"),
     ] {
