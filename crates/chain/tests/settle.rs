@@ -296,6 +296,7 @@ fn what_is_wrong_is_said() {
         }
     );
     assert!(system.from_state(&lost).is_err() && system.from_state(&short).is_err());
+    assert_eq!(lost.overlap_m(&system, 99), f64::NEG_INFINITY);
     let chain = row(2, 1.0, vec![hertz()]);
     let free = Chain {
         start: Start::Free,

@@ -1,8 +1,11 @@
 //! The command line, declared once: help, man pages and completions follow.
 
+pub mod measure;
+
 use crate::given::Given;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use hertzchain_rig::Shard;
 use std::path::PathBuf;
 
 /// Rows of beads and their solitary waves.
@@ -42,6 +45,10 @@ pub enum Verb {
     Shot(Shot),
     /// Compute times of flight against speed, with power-law fits
     Sweep(Sweep),
+    /// Run a campaign on a virtual rig: taps and shots, recorded as by a real one
+    Campaign(Campaign),
+    /// Measure times of flight on recordings of any rig, with errors and curves
+    Measure(measure::Measure),
     /// Check an experiment file and print what was understood; run nothing
     Check(Check),
     /// Print what theory says of a chain's waves
@@ -206,6 +213,26 @@ pub struct Sweep {
     pub threads: Option<usize>,
 }
 
+/// Arguments of `campaign`.
+#[derive(Debug, Args)]
+pub struct Campaign {
+    /// Which experiment.
+    #[command(flatten)]
+    pub input: Input,
+    /// Folder to write recordings into; the same folder again goes on where a run was broken off
+    #[arg(long, short, value_name = "DIR", default_value = "campaign")]
+    pub out: PathBuf,
+    /// Only the i-th of n parts, for several machines: series are dealt out like cards
+    #[arg(long, value_name = "i/n", default_value = "1/1")]
+    pub shard: Shard,
+    /// Seed of all that is random, in place of the experiment's
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Threads; all cores when absent; recordings do not depend on it
+    #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+}
+
 /// Arguments of `check` and `theory`.
 #[derive(Debug, Args)]
 pub struct Check {
@@ -245,8 +272,8 @@ pub struct Reproduce {
     #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
     /// Also scan what the paper leaves open: which claims hold in which reading;
-    /// tries every combination of the switches that move a verdict, about 25 minutes
-    /// on two idle cores
+    /// tries every combination of the switches that move a verdict, up to an hour on
+    /// two cores, and tells before it begins
     #[arg(long)]
     pub readings: bool,
 }

@@ -36,6 +36,8 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Reproduce(arguments) => verbs::reproduce::run(&arguments),
         Verb::Shot(arguments) => verbs::shot::run(&arguments),
         Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
+        Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
+        Verb::Measure(arguments) => verbs::measure::run(&arguments),
         Verb::Check(arguments) => verbs::check::run(&arguments),
         Verb::Theory(arguments) => verbs::theory::run(&arguments),
         Verb::Laws(arguments) => verbs::laws::run(&arguments),

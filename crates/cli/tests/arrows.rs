@@ -12,10 +12,22 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("measure", &["signal", "records"]),
     ("experiment", &["chain"]),
     ("study", &["chain", "experiment", "signal"]),
+    (
+        "rig",
+        &["chain", "experiment", "study", "signal", "records"],
+    ),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
         "cli",
-        &["chain", "experiment", "signal", "study", "figures"],
+        &[
+            "chain",
+            "experiment",
+            "signal",
+            "study",
+            "figures",
+            "rig",
+            "measure",
+        ],
     ),
 ];
 

@@ -61,6 +61,7 @@ impl Head {
                     samples,
                 })
                 .collect(),
+            programmed_speed_m_s: None,
             speed_m_s: None,
             speed_error_m_s: None,
             case: None,

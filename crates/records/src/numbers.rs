@@ -93,16 +93,19 @@ impl Number {
         value: impl Fn([u8; N]) -> T,
     ) -> Vec<T> {
         let (numbers, _) = bytes.as_chunks::<N>();
-        let numbers = numbers.iter().skip(first).step_by(every.max(1)).copied();
-        match self.big_endian {
-            false => numbers.map(value).collect(),
-            true => numbers
-                .map(|mut number| {
-                    number.reverse();
-                    value(number)
-                })
-                .collect(),
+        if every == 1 && !self.big_endian {
+            // The usual case, as plain as it must be to be vectorised.
+            let numbers = numbers.get(first..).unwrap_or_default();
+            return numbers.iter().map(|number| value(*number)).collect();
         }
+        let numbers = numbers.iter().skip(first).step_by(every.max(1)).copied();
+        let turned = |mut number: [u8; N]| {
+            if self.big_endian {
+                number.reverse();
+            }
+            value(number)
+        };
+        numbers.map(turned).collect()
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Record {
     pub interval_s: f64,
     /// The channels, all of the same length: one that sums both sensors, or two.
     pub channels: Vec<Channel>,
+    /// Speed that the striker was told, in m/s, if the file says.
+    pub programmed_speed_m_s: Option<f64>,
     /// Speed of the striker in m/s, if the file says.
     pub speed_m_s: Option<f64>,
     /// Standard error of that speed in m/s, if the file says.

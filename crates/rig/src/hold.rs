@@ -31,17 +31,11 @@ impl Hold {
         }
         square[STATES][STATES + 1] = 1.0;
         let whole = exponential(&square);
-        let mut hold = Self {
-            transition: [[0.0; STATES]; STATES],
-            input: [0.0; STATES],
-            change: [0.0; STATES],
-        };
-        for row in 0..STATES {
-            hold.transition[row].copy_from_slice(&whole[row][..STATES]);
-            hold.input[row] = whole[row][STATES];
-            hold.change[row] = whole[row][STATES + 1];
+        Self {
+            transition: std::array::from_fn(|x| std::array::from_fn(|y| whole[x][y])),
+            input: std::array::from_fn(|x| whole[x][STATES]),
+            change: std::array::from_fn(|x| whole[x][STATES + 1]),
         }
-        hold
     }
 
     /// The state a step later; the input goes from `from` to `to`.

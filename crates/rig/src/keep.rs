@@ -23,12 +23,12 @@ pub struct Folder {
 #[must_use]
 pub fn fingerprint(plan: &Plan) -> u64 {
     let experiment = &plan.experiment;
-    // Numbers that a program has set are not in the text.
+    // Numbers that a program has set are not in the text; where the file lies
+    // does not matter.
     let numbers = experiment.numbers();
     let inputs = format!(
-        "{} {} {} {numbers:?} {:?} {}",
+        "{} {} {numbers:?} {:?} {}",
         env!("CARGO_PKG_VERSION"),
-        experiment.name(),
         plan.seed,
         experiment.reading(),
         experiment.text()
@@ -94,8 +94,7 @@ impl Folder {
 /// What tells a campaign: the experiment with a fingerprint above it.
 fn told(plan: &Plan) -> String {
     format!(
-        "# Campaign of {}, seed {}, inputs {:016x}. The recordings beside this file are its own.\n{}",
-        plan.experiment.name(),
+        "# A campaign with seed {}, inputs {:016x}. The recordings beside this file are its own.\n{}",
         plan.seed,
         fingerprint(plan),
         plan.experiment.text()

@@ -8,8 +8,9 @@ use hertzchain_chain::settle::{Rest, State};
 use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
 use hertzchain_chain::{Sensor, System};
 
-/// Largest error per step of the wave: times of flight right to some 1e-7,
-/// a tenth of a nanosecond.
+/// Largest error per step of the wave. Against a hundredth of it, incident
+/// times of flight of the paper's chains differ by 3 ps, reflected ones by up
+/// to 0.15 ns.
 const TOLERANCE: f64 = 1e-8;
 
 /// The wave loop hands over to the slow scheme when the reflected pulse has

@@ -32,7 +32,7 @@ impl Tape {
     /// The next time to be taped, in s; `None` once the tape is full.
     fn next_s(&self) -> Option<f64> {
         let next = self.forces_n.len();
-        (next < self.length).then(|| self.start_s + next as f64 * self.interval_s)
+        (next < self.length).then_some(self.start_s + next as f64 * self.interval_s)
     }
 
     /// Forces at a time in s: straight lines from the time before.

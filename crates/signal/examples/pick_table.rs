@@ -62,7 +62,7 @@ fn dry_shot() -> Source {
 
 fn methods() -> [(&'static str, Method); 4] {
     [
-        ("local model", Method::default()),
+        ("maximum", Method::default()),
         ("onset at 50 %", Method::Onset { fraction: 0.5 }),
         ("correlation", Method::CrossCorrelation(Template::Passing)),
         (
@@ -126,10 +126,10 @@ fn cell(errors: &[f64], shots: u64) -> String {
     let n = errors.len() as f64;
     let mean = errors.iter().sum::<f64>() / n;
     let spread = errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    let lost = 1.0 - n / shots as f64;
-    let lost = match lost {
-        0.0 => String::new(),
-        lost => format!(" ({:.1} % lost)", 100.0 * lost),
+    let lost = 100.0 * (1.0 - n / shots as f64);
+    let lost = match lost < 0.05 {
+        true => String::new(),
+        false => format!(" ({lost:.1} % lost)"),
     };
     format!("{mean:+.0} ± {:.0}{lost}", spread.sqrt())
 }

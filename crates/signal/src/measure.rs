@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use crate::error::SignalError;
 use crate::find::saturated_as_recorded;
 use crate::{
-    Channels, Finding, Flight, Found, LowPass, Method, Polarity, pick, pulses, undroop, upright,
+    Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, pick, pulses,
+    undroop, upright,
 };
 
 /// What is done to a shot's samples, and how pulses are picked.
@@ -66,12 +67,14 @@ pub fn measure(
     let mut found = pulses(channels, &Finding { rails, ..*finding })?;
     if measuring.conditions() {
         let saturated = saturated_as_recorded(recorded, &found, finding);
-        found.doubts.extend(saturated);
-        found.doubts.sort_unstable();
-        found.doubts.dedup();
+        found.doubt(saturated);
     }
     let picks = pick(channels, interval_s, &found, &measuring.method, rails);
     let flight = picks.map(crate::Picks::flight);
+    let lost = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
+    if lost && found.returning.is_some() {
+        found.doubt(vec![Doubt::NotPicked(Place::Returning)]);
+    }
     Ok(Measured { found, flight })
 }
 

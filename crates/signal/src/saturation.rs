@@ -11,6 +11,17 @@ pub struct Rails {
     pub high: f64,
 }
 
+impl Rails {
+    /// Whether a sample stands on a rail or beyond, to 10⁻⁹ of the range: converting
+    /// digits to volts rounds.
+    #[must_use]
+    pub fn hold(&self, sample: f64) -> bool {
+        let range = self.high - self.low;
+        let rounding = if range.is_finite() { 1e-9 * range } else { 0.0 };
+        sample <= self.low + rounding || sample >= self.high - rounding
+    }
+}
+
 /// Runs of at least `shortest` samples in a row on or beyond a rail.
 ///
 /// Without knowledge of the digitiser give the record's own extremes and a
@@ -18,11 +29,10 @@ pub struct Rails {
 /// half maximum, in samples) and H steps high has some 0.9 w/√H equal samples.
 #[must_use]
 pub fn saturated_runs(samples: &[f64], rails: Rails, shortest: usize) -> Vec<Range<usize>> {
-    let stuck = |x: &f64| *x <= rails.low || *x >= rails.high;
     let mut runs = Vec::new();
     let mut from = None;
     for (i, x) in samples.iter().enumerate() {
-        match (stuck(x), from) {
+        match (rails.hold(*x), from) {
             (true, None) => from = Some(i),
             (false, Some(start)) => {
                 runs.push(start..i);
@@ -50,5 +60,14 @@ mod tests {
         assert_eq!(saturated_runs(&samples, rails, 2), [1..4, 7..9]);
         assert_eq!(saturated_runs(&samples, rails, 1).len(), 3);
         assert!(saturated_runs(&[], rails, 1).is_empty());
+    }
+
+    #[test]
+    fn rails_hold_what_conversion_to_volts_has_rounded() {
+        let rails = |low, high| Rails { low, high };
+        assert!(rails(-10.0, 10.0).hold(10.0 - 1e-12));
+        assert!(!rails(-10.0, 10.0).hold(10.0 - 1e-4));
+        assert!(!rails(f64::NEG_INFINITY, 1.0).hold(0.5));
+        assert!(rails(f64::NEG_INFINITY, 1.0).hold(1.0));
     }
 }

@@ -86,6 +86,47 @@ fn pulses_are_found_at_20_db() {
 }
 
 #[test]
+fn narrow_pulses_are_found_at_20_db_in_long_records() {
+    for seed in 0..40 {
+        let scene = Scene {
+            interval_s: 2e-6,
+            samples: 50_000,
+            noise: 0.1,
+            seed,
+            // The fastest shots: 17 samples across half the maximum.
+            pulses: [
+                (800e-6, 1.0, 35e-6),
+                (1450e-6, 1.6, 32e-6),
+                (2150e-6, 0.47, 38e-6),
+            ],
+            ..Scene::default()
+        };
+        let found = find(&scene.summed());
+        let strong = [found.passing, found.wall];
+        for (pulse, (at, _, width)) in strong.iter().zip(scene.pulses) {
+            let off = (pulse.unwrap().at as f64 * 2e-6 - at).abs();
+            // The flat top in noise of a tenth.
+            assert!(off < 0.4 * width, "{seed}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_spike_before_the_first_pulse_is_passed_over() {
+    let scene = Scene {
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    for sign in [1.0, -1.0] {
+        let mut samples = scene.summed();
+        samples[300] += 3.0 * sign;
+        let found = find(&samples);
+        assert_found(&scene, &found, 0.05);
+        assert_eq!(found.doubts, []);
+    }
+}
+
+#[test]
 fn a_short_lead_is_doubted_but_the_pulses_are_found() {
     let scene = Scene {
         pulses: [

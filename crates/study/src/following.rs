@@ -31,8 +31,12 @@ impl Following {
     /// Of a plan's sensor bead, wall and striker.
     pub(crate) fn new(plan: &Plan, end: &End) -> Self {
         let wall = has_wall(&plan.chain.far);
+        let passages = Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall);
         Self {
-            passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), end.at_reflection),
+            passages: match end.at_reflection {
+                true => passages,
+                false => passages.of_whole_shot(),
+            },
             end: *end,
             sensor_bead: plan.sensor_bead,
             bead_over_striker: bead_over_striker(plan),

@@ -10,6 +10,7 @@ pub struct Passages {
     sensor: Signal,
     wall: Signal,
     ends_shot: bool,
+    whole: bool,
     until_s: f64,
     seen: (usize, usize),
     best: Option<(Maximum, Maximum)>,
@@ -88,9 +89,20 @@ impl Passages {
             sensor: Signal::new(Sensor::Bead(sensor_bead)),
             wall: Signal::new(Sensor::Contact(wall_contact)),
             ends_shot,
+            whole: !ends_shot,
             until_s: 0.0,
             seen: (0, 0),
             best: None,
+        }
+    }
+
+    /// These, with maxima after the end of the search counted too: for a shot
+    /// whose duration was asked for.
+    #[must_use]
+    pub fn of_whole_shot(self) -> Self {
+        Self {
+            whole: true,
+            ..self
         }
     }
 
@@ -102,6 +114,7 @@ impl Passages {
             sensor,
             wall,
             ends_shot,
+            whole: !ends_shot,
             until_s,
             seen: (0, 0),
             best: None,
@@ -139,7 +152,7 @@ impl Passages {
         let mut incident = None;
         for &peak in self.wall.maxima() {
             let over = |(incident, wall)| peak.time_s > search_ends_s(incident, wall);
-            if self.ends_shot && incident.zip(wall).is_some_and(over) {
+            if !self.whole && incident.zip(wall).is_some_and(over) {
                 break;
             }
             if peak.value > wall.map_or(0.0, |wall| wall.value) {

@@ -36,7 +36,9 @@ pub struct SlowPhase {
     /// not coming back by itself; it is put at twice that at least.
     pub withdrawn_at_m: f64,
     /// Step as a fraction of the shortest period of the contacts as they are
-    /// now; up to 1/4.
+    /// now; up to 1/4. The default, 1/20, gives peaks of a pulse to 1 or 2 %,
+    /// times of flight to about 1e-3, and ends of a tap that scatter like those
+    /// of any shorter step; errors fall with its square.
     pub step: f64,
 }
 

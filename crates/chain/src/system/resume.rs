@@ -15,8 +15,9 @@ impl System {
     /// Where nothing but the striker moves, the state becomes the new rest:
     /// overlaps, gaps and locked-in forces of the contacts are what loads are
     /// otherwise, and whatever friction holds back acts on as a constant force.
-    /// An energy budget does not know that force. Where beads still move, the
-    /// chain's own balance of push and weight stays, without friction.
+    /// An energy budget does not know that force. Where beads still move, or the
+    /// spring on bead 1 has let go, the chain's own balance of push and weight
+    /// stays, without friction.
     ///
     /// # Errors
     /// A state of another chain or with numbers that are not finite; a chain
@@ -35,10 +36,12 @@ impl System {
         Ok(shot)
     }
 
-    /// Overlap in m of a contact at the rest positions that states count from.
+    /// Overlap in m of a contact at the rest positions that states count from;
+    /// −∞ where no contact is.
     pub(crate) fn rest_overlap_m(&self, contact: usize) -> f64 {
-        let moved = self.origin_m[contact + 1] - self.origin_m[contact];
-        self.offset_m[contact] + moved
+        let place = |body: usize| self.origin_m.get(body).copied().unwrap_or(0.0);
+        let offset = self.offset_m.get(contact).copied();
+        offset.unwrap_or(f64::NEG_INFINITY) + (place(contact + 1) - place(contact))
     }
 
     /// Whether it was made by [`System::from_state`] from a chain at rest.

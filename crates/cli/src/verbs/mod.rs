@@ -1,9 +1,11 @@
 //! One file a verb.
 
+pub mod campaign;
 pub mod check;
 pub mod completions;
 pub mod laws;
 pub mod man;
+pub mod measure;
 pub mod presets;
 pub mod reproduce;
 pub mod schema;

@@ -3,7 +3,7 @@
 use crate::arguments::Presets;
 use crate::failure::Failure;
 use crate::{format, print};
-use hertzchain_experiment::{Preset, examples, preset, presets};
+use hertzchain_experiment::{Preset, campaigns, examples, preset, presets};
 
 /// Runs the verb.
 pub fn run(arguments: &Presets) -> Result<(), Failure> {
@@ -11,7 +11,14 @@ pub fn run(arguments: &Presets) -> Result<(), Failure> {
         let found = preset(name).map_err(|error| Failure::User(error.to_string()))?;
         return print::print(found.text());
     }
-    let heads = [("The paper's chains", presets()), ("Examples", examples())];
+    let heads = [
+        ("The paper's chains", presets()),
+        ("Examples", examples()),
+        (
+            "Campaigns, for `hertzchain campaign --preset NAME`",
+            campaigns(),
+        ),
+    ];
     let mut text = String::new();
     for (head, list) in heads {
         text += &format!("{}\n{}\n", print::heading(head), listed(list));

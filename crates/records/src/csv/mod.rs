@@ -1,9 +1,46 @@
-//! Columns of numbers as text.
-pub(crate) fn open(
-    f: &std::path::Path,
-    _: &crate::ReadOptions,
-) -> Result<crate::read::Raw, crate::RecordError> {
-    Err(crate::RecordError::UnknownFormat {
-        file: f.display().to_string(),
-    })
+//! Columns of numbers as text: any delimiter, decimal commas, preambles.
+
+mod dialect;
+mod field;
+mod header;
+mod rows;
+mod times;
+
+use crate::channels::{chosen, interval_s};
+use crate::error::RecordError;
+use crate::options::ReadOptions;
+use crate::read::Raw;
+use std::path::Path;
+
+/// Opens a file of text; its beginning tells what the columns are.
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let beginning = dialect::beginning(file).map_err(|e| RecordError::reading(file, e))?;
+    let dialect = dialect::Dialect::of(&beginning)
+        .ok_or_else(|| RecordError::malformed(file, "text", "no columns of numbers were found"))?;
+    let header = header::Header::of(&beginning, &dialect);
+    let picked = chosen(file, &header.names, options)?;
+    let columns = picked
+        .iter()
+        .filter_map(|index| header.channels.get(*index));
+    let plan = rows::Plan {
+        names: picked
+            .iter()
+            .filter_map(|index| header.names.get(*index).cloned())
+            .collect(),
+        columns: columns.copied().collect(),
+        time: header.time,
+        interval_s: match header.time {
+            Some(_) => None,
+            None => Some(interval_s(file, header.interval_s, options)?),
+        },
+        separators: beginning
+            .lines()
+            .take(dialect.first_row)
+            .map(str::to_owned)
+            .collect(),
+        dialect,
+        options: options.clone(),
+    };
+    let rows = rows::Rows::open(file, plan).map_err(|e| RecordError::reading(file, e))?;
+    Ok(Box::new(rows))
 }

@@ -42,6 +42,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
             .and_then(|text| text.trim().parse().ok()),
         numbers: column(&open, layout::SHOT, shots).map_err(foreign)?,
         speeds: column(&open, layout::MEASURED, shots).map_err(foreign)?,
+        programmed: column(&open, layout::PROGRAMMED, shots).map_err(foreign)?,
         samples,
         length,
     };
@@ -59,6 +60,7 @@ struct Shelf {
     speed_error_m_s: Option<f64>,
     numbers: Vec<i64>,
     speeds: Vec<f64>,
+    programmed: Vec<f64>,
     samples: H5Dataset,
     length: usize,
 }
@@ -86,6 +88,7 @@ impl Shelf {
                     offset_v: self.offset_v,
                 },
             }],
+            programmed_speed_m_s: self.programmed.get(row).copied(),
             speed_m_s: speed.filter(|speed| speed.is_finite()),
             speed_error_m_s: self.speed_error_m_s,
             case: self.case.clone(),

@@ -197,7 +197,9 @@ impl SeriesWriter {
 impl Drop for SeriesWriter {
     fn drop(&mut self) {
         if let Some(open) = self.open.take() {
-            drop(open);
+            // Dropped, the library would complete a file that goes away and, on a
+            // full disk, complain of it to the terminal.
+            std::mem::forget(open);
             remove(&self.part);
         }
     }

@@ -1,9 +1,159 @@
-//! Columns of numbers as text.
-pub(crate) fn open(
-    f: &std::path::Path,
-    _: &crate::ReadOptions,
-) -> Result<crate::read::Raw, crate::RecordError> {
-    Err(crate::RecordError::UnknownFormat {
-        file: f.display().to_string(),
-    })
+//! LabVIEW's TDMS. Written here: the crate there is reads neither interleaved
+//! channels nor several chunks a segment, which most of LabVIEW's files have.
+
+mod bytes;
+mod index;
+mod lead;
+
+use crate::channels::{chosen, interval_s};
+use crate::cut::{Cut, Head, MOST_SAMPLES, Stream};
+use crate::error::{RecordError, name};
+use crate::options::ReadOptions;
+use crate::read::Raw;
+use crate::record::Samples;
+use index::{Channel, Index, Piece};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// Opens a TDMS file: every group with samples is a record, or several if it is
+/// to be cut.
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let index = Index::of(file)?;
+    let several = index.groups.len() > 1;
+    let mut records: Vec<Raw> = Vec::new();
+    for (number, group) in index.groups.into_iter().enumerate() {
+        let shot = several.then_some(number as u64 + 1);
+        let opened = open_group(file, group.0, group.1, options);
+        let opened = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
+        records.push(Box::new(opened.map(move |record| {
+            let mut record = record?;
+            record.shot = record.shot.or(shot);
+            Ok(record)
+        })));
+    }
+    if records.is_empty() && index.cut_short.is_none() {
+        return Err(RecordError::Empty {
+            source_name: name(file),
+        });
+    }
+    let file = name(file);
+    let end = index
+        .cut_short
+        .map(move |detail| Err(RecordError::truncated(file, detail)));
+    Ok(Box::new(records.into_iter().flatten().chain(end)))
+}
+
+fn open_group(
+    file: &Path,
+    group: String,
+    channels: Vec<Channel>,
+    options: &ReadOptions,
+) -> Result<Raw, RecordError> {
+    let names: Vec<String> = channels
+        .iter()
+        .map(|channel| channel.name.clone())
+        .collect();
+    let picked = chosen(file, &names, options)?;
+    let mut kept: Vec<Channel> = Vec::new();
+    for index in picked {
+        kept.extend(channels.get(index).cloned());
+    }
+    let source_name = format!("{}, {group}", name(file));
+    let total = kept.first().map_or(0, Channel::len);
+    if total == 0 {
+        return Err(RecordError::Empty { source_name });
+    }
+    if let Some(other) = kept.iter().find(|channel| channel.len() != total) {
+        return Err(RecordError::MixedLengths {
+            source_name,
+            found: other.len(),
+            expected: total,
+            why: "as in its first channel",
+        });
+    }
+    let stated_s = kept.iter().find_map(|channel| channel.interval_s);
+    let head = Head {
+        file: file.to_owned(),
+        part: Some(group),
+        names: kept.iter().map(|channel| channel.name.clone()).collect(),
+        interval_s: interval_s(file, stated_s, options)?,
+        total,
+        each: options.shot_samples.unwrap_or(total).max(1),
+    };
+    let opened = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
+    let stream = Group {
+        file: file.to_owned(),
+        opened,
+        channels: kept,
+        at: 0,
+    };
+    Ok(Box::new(Cut::new(head, stream)))
+}
+
+/// The channels of a group, read piece by piece.
+struct Group {
+    file: PathBuf,
+    opened: File,
+    channels: Vec<Channel>,
+    at: usize,
+}
+
+impl Stream for Group {
+    fn take(&mut self, count: usize) -> Result<Vec<Samples>, RecordError> {
+        let (from, to) = (self.at, self.at + count);
+        self.at = to;
+        let Self {
+            channels, opened, ..
+        } = self;
+        let taken: std::io::Result<Vec<Samples>> = channels
+            .iter()
+            .map(|channel| part(opened, channel, from, to))
+            .collect();
+        taken.map_err(|cause| RecordError::reading(&self.file, cause))
+    }
+}
+
+/// Samples `from..to` of a channel, gathered from the pieces that hold them.
+fn part(opened: &mut File, channel: &Channel, from: usize, to: usize) -> std::io::Result<Samples> {
+    let wide = channel.number.width();
+    let mut numbers = Vec::new();
+    let mut begin = 0;
+    for piece in &channel.pieces {
+        let end = begin + piece.count * piece.chunks;
+        let mut at = from.max(begin);
+        while at < to.min(end) {
+            let chunk = (at - begin) / piece.count;
+            let first = (at - begin) % piece.count;
+            let count = (piece.count - first).min(to - at);
+            numbers.extend(run(opened, piece, chunk, first, count, wide)?);
+            at += count;
+        }
+        begin = end;
+    }
+    Ok(channel.number.samples(&numbers, 0, 1))
+}
+
+/// The bytes of `count` numbers in one chunk, side by side.
+fn run(
+    opened: &mut File,
+    piece: &Piece,
+    chunk: usize,
+    first: usize,
+    count: usize,
+    wide: usize,
+) -> std::io::Result<Vec<u8>> {
+    let start = piece.offset + (chunk * piece.chunk_bytes + first * piece.stride) as u64;
+    opened.seek(SeekFrom::Start(start))?;
+    let bytes = (count - 1) * piece.stride + wide;
+    let mut raw = Vec::new();
+    let read = opened.by_ref().take(bytes as u64).read_to_end(&mut raw)?;
+    if read < bytes || count > MOST_SAMPLES {
+        return Err(std::io::ErrorKind::UnexpectedEof.into());
+    }
+    if piece.stride == wide {
+        return Ok(raw);
+    }
+    let numbers = raw.chunks(piece.stride).filter_map(|row| row.get(..wide));
+    Ok(numbers.flatten().copied().collect())
 }

@@ -62,9 +62,9 @@ fn interpreter() -> &'static Option<PathBuf> {
 
 fn environment() -> Option<PathBuf> {
     let place = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let lock = File::create(place.join("records-python.lock")).ok()?;
+    let lock = File::create(place.join("python-for-records.lock")).ok()?;
     lock.lock().ok()?;
-    let environment = place.join("records-python");
+    let environment = place.join("python-for-records");
     let python = environment.join("bin/python");
     let complete = environment.join("complete");
     if complete.exists() {

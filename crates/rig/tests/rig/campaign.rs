@@ -1,6 +1,7 @@
 //! Campaigns: files that depend on nothing but their inputs.
 
-use crate::small::{experiment, plan};
+use crate::small::{TEXT, experiment, plan};
+use hertzchain_experiment::Experiment;
 use hertzchain_rig::{Plan, Progress, RigError, Shard, campaign};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -120,6 +121,18 @@ fn recordings_of_two_campaigns_do_not_mix() {
     std::fs::remove_file(out.0.join("campaign.toml")).unwrap();
     let error = campaign(&plan(&[]), &out.0, Shard::WHOLE, &quiet).unwrap_err();
     assert!(error.to_string().contains("no campaign.toml"), "{error}");
+}
+
+/// Parts may be run on several machines, with the file in several places.
+#[test]
+fn a_campaign_is_the_same_wherever_its_file_lies() {
+    let elsewhere = Experiment::from_text("/some/where/small.toml", TEXT).unwrap();
+    let elsewhere = Plan::new(&elsewhere, None).unwrap();
+    let (here, there) = (Scratch::new("here"), Scratch::new("there"));
+    campaign(&plan(&[]), &here.0, shard("1/6"), &quiet).unwrap();
+    campaign(&elsewhere, &there.0, shard("1/6"), &quiet).unwrap();
+    assert!(here.recordings() == there.recordings());
+    campaign(&elsewhere, &here.0, shard("1/6"), &quiet).unwrap();
 }
 
 #[test]

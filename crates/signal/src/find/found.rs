@@ -43,6 +43,8 @@ pub enum Doubt {
     RecordTooShort,
     /// Pulses may have been taken for one another.
     Order,
+    /// A pulse was found, but the method could not tell its time.
+    NotPicked(Place),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
@@ -57,6 +59,7 @@ impl fmt::Display for Doubt {
             Self::LowSignal(place) => write!(f, "{place} pulse low"),
             Self::RecordTooShort => f.write_str("record too short"),
             Self::Order => f.write_str("order of pulses doubtful"),
+            Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
         }
     }
@@ -90,8 +93,19 @@ pub struct Pulse {
     pub height: f64,
     /// Full width at half maximum about it, in samples.
     pub width_samples: f64,
+    /// Parts of that before and after the maximum.
+    pub sides_samples: (f64, f64),
     /// First and last sample above a tenth of the height.
     pub extent: (usize, usize),
+}
+
+impl Pulse {
+    /// Twice the shorter side: the width of a bell as steep as the steeper flank.
+    /// What a pulse trails behind does not widen it.
+    #[must_use]
+    pub fn steep_width_samples(&self) -> f64 {
+        2.0 * self.sides_samples.0.min(self.sides_samples.1)
+    }
 }
 
 /// The pulses of a shot.
@@ -117,6 +131,13 @@ impl Found {
         [&self.passing, &self.wall, &self.returning]
             .into_iter()
             .flatten()
+    }
+
+    /// Adds doubts, kept in order and none twice.
+    pub(crate) fn doubt(&mut self, more: Vec<Doubt>) {
+        self.doubts.extend(more);
+        self.doubts.sort_unstable();
+        self.doubts.dedup();
     }
 
     /// What turns the channel of this pulse upright.

@@ -183,12 +183,14 @@ fn seen<'a, 'b>(
     maximum: &Maximum,
 ) -> Seen<'a, 'b> {
     let (from, to) = smooth.reach(maximum, 0.1 * maximum.height);
+    let sides_samples = smooth.sides(maximum);
     let last = track.samples.len().saturating_sub(1);
     let pulse = Pulse {
         place,
         at: maximum.at,
         height: maximum.height,
-        width_samples: smooth.width(maximum),
+        width_samples: sides_samples.0 + sides_samples.1,
+        sides_samples,
         extent: (from as usize, (to.ceil() as usize).min(last)),
     };
     Seen {

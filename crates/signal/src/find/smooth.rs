@@ -78,14 +78,17 @@ impl Smooth {
         value.copied().unwrap_or(0.0)
     }
 
-    /// Full width at half maximum about a maximum, the smoothing's share taken off.
-    pub(super) fn width(&self, of: &Maximum) -> f64 {
+    /// Both sides of the full width at half maximum about a maximum, the
+    /// smoothing's share taken off.
+    pub(super) fn sides(&self, of: &Maximum) -> (f64, f64) {
         let (left, right) = self.reach(of, 0.5 * of.height);
         let seen = right - left;
         let n = self.length as f64;
         // Variances add: two averages have (n² − 1)/6; a bell's width is 2.355 deviations.
         let added = 5.545 * (n * n - 1.0) / 6.0;
-        (seen * seen - added).max(0.25 * seen * seen).sqrt()
+        let share = (1.0 - added / (seen * seen)).max(0.25).sqrt();
+        let top = of.at as f64;
+        (share * (top - left), share * (right - top))
     }
 
     /// Where the signal last falls to `height` on either side of a maximum, between samples.

@@ -45,7 +45,8 @@ impl<'a> Track<'a> {
         let (offset, _) = median_and_spread(&some).unwrap_or_default();
         let (sign, swing) = direction(&blocks, offset, polarity);
         let above = |block: &f64| sign * (block - offset) > FIRST * swing;
-        let cross = blocks.iter().position(above).unwrap_or(0);
+        let crosses = |pair: &[f64]| pair.iter().all(above);
+        let cross = blocks.windows(2).position(crosses).unwrap_or(0);
         let width = rough_width(&blocks, cross, |b| sign * (b - offset));
         let quiet = (cross as f64 - 1.5 * width).max(0.0) as usize * BLOCK;
         let level = quiet_level(&samples[..quiet], samples, offset)?;
@@ -112,9 +113,15 @@ pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
     (low, high)
 }
 
-/// Sign of the larger swing, or of the one asked for, and that swing.
+/// Sign of the larger swing, or of the one asked for, and that swing: as far as
+/// two blocks in a row go, so that a spike of a sample or two is none.
 fn direction(blocks: &[f64], offset: f64, polarity: Polarity) -> (f64, f64) {
-    let (low, high) = extremes(blocks);
+    let (mut low, mut high) = (offset, offset);
+    for pair in blocks.windows(2) {
+        let (least, most) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+        high = high.max(least);
+        low = low.min(most);
+    }
     let (up, down) = (high - offset, offset - low);
     match polarity {
         Polarity::Positive => (1.0, up),

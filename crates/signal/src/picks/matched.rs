@@ -43,7 +43,7 @@ pub(super) fn pick(
         height: model.height,
         height_sigma: sigma(0),
         width_s: model.width,
-        misfit: sight.misfit((left / freedom as f64).sqrt()),
+        misfit: sight.misfit(pulse, (left / freedom as f64).sqrt()),
     })
 }
 
@@ -58,7 +58,7 @@ impl Data {
         let at = pulse.at as f64;
         let (first, heights) = sight.window(at - half, at + half);
         let raw = sight.samples[first..first + heights.len()].iter();
-        let free = |x: &f64| sight.rails.is_none_or(|r| *x > r.low && *x < r.high);
+        let free = |x: &f64| sight.rails.is_none_or(|rails| !rails.hold(*x));
         let points = heights.iter().zip(raw).enumerate();
         let points = points.filter(|(_, (_, raw))| free(raw));
         let points = points.map(|(i, (height, _))| ((first + i) as f64, *height));

@@ -16,8 +16,17 @@ use crate::error::SignalError;
 use crate::{Channels, Found, Place, Pulse, Rails, Upright};
 
 /// How a pulse's time is told. What each is worth: docs/measuring.md.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
+    /// Time of the maximum of a polynomial fitted about the largest sample, the
+    /// smoothest of four that leaves no more than noise: degree 6 over 0.8 full
+    /// widths at half maximum, 8 over 0.8, and 8 over 0.8 and 0.55 of twice the
+    /// width's shorter side.
+    ///
+    /// *Bias:* as for [`Method::LocalModel`], and hardly above the single pick's
+    /// spread, as a larger one would show in what the fit leaves.
+    #[default]
+    Maximum,
     /// Time of the maximum of a polynomial fitted about the largest sample.
     ///
     /// *Bias:* none for symmetric pulses; of a skewed one, what the polynomial
@@ -69,18 +78,6 @@ pub enum Template {
     Fixed(Shape, f64),
 }
 
-impl Default for Method {
-    /// The local model of degree 6 over 0.8 widths: on pulses of a chain with
-    /// losses its bias is a thousandth of a width, for three times the least
-    /// possible spread that a fit of the whole pulse has.
-    fn default() -> Self {
-        Self::LocalModel {
-            degree: 6,
-            width: 0.8,
-        }
-    }
-}
-
 /// A pulse as picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picked {
@@ -117,21 +114,18 @@ impl Sight<'_> {
         (first, heights)
     }
 
-    /// Noise of one sample; that of a digitiser's rounding if the record shows none.
+    /// Noise of one sample; at least a digitiser's rounding, which a quiet
+    /// stretch between two of its steps does not show.
     fn noise(&self, pulse: &Pulse) -> f64 {
-        let noise = self.upright.level.noise;
-        if noise > 0.0 {
-            return noise;
-        }
         let reach = 2.0 * pulse.width_samples;
         let (_, near) = self.window(pulse.at as f64 - reach, pulse.at as f64 + reach);
-        let steps = near.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let step = steps.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
-        if step.is_finite() {
-            step / 12.0_f64.sqrt()
-        } else {
-            0.0
-        }
+        let differences = near.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let differ = differences.filter(|d| *d > 0.0);
+        // Of samples that are not rounded, the least of some hundred differences is
+        // far below their noise.
+        let step = differ.fold(f64::INFINITY, f64::min);
+        let rounding = if step.is_finite() { step } else { 0.0 } / 12.0_f64.sqrt();
+        self.upright.level.noise.max(rounding)
     }
 
     /// As [`Self::noise`], for what averages over many samples.
@@ -140,8 +134,8 @@ impl Sight<'_> {
     }
 
     /// `left` over the noise, if there is noise.
-    fn misfit(&self, left: f64) -> Option<f64> {
-        let noise = self.upright.level.noise;
+    fn misfit(&self, pulse: &Pulse, left: f64) -> Option<f64> {
+        let noise = self.noise(pulse);
         (noise > 0.0).then(|| left / noise)
     }
 }
@@ -231,7 +225,7 @@ impl Method {
             Self::CrossCorrelation(Template::Fixed(_, width_s)) => {
                 SignalError::positive("width of the template in s", *width_s)
             }
-            Self::CrossCorrelation(_) => Ok(()),
+            Self::Maximum | Self::CrossCorrelation(_) => Ok(()),
             Self::MatchedShape { width, .. } => within("width of the fit", *width, 0.2, 4.0, wide),
         }
     }
@@ -239,6 +233,7 @@ impl Method {
 
 /// A method made ready for one shot; times in samples.
 enum Picker<'a> {
+    Maximum,
     Local { degree: usize, width: f64 },
     Onset(f64),
     Correlation(correlation::Correlator),
@@ -253,6 +248,7 @@ impl<'a> Picker<'a> {
         interval_s: f64,
     ) -> Result<Self, SignalError> {
         Ok(match method {
+            Method::Maximum => Self::Maximum,
             Method::LocalModel { degree, width } => Self::Local {
                 degree: *degree,
                 width: *width,
@@ -267,6 +263,7 @@ impl<'a> Picker<'a> {
 
     fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
         match self {
+            Self::Maximum => local_model::maximum(sight, pulse),
             Self::Local { degree, width } => local_model::pick(sight, pulse, *degree, *width),
             Self::Onset(fraction) => onset::pick(sight, pulse, *fraction),
             Self::Correlation(correlator) => correlator.pick(sight, pulse),

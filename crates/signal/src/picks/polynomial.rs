@@ -10,6 +10,8 @@ pub(crate) struct Polynomial {
     solution: Solution,
     /// Root mean square of what it leaves, over its degrees of freedom.
     pub(crate) left: f64,
+    /// Samples less coefficients.
+    pub(crate) freedom: usize,
 }
 
 /// Value, slope and bend of a polynomial at one place, in units of u.
@@ -49,10 +51,11 @@ impl Polynomial {
             degree,
             solution: normal.solve()?,
             left: 0.0,
+            freedom: part.len() - degree - 1,
         };
         let miss = |(i, value): (usize, &f64)| (value - polynomial.course(at(i)).value).powi(2);
         let squares: f64 = part.iter().enumerate().map(miss).sum();
-        polynomial.left = (squares / (part.len() - degree - 1) as f64).sqrt();
+        polynomial.left = (squares / polynomial.freedom as f64).sqrt();
         (degree > 0).then_some(polynomial)
     }
 

@@ -24,7 +24,7 @@ enum Kind {
 impl Shape {
     /// cos^p of one half turn and 0 beyond: a bell that ends. p = 6 is the force
     /// of a solitary wave of Hertz contacts in the long-wave limit
-    /// [Nesterenko1983], where overlaps go as cos⁴ and forces as their power 3/2.
+    /// \[Nesterenko1983\], where overlaps go as cos⁴ and forces as their power 3/2.
     ///
     /// Powers below 2 have no smooth end and count as 2.
     #[must_use]

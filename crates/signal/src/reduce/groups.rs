@@ -3,6 +3,8 @@
 /// Sorts shots into groups of one speed: a new one begins wherever the next
 /// higher speed is more than `gap` away.
 ///
+/// A row of speeds each near its neighbour is one group, however long: group by
+/// the speeds that were asked for if measured ones run into each other.
 /// Groups come in order of speed, and hold shots' numbers in order of speed,
 /// then of number. Speeds that are not finite belong to none.
 #[must_use]

@@ -5,8 +5,8 @@ use crate::power_law::{FitError, PowerLaw, check};
 /// Fits y = a x^b with standard deviations of both x and y.
 ///
 /// York's method for a straight line through points with independent errors
-/// [York2004], in ln y against ln x with errors σ_y/y and σ_x/x: it makes
-/// Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²) least. Errors follow
+/// (York and others, Am. J. Phys. 72, 367, 2004), in ln y against ln x with
+/// errors σ_y/y and σ_x/x: it makes Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²) least. Errors follow
 /// from the σ alone; `r_squared` and residuals are those of ln y. Errors of
 /// x may be 0.
 ///

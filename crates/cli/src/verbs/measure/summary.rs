@@ -1,0 +1,151 @@
+//! What was measured, in short, for people.
+
+use crate::format::{self, with_error};
+use crate::print::heading;
+use hertzchain_measure::{Case, Curves, Measurement, Shot};
+use hertzchain_signal::{Estimate, FitError, PowerLaw, Summary};
+
+/// Shots that anybody reads one by one.
+const MOST_SHOTS: usize = 30;
+
+/// Tables and fits.
+pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
+    let mut text = counted(measured) + "\n";
+    if curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS {
+        text += &shots(&measured.shots);
+    }
+    for case in &curves.cases {
+        text += &curve(case);
+    }
+    for wet in &curves.ratios {
+        text += &format!(
+            "\n{}\n",
+            heading(&format!("{} over {reference}", named(&wet.case)))
+        );
+        for ratio in &wet.incident {
+            let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
+            let speed = format::digits(ratio.speed, 4);
+            text += &format!("  incident at {speed} m/s: {value} ± {error}\n");
+        }
+    }
+    if !measured.shots.is_empty() && curves.cases.is_empty() {
+        text += "No speeds are known: give --shots for curves.\n";
+    }
+    text
+}
+
+fn counted(measured: &Measurement) -> String {
+    let timed = measured.shots.iter().filter(|shot| shot.flight.is_ok());
+    let flagged = measured.shots.iter().filter(|shot| !shot.doubts.is_empty());
+    format!(
+        "{} records, {} with times of flight, {} flagged, {} refused",
+        measured.shots.len() + measured.refused.len(),
+        timed.count(),
+        flagged.count(),
+        measured.refused.len()
+    )
+}
+
+fn named(case: &str) -> &str {
+    if case.is_empty() { "all shots" } else { case }
+}
+
+fn micro(of: Estimate) -> String {
+    let (value, error) = with_error(1e6 * of.value, 1e6 * of.sigma);
+    format!("{value} ± {error}")
+}
+
+fn shots(shots: &[Shot]) -> String {
+    let head = [
+        "record",
+        "v (m/s)",
+        "incident (µs)",
+        "reflected (µs)",
+        "flags",
+    ];
+    let row = |shot: &Shot| {
+        let flight = shot.flight.as_ref().ok();
+        let name = shot.file.file_name().unwrap_or_default().to_string_lossy();
+        let number = shot.shot.map_or(String::new(), |shot| format!(" {shot}"));
+        vec![
+            format!("{name}{number}"),
+            shot.speed_m_s
+                .map_or(String::new(), |speed| format::digits(speed.value, 4)),
+            flight.map_or(String::new(), |flight| micro(flight.incident_s)),
+            flight
+                .and_then(|flight| flight.reflected_s)
+                .map_or(String::new(), micro),
+            shot.flags(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = shots.iter().take(MOST_SHOTS).map(row).collect();
+    let more = shots.len().saturating_sub(MOST_SHOTS);
+    let more = match more {
+        0 => String::new(),
+        more => format!("… and {more} more; --out writes all\n"),
+    };
+    format::table(&head.map(str::to_owned), &rows) + &more
+}
+
+fn curve(case: &Case) -> String {
+    let head = [
+        "v (m/s)",
+        "shots",
+        "incident (µs)",
+        "s.d.",
+        "reflected (µs)",
+        "s.d.",
+        "wall/passing",
+        "returning/passing",
+    ];
+    let mean = |summary: Option<Summary>| {
+        summary.map_or(String::new(), |s| {
+            micro(Estimate {
+                value: s.mean,
+                sigma: s.error,
+            })
+        })
+    };
+    let deviation = |summary: Option<Summary>| {
+        let known = summary.map(|s| s.deviation).filter(|s| s.is_finite());
+        known.map_or(String::new(), |s| format::digits(1e6 * s, 2))
+    };
+    let share =
+        |summary: Option<Summary>| summary.map_or(String::new(), |s| format::digits(s.mean, 4));
+    let rows = case.rows.iter().map(|row| {
+        vec![
+            format::digits(row.speed_m_s.value, 4),
+            match row.shots.1 {
+                0 => row.shots.0.to_string(),
+                out => format!("{} (+{out} doubtful)", row.shots.0),
+            },
+            mean(Some(row.incident_s)),
+            deviation(Some(row.incident_s)),
+            mean(row.reflected_s),
+            deviation(row.reflected_s),
+            share(Some(row.wall_over_passing)),
+            share(row.returning_over_passing),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    format!(
+        "\n{}\n{}{}{}",
+        heading(named(&case.name)),
+        format::table(&head.map(str::to_owned), &rows),
+        law("incident", &case.laws.incident),
+        law("reflected", &case.laws.reflected)
+    )
+}
+
+/// A fit; too few speeds for one are plain to see.
+fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
+    let Ok(law) = law else { return String::new() };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * law.prefactor_error);
+    let (exponent, exponent_error) = with_error(law.exponent, law.exponent_error);
+    match law.exponent_error.is_finite() {
+        true => format!("{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error})\n"),
+        false => {
+            format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! From files of volts to times of flight, in one command.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn measure(folder: &Path, arguments: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    let program = program.current_dir(folder).arg("measure").args(arguments);
+    program.output().unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    let told = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
+}
+
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("measure-{test}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Incident time of flight in µs at a speed: a Hertz chain's power.
+fn incident_us(speed_m_s: f64) -> f64 {
+    630.0 * speed_m_s.powf(-0.2)
+}
+
+/// Samples at 1 MS/s: three bells and a ripple in place of noise.
+fn volts(speed_m_s: f64, wet: f64) -> Vec<f64> {
+    let incident = wet * incident_us(speed_m_s);
+    let bell = |at: f64, i: f64| ((i - at) / 35.0).cosh().powi(-4);
+    let sample = |i: f64| {
+        let pulses = bell(500.0, i) + 1.6 * bell(500.0 + incident, i);
+        pulses + 0.4 * bell(500.0 + 2.01 * incident, i) + 1e-3 * (1.7 * i).sin()
+    };
+    (0..4000).map(|i| sample(f64::from(i))).collect()
+}
+
+/// A file as a European oscilloscope exports it.
+fn write(path: &Path, volts: &[f64]) {
+    let mut text = "Gerät;XY 1\n\nZeit (µs);Kanal A (V)\n".to_owned();
+    for (i, volt) in volts.iter().enumerate() {
+        text += &format!("{i},0;{volt:.6}\n").replace('.', ",");
+    }
+    fs::write(path, text).unwrap();
+}
+
+const SPEEDS: [f64; 3] = [0.2, 0.5, 1.0];
+
+/// Dry and wet shots at three speeds, and the table that tells them.
+fn shots(folder: &Path) {
+    let mut list = "file,case,speed,speed error\n".to_owned();
+    for (case, wet) in [("dry", 1.0), ("gear", 0.98)] {
+        for (number, speed) in SPEEDS.iter().enumerate() {
+            let name = format!("{case}-{number}.csv");
+            write(&folder.join(&name), &volts(*speed, wet));
+            list += &format!("{name},{case},{speed},0.001\n");
+        }
+    }
+    fs::write(folder.join("list.txt"), list).unwrap();
+}
+
+#[test]
+fn one_command_gives_a_time_of_flight_from_a_file_of_volts() {
+    let folder = folder("one");
+    write(&folder.join("shot.csv"), &volts(0.5, 1.0));
+    let output = measure(&folder, &["shot.csv", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let shot = &json(&output)["shots"][0];
+    let found = shot["tof_incident_s"]["value"].as_f64().unwrap();
+    // The ripple of 1e-3 moves each of two tops by some 1e-3 of a width of 42 µs.
+    assert!((found - 1e-6 * incident_us(0.5)).abs() < 1e-7, "{found}");
+    assert_eq!(shot["flags"].as_array().unwrap().len(), 0, "{shot}");
+}
+
+#[test]
+fn speeds_from_a_table_give_curves_power_laws_and_ratios() {
+    let folder = folder("curves");
+    shots(&folder);
+    let output = measure(
+        &folder,
+        &[".", "--shots", "list.txt", "--json", "--out", "out"],
+    );
+    // The table of shots lies in the same folder and is no recording.
+    assert_eq!(output.status.code(), Some(0));
+    let all = json(&output);
+    let law = &all["cases"][0]["power_law_incident"];
+    // As above, over a factor 5 in speed.
+    assert!(
+        (law["exponent"].as_f64().unwrap() + 0.2).abs() < 2e-4,
+        "{law}"
+    );
+    let ratios = all["ratios"][0]["incident"].as_array().unwrap();
+    assert_eq!(ratios.len(), 3);
+    for ratio in ratios {
+        assert!(
+            (ratio["ratio"].as_f64().unwrap() - 0.98).abs() < 3e-4,
+            "{ratio}"
+        );
+    }
+    for name in [
+        "shots.csv",
+        "speeds.csv",
+        "ratios.csv",
+        "measured.json",
+        "signals.svg",
+        "times-of-flight.png",
+        "ratios.png",
+    ] {
+        assert!(folder.join("out").join(name).exists(), "{name}");
+    }
+    let table = fs::read_to_string(folder.join("out/speeds.csv")).unwrap();
+    let mut lines = table.lines().map(|line| line.split(',').count());
+    let titles = lines.next().unwrap();
+    assert!(lines.all(|cells| cells == titles), "{table}");
+}
+
+#[test]
+fn a_bad_record_is_told_and_the_good_ones_are_measured() {
+    let folder = folder("bad");
+    write(&folder.join("good.csv"), &volts(0.5, 1.0));
+    fs::write(folder.join("empty.csv"), "").unwrap();
+    fs::write(folder.join("lie.npy"), "1,2\n").unwrap();
+    let output = measure(&folder, &["empty.csv", "good.csv", "lie.npy"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(told.matches("refused: ").count(), 2, "{told}");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(printed.contains("723."), "{printed}");
+}
+
+#[test]
+fn a_file_without_a_rate_asks_for_it_and_takes_it() {
+    let folder = folder("rate");
+    let column: String = volts(0.5, 1.0)
+        .iter()
+        .map(|v| format!("{v:.6}\n"))
+        .collect();
+    fs::write(folder.join("column.txt"), column).unwrap();
+    let asked = measure(&folder, &["column.txt"]);
+    assert!(String::from_utf8_lossy(&asked.stderr).contains("--rate"));
+    let given = measure(&folder, &["column.txt", "--rate", "1MS/s"]);
+    assert_eq!(given.status.code(), Some(0));
+}
+
+#[test]
+fn every_method_agrees_on_pulses_of_one_shape() {
+    let folder = folder("methods");
+    write(&folder.join("shot.csv"), &volts(0.5, 1.0));
+    for method in ["local", "onset", "correlation", "shape"] {
+        let output = measure(&folder, &["shot.csv", "--method", method, "--json"]);
+        let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
+        let found = found.as_f64().unwrap();
+        // The ripple; onsets lie on the flank, where it counts as for tops.
+        assert!(
+            (found - 1e-6 * incident_us(0.5)).abs() < 1e-7,
+            "{method}: {found}"
+        );
+    }
+}

@@ -1,0 +1,258 @@
+//! Shots into curves: means a speed, ratios, power laws.
+
+use crate::Shot;
+use hertzchain_signal::{
+    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, groups, power_law,
+    power_law_both_errors, ratios_at_common, summary,
+};
+
+/// How shots are put together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grouping {
+    /// Speeds at most so far apart, in m/s, are one; shots whose programmed speed
+    /// is known go by that.
+    pub gap_m_s: f64,
+    /// The case that others are divided by.
+    pub reference: String,
+    /// Whether clipped shots and those of doubtful order count.
+    pub keep_dubious: bool,
+}
+
+impl Default for Grouping {
+    fn default() -> Self {
+        Self {
+            gap_m_s: 0.01,
+            reference: "dry".to_owned(),
+            keep_dubious: false,
+        }
+    }
+}
+
+/// All that shots of one case at one speed tell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedRow {
+    /// Mean speed in m/s. Its error is that of the measured speeds if it is
+    /// known, else their scatter's.
+    pub speed_m_s: Estimate,
+    /// Shots that count, and shots that do not.
+    pub shots: (usize, usize),
+    /// Incident time of flight in s.
+    pub incident_s: Summary,
+    /// Reflected time of flight in s.
+    pub reflected_s: Option<Summary>,
+    /// Wall's peak over passing peak.
+    pub wall_over_passing: Summary,
+    /// Returning peak over passing peak.
+    pub returning_over_passing: Option<Summary>,
+    /// Full widths at half maximum in s: passing, wall, returning.
+    pub widths_s: [Option<Summary>; 3],
+}
+
+/// Power laws of both times of flight against speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laws {
+    /// Of the incident one.
+    pub incident: Result<PowerLaw, FitError>,
+    /// Of the reflected one.
+    pub reflected: Result<PowerLaw, FitError>,
+}
+
+/// The curve of one case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its name; empty if nobody gave one.
+    pub name: String,
+    /// Rows by speed.
+    pub rows: Vec<SpeedRow>,
+    /// Fits.
+    pub laws: Laws,
+}
+
+/// Ratios of one case to the reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WetOverDry {
+    /// The case's name.
+    pub case: String,
+    /// Of incident times.
+    pub incident: Vec<Ratio>,
+    /// Of reflected times.
+    pub reflected: Vec<Ratio>,
+}
+
+/// Everything that shots with speeds tell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curves {
+    /// Cases in the order in which they first came.
+    pub cases: Vec<Case>,
+    /// Ratios of all others to the reference.
+    pub ratios: Vec<WetOverDry>,
+}
+
+/// How times of flight change with speed between neighbouring speeds: a Hertz
+/// chain's exponent, −1/5 [Nesterenko1983].
+const EXPONENT: f64 = -0.2;
+
+impl Curves {
+    /// Reduces shots; those without a speed or a time are left out.
+    #[must_use]
+    pub fn of(shots: &[Shot], grouping: &Grouping) -> Self {
+        let mut names: Vec<&str> = Vec::new();
+        for shot in shots {
+            if !names.contains(&shot.case.as_str()) {
+                names.push(&shot.case);
+            }
+        }
+        let cases = names
+            .into_iter()
+            .map(|name| Case::of(name, shots, grouping));
+        let cases: Vec<Case> = cases.filter(|case| !case.rows.is_empty()).collect();
+        Self {
+            ratios: ratios(&cases, grouping),
+            cases,
+        }
+    }
+}
+
+/// A shot that has speed and time.
+struct Timed<'a> {
+    speed: Estimate,
+    programmed: Option<f64>,
+    flight: &'a Flight,
+    counts: bool,
+}
+
+impl Case {
+    fn of(name: &str, shots: &[Shot], grouping: &Grouping) -> Self {
+        let timed = shots.iter().filter(|shot| shot.case == name);
+        let timed: Vec<Timed<'_>> = timed
+            .filter_map(|shot| {
+                Some(Timed {
+                    speed: shot.speed_m_s.filter(|speed| speed.value > 0.0)?,
+                    programmed: shot.programmed_speed_m_s,
+                    flight: shot.flight.as_ref().ok()?,
+                    counts: grouping.keep_dubious || !shot.is_dubious(),
+                })
+            })
+            .collect();
+        let groups = grouped(&timed, grouping.gap_m_s);
+        let mut rows: Vec<SpeedRow> = groups.iter().filter_map(|group| row(group)).collect();
+        rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
+        Self {
+            name: name.to_owned(),
+            laws: Laws {
+                incident: law(&points(&rows, |row| Some(row.incident_s))),
+                reflected: law(&points(&rows, |row| row.reflected_s)),
+            },
+            rows,
+        }
+    }
+}
+
+/// Shots of one programmed speed, then those that have none by their speeds.
+fn grouped<'a>(timed: &'a [Timed<'a>], gap_m_s: f64) -> Vec<Vec<&'a Timed<'a>>> {
+    let told = |shot: &&Timed<'_>| shot.programmed.is_some();
+    let (told, free): (Vec<&Timed<'_>>, Vec<&Timed<'_>>) = timed.iter().partition(told);
+    let key = |shot: &&Timed<'_>| shot.programmed.unwrap_or(f64::NAN);
+    let mut all = by(&told, key, 0.0);
+    all.extend(by(&free, |shot| shot.speed.value, gap_m_s));
+    all
+}
+
+fn by<'a>(
+    shots: &[&'a Timed<'a>],
+    key: impl Fn(&&Timed<'_>) -> f64,
+    gap: f64,
+) -> Vec<Vec<&'a Timed<'a>>> {
+    let keys: Vec<f64> = shots.iter().map(key).collect();
+    let pick = |group: Vec<usize>| group.iter().map(|index| shots[*index]).collect();
+    groups(&keys, gap).into_iter().map(pick).collect()
+}
+
+fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
+    let counted: Vec<&&Timed<'_>> = group.iter().filter(|shot| shot.counts).collect();
+    let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
+        let values = counted.iter().filter_map(|shot| value(shot.flight));
+        summary(&values.collect::<Vec<_>>())
+    };
+    let exact = |value: f64| Estimate { value, sigma: 0.0 };
+    let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
+    Some(SpeedRow {
+        speed_m_s: mean_speed(&speeds)?,
+        shots: (counted.len(), group.len() - counted.len()),
+        incident_s: of(&|flight| Some(flight.incident_s))?,
+        reflected_s: of(&|flight| flight.reflected_s),
+        wall_over_passing: of(&|flight| Some(flight.wall_over_passing))?,
+        returning_over_passing: of(&|flight| flight.returning_over_passing),
+        widths_s: [
+            of(&|flight| Some(exact(flight.picks.passing.width_s))),
+            of(&|flight| Some(exact(flight.picks.wall.width_s))),
+            of(&|flight| Some(exact(flight.picks.returning?.width_s))),
+        ],
+    })
+}
+
+/// The mean of measured speeds is the mean of these very shots' speeds, whatever
+/// their scatter: only the errors of measuring make it uncertain.
+fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
+    let all = summary(speeds)?;
+    let known = speeds.iter().all(|speed| speed.sigma > 0.0);
+    let squares: f64 = speeds.iter().map(|speed| speed.sigma.powi(2)).sum();
+    Some(Estimate {
+        value: all.mean,
+        sigma: match known {
+            true => squares.sqrt() / all.count as f64,
+            false => all.error,
+        },
+    })
+}
+
+fn points(rows: &[SpeedRow], of: impl Fn(&SpeedRow) -> Option<Summary>) -> Vec<Point> {
+    let point = |row: &SpeedRow| {
+        let summary = of(row)?;
+        Some(Point {
+            speed: row.speed_m_s,
+            value: Estimate {
+                value: summary.mean,
+                sigma: summary.error,
+            },
+        })
+    };
+    rows.iter().filter_map(point).collect()
+}
+
+/// Weighted by all errors where every point has one, else unweighted.
+fn law(points: &[Point]) -> Result<PowerLaw, FitError> {
+    let column = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).collect::<Vec<f64>>();
+    let speeds = column(&|point| point.speed.value);
+    let values = column(&|point| point.value.value);
+    let sound = |sigma: f64| sigma.is_finite() && sigma > 0.0;
+    match points
+        .iter()
+        .all(|point| sound(point.value.sigma) && point.speed.sigma.is_finite())
+    {
+        true => power_law_both_errors(
+            &speeds,
+            &column(&|point| point.speed.sigma),
+            &values,
+            &column(&|point| point.value.sigma),
+        ),
+        false => power_law(&speeds, &values, None),
+    }
+}
+
+fn ratios(cases: &[Case], grouping: &Grouping) -> Vec<WetOverDry> {
+    let Some(dry) = cases.iter().find(|case| case.name == grouping.reference) else {
+        return Vec::new();
+    };
+    let over = |case: &Case, of: fn(&SpeedRow) -> Option<Summary>| {
+        let (upper, lower) = (points(&case.rows, of), points(&dry.rows, of));
+        ratios_at_common(&upper, &lower, grouping.gap_m_s, EXPONENT)
+    };
+    let wet = cases.iter().filter(|case| case.name != grouping.reference);
+    wet.map(|case| WetOverDry {
+        case: case.name.clone(),
+        incident: over(case, |row| Some(row.incident_s)),
+        reflected: over(case, |row| row.reflected_s),
+    })
+    .collect()
+}

@@ -1,0 +1,22 @@
+//! From records of a rig, real or virtual, to times of flight with errors.
+//!
+//! [`measure`] reads recordings record by record and picks their pulses;
+//! [`Curves::of`] reduces the shots to means a speed, ratios of wet to dry chains
+//! and power laws. [`ShotList`] gives shots the speeds that their files lack.
+//! Nothing here knows of chains: how many beads there are and where the sensor
+//! sits are plain numbers in [`hertzchain_signal::Finding`].
+
+mod curves;
+mod example;
+mod list;
+mod run;
+mod shot;
+mod table;
+
+pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};
+pub use example::Example;
+pub use hertzchain_records as records;
+pub use list::{ListError, ShotList};
+pub use run::{Measurement, Options, measure};
+pub use shot::Shot;
+pub use table::{ratios_csv, shots_csv, speeds_csv};

@@ -1,0 +1,127 @@
+//! Results as CSV, in SI.
+
+use crate::{Curves, Shot, SpeedRow};
+use hertzchain_signal::{Estimate, Picked, Ratio, Summary};
+
+/// A number in a cell; empty where there is none.
+fn cell(value: Option<f64>) -> String {
+    let finite = value.filter(|value| value.is_finite());
+    finite.map_or(String::new(), |value| format!("{value:e}"))
+}
+
+/// A text in a cell.
+fn quoted(text: &str) -> String {
+    match text.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+fn both(estimate: Option<Estimate>) -> [String; 2] {
+    [
+        cell(estimate.map(|e| e.value)),
+        cell(estimate.map(|e| e.sigma)),
+    ]
+}
+
+fn line(cells: impl IntoIterator<Item = String>) -> String {
+    cells.into_iter().collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// One line a shot.
+#[must_use]
+pub fn shots_csv(shots: &[Shot]) -> String {
+    let mut text = "file,shot,case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s,\
+                    tof_reflected_s,tof_reflected_sigma_s,wall_over_passing,\
+                    wall_over_passing_sigma,returning_over_passing,returning_over_passing_sigma,\
+                    passing_peak_v,wall_peak_v,returning_peak_v,\
+                    passing_width_s,wall_width_s,returning_width_s,flags\n"
+        .to_owned();
+    text.extend(shots.iter().map(shot_line));
+    text
+}
+
+fn shot_line(shot: &Shot) -> String {
+    let flight = shot.flight.as_ref().ok();
+    let picks = flight.map(|flight| &flight.picks);
+    let picked = [
+        picks.map(|picks| picks.passing),
+        picks.map(|picks| picks.wall),
+        picks.and_then(|picks| picks.returning),
+    ];
+    let each = |of: fn(&Picked) -> f64| picked.map(|picked| cell(picked.as_ref().map(of)));
+    let name = [
+        quoted(&shot.file.display().to_string()),
+        shot.shot.map_or(String::new(), |shot| shot.to_string()),
+        quoted(&shot.case),
+    ];
+    let cells = name
+        .into_iter()
+        .chain(both(shot.speed_m_s))
+        .chain(both(flight.map(|flight| flight.incident_s)))
+        .chain(both(flight.and_then(|flight| flight.reflected_s)))
+        .chain(both(flight.map(|flight| flight.wall_over_passing)))
+        .chain(both(
+            flight.and_then(|flight| flight.returning_over_passing),
+        ))
+        .chain(each(|picked| picked.height))
+        .chain(each(|picked| picked.width_s))
+        .chain([quoted(&shot.flags())]);
+    line(cells)
+}
+
+/// One line a case and speed.
+#[must_use]
+pub fn speeds_csv(curves: &Curves) -> String {
+    let mut text = "case,speed_m_s,speed_error_m_s,shots,left_out".to_owned();
+    for name in [
+        "tof_incident_s",
+        "tof_reflected_s",
+        "wall_over_passing",
+        "returning_over_passing",
+    ] {
+        text += &format!(",{name},{name}_deviation,{name}_error,{name}_count");
+    }
+    text += ",passing_width_s,wall_width_s,returning_width_s\n";
+    for case in &curves.cases {
+        text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
+    }
+    text
+}
+
+fn speed_line(case: &str, row: &SpeedRow) -> String {
+    let summarised = |summary: Option<Summary>| {
+        [
+            cell(summary.map(|s| s.mean)),
+            cell(summary.map(|s| s.deviation)),
+            cell(summary.map(|s| s.error)),
+            summary.map_or(String::new(), |s| s.count.to_string()),
+        ]
+    };
+    let cells = [quoted(case)]
+        .into_iter()
+        .chain(both(Some(row.speed_m_s)))
+        .chain([row.shots.0.to_string(), row.shots.1.to_string()])
+        .chain(summarised(Some(row.incident_s)))
+        .chain(summarised(row.reflected_s))
+        .chain(summarised(Some(row.wall_over_passing)))
+        .chain(summarised(row.returning_over_passing))
+        .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))));
+    line(cells)
+}
+
+/// One line a ratio.
+#[must_use]
+pub fn ratios_csv(curves: &Curves) -> String {
+    let mut text = "case,time,speed_m_s,ratio,ratio_error\n".to_owned();
+    for wet in &curves.ratios {
+        for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
+            let one = |ratio: &Ratio| {
+                let name = [quoted(&wet.case), time.to_owned(), cell(Some(ratio.speed))];
+                line(name.into_iter().chain(both(Some(ratio.ratio))))
+            };
+            text.extend(ratios.iter().map(one));
+        }
+    }
+    text
+}

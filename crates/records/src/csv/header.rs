@@ -1,0 +1,308 @@
+//! What the lines before and beside the numbers say: names, units, rate.
+
+use super::dialect::Dialect;
+use super::field::{fields, leading_number, number};
+
+/// What is known of the columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    /// Columns that are channels.
+    pub channels: Vec<usize>,
+    /// Their names.
+    pub names: Vec<String>,
+    /// Column of times and what one of its units is in s.
+    pub time: Option<(usize, f64)>,
+    /// Sampling interval in s that a line states.
+    pub interval_s: Option<f64>,
+}
+
+/// Units of time in s.
+const TIMES: &[(&str, f64)] = &[
+    ("s", 1.0),
+    ("sec", 1.0),
+    ("second", 1.0),
+    ("seconds", 1.0),
+    ("ms", 1e-3),
+    ("us", 1e-6),
+    ("µs", 1e-6),
+    ("μs", 1e-6),
+    ("ns", 1e-9),
+];
+
+/// Units of rates in Hz.
+const RATES: &[(&str, f64)] = &[
+    ("hz", 1.0),
+    ("s/s", 1.0),
+    ("sa/s", 1.0),
+    ("khz", 1e3),
+    ("ks/s", 1e3),
+    ("ksa/s", 1e3),
+    ("mhz", 1e6),
+    ("ms/s", 1e6),
+    ("msa/s", 1e6),
+    ("ghz", 1e9),
+    ("gs/s", 1e9),
+    ("gsa/s", 1e9),
+];
+
+/// How columns of times are called.
+const TIME_NAMES: &[&str] = &[
+    "t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x",
+];
+/// How columns that count are called.
+const INDEX_NAMES: &[&str] = &["#", "n", "no", "nr", "index", "sample", "samples", "point"];
+/// How intervals are called; the first that a line begins with counts.
+const INTERVALS: &[&str] = &[
+    "sample interval",
+    "sampling interval",
+    "sample period",
+    "sampling period",
+    "horizontal interval",
+    "x increment",
+    "xincr",
+    "increment",
+    "interval",
+    "delta(second)",
+    "delta_x",
+    "delta x",
+    "time resolution",
+    "dt",
+    "abtastintervall",
+];
+/// How rates are called.
+const RATES_CALLED: &[&str] = &[
+    "sample rate",
+    "sampling rate",
+    "samplerate",
+    "sampling frequency",
+    "sample frequency",
+    "rate",
+    "fs",
+    "abtastrate",
+];
+
+impl Header {
+    /// Reads the lines before the first row, and what stands beside the first rows.
+    pub fn of(beginning: &str, dialect: &Dialect) -> Self {
+        let (names, units) = titles(beginning, dialect);
+        let rows = sampled(beginning, dialect);
+        let title = |column: usize| names.get(column).map_or("", String::as_str);
+        let unit = |column: usize| {
+            let own = bracketed(title(column)).or_else(|| units.get(column).cloned());
+            own.and_then(|unit| look_up(TIMES, &unit))
+        };
+        let is_time = |column: usize| called(TIME_NAMES, title(column)) || unit(column).is_some();
+        let nameless = dialect.columns.iter().all(|c| title(*c).is_empty());
+        let first = dialect.columns.first().copied();
+        let counts = |column: usize| called(INDEX_NAMES, title(column));
+        let several = dialect.columns.len() > 1;
+        let mut time = dialect.columns.iter().copied().find(|c| is_time(*c));
+        let mut index = dialect.columns.iter().copied().find(|c| counts(*c));
+        if let Some(first) = first.filter(|_| nameless && several) {
+            match rising(&rows, 0) {
+                Some(1.0) => index = Some(first),
+                Some(_) => time = Some(first),
+                None => {}
+            }
+        }
+        let time = time.filter(|_| several);
+        let index = index.filter(|_| several);
+        let channel = |c: &usize| Some(*c) != time && Some(*c) != index;
+        let channels: Vec<usize> = dialect.columns.iter().copied().filter(channel).collect();
+        let names = channels.iter().enumerate().map(|(number, column)| {
+            let name = plain(title(*column));
+            if name.is_empty() {
+                (number + 1).to_string()
+            } else {
+                name
+            }
+        });
+        Self {
+            names: names.collect(),
+            channels,
+            time: time.map(|column| (column, unit(column).unwrap_or(1.0))),
+            interval_s: stated_s(beginning, dialect),
+        }
+    }
+}
+
+/// Lines that are looked at for what is beside the numbers.
+const BESIDE: usize = 40;
+
+/// The first rows of numbers.
+fn sampled(beginning: &str, dialect: &Dialect) -> Vec<Vec<f64>> {
+    let row = |line: &str| {
+        let fields = fields(line, dialect.delimiter);
+        let value = |column: &usize| number(fields.get(*column)?, dialect.decimal_comma);
+        dialect
+            .columns
+            .iter()
+            .map(value)
+            .collect::<Option<Vec<_>>>()
+    };
+    let lines = beginning.lines().skip(dialect.first_row);
+    lines.take(BESIDE).map_while(row).collect()
+}
+
+/// The even step of a column that rises as times or numbers do.
+fn rising(rows: &[Vec<f64>], column: usize) -> Option<f64> {
+    let values: Vec<f64> = rows
+        .iter()
+        .filter_map(|row| row.get(column).copied())
+        .collect();
+    let (first, last) = (values.first()?, values.last()?);
+    let step = (last - first) / (values.len().checked_sub(1)? as f64);
+    let even = |(i, value): (usize, &f64)| (value - first - i as f64 * step).abs() <= 0.5 * step;
+    (values.len() > 2 && step > 0.0 && values.iter().enumerate().all(even)).then_some(step)
+}
+
+/// Names and units: the last lines before the numbers that have as many fields.
+fn titles(beginning: &str, dialect: &Dialect) -> (Vec<String>, Vec<String>) {
+    let wide = dialect.columns.last().map_or(0, |last| last + 1);
+    let lines = beginning.lines().take(dialect.first_row);
+    let split = |line: &str| -> Vec<String> {
+        let fields = fields(line, dialect.delimiter);
+        fields.into_iter().map(|field| field.into_owned()).collect()
+    };
+    let mut lines: Vec<Vec<String>> = lines
+        .filter(|line| !line.trim().is_empty())
+        .map(split)
+        .filter(|fields| fields.len() >= wide)
+        .collect();
+    let Some(last) = lines.pop() else {
+        return Default::default();
+    };
+    let filled = || last.iter().filter(|field| !field.is_empty());
+    if filled().all(|field| is_unit(field)) && filled().count() > 0 {
+        let bare = |field: &String| bracketed(field).unwrap_or_else(|| field.clone());
+        let units = last.iter().map(bare).collect();
+        return (lines.pop().unwrap_or_default(), units);
+    }
+    (last, Vec::new())
+}
+
+fn is_unit(field: &str) -> bool {
+    const VOLTS: &[&str] = &["v", "mv", "µv", "uv", "volt", "volts"];
+    let inside = |open, close| field.strip_prefix(open)?.strip_suffix(close);
+    let bare = inside('(', ')').or_else(|| inside('[', ']'));
+    let whole = bare.unwrap_or(field).to_lowercase();
+    bare.is_some() || look_up(TIMES, &whole).is_some() || VOLTS.contains(&whole.as_str())
+}
+
+/// What stands in brackets at the end: "Time (ms)" is in ms.
+fn bracketed(text: &str) -> Option<String> {
+    let text = text.trim();
+    let inside = text.strip_suffix([')', ']'])?;
+    let at = inside.rfind(['(', '['])?;
+    Some(inside[at + 1..].trim().to_owned())
+}
+
+/// A title without its unit.
+fn plain(title: &str) -> String {
+    let end = match bracketed(title) {
+        Some(_) => title.rfind(['(', '[']).unwrap_or(title.len()),
+        None => title.len(),
+    };
+    title[..end].trim().to_owned()
+}
+
+fn called(names: &[&str], title: &str) -> bool {
+    let title = plain(title).to_lowercase();
+    let seconds = ["_s", "_ms", "_us"]
+        .iter()
+        .find_map(|end| title.strip_suffix(end));
+    names.contains(&title.as_str()) || seconds.is_some_and(|stem| names.contains(&stem))
+}
+
+fn look_up(units: &[(&str, f64)], unit: &str) -> Option<f64> {
+    let unit = unit.trim().to_lowercase();
+    let found = units.iter().find(|known| known.0 == unit);
+    found.map(|known| known.1)
+}
+
+/// The interval that a line before or beside the numbers states.
+fn stated_s(beginning: &str, dialect: &Dialect) -> Option<f64> {
+    let lines = beginning.lines().take(dialect.first_row.max(BESIDE));
+    lines.filter_map(|line| line_states_s(line, dialect)).next()
+}
+
+fn line_states_s(line: &str, dialect: &Dialect) -> Option<f64> {
+    let line = line.trim_start_matches(['#', '"', '%', ' ', '\t']);
+    let lower = line.to_lowercase();
+    let after = |names: &[&str]| {
+        let name = names.iter().find(|name| lower.starts_with(*name))?;
+        line.get(name.len()..)
+    };
+    if let Some(rest) = after(INTERVALS) {
+        let (value, unit) = quantity(rest, dialect)?;
+        return Some(value * look_up(TIMES, &unit).unwrap_or(1.0));
+    }
+    let (value, unit) = quantity(after(RATES_CALLED)?, dialect)?;
+    Some((value * look_up(RATES, &unit).unwrap_or(1.0)).recip())
+}
+
+/// A value and its unit, which stands after it or in brackets before.
+fn quantity(rest: &str, dialect: &Dialect) -> Option<(f64, String)> {
+    let rest = rest.trim();
+    let (before, rest) = match rest.strip_prefix(['(', '[']) {
+        Some(open) => open.split_once([')', ']'])?,
+        None => ("", rest),
+    };
+    let (value, tail) =
+        leading_number(rest, dialect.decimal_comma).or_else(|| leading_number(rest, false))?;
+    let tail = tail.trim_start_matches([dialect.delimiter, ' ', '"', '\t']);
+    let unit = tail.split([dialect.delimiter, ' ', '"', '\t']).next()?;
+    let unit = if unit.is_empty() { before } else { unit };
+    Some((value, unit.trim_matches(['(', ')', '[', ']']).to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(text: &str) -> Header {
+        Header::of(text, &Dialect::of(text).unwrap())
+    }
+
+    #[test]
+    fn a_column_of_times_is_told_by_name_unit_or_even_steps() {
+        let named = header("Time (ms),Channel A (mV)\n0.000,1.0\n0.001,2.5\n");
+        assert_eq!(named.time, Some((0, 1e-3)));
+        assert_eq!(named.names, ["Channel A"]);
+        let units = header("Time,A,B\n(us),(mV),(mV)\n\n0,1.5,2\n1,3.5,4\n2,3.5,1\n");
+        assert_eq!(units.time, Some((0, 1e-6)));
+        assert_eq!(units.names, ["A", "B"]);
+        let bare = header("0.000,5\n0.002,7\n0.004,1\n0.006,3\n");
+        assert_eq!(bare.time, Some((0, 1.0)));
+        let counted = header("0,5.5\n1,7.5\n2,1.5\n3,3.5\n");
+        assert_eq!((counted.time, counted.channels), (None, vec![1]));
+    }
+
+    #[test]
+    fn a_single_column_is_a_channel() {
+        let text = "0.1\n0.2\n0.3\n0.4\n";
+        assert_eq!(header(text).channels, [0]);
+    }
+
+    #[test]
+    fn a_stated_interval_may_have_a_decimal_comma() {
+        let text = "Increment;1,0E-6\n1,5;2,0\n2,5;1,0\n0,5;3,0\n";
+        assert_eq!(header(text).interval_s, Some(1e-6));
+    }
+
+    #[test]
+    fn intervals_and_rates_are_read_with_their_units() {
+        for line in [
+            "Sample Interval,1e-06",
+            "\"Sampling Interval\";\"1 us\"",
+            "# sample rate: 1 MS/s",
+            "Sampling Rate (MHz) = 1",
+            "fs=1000000 Hz",
+        ] {
+            let text = format!("{line}\n1.5\n2.5\n3.5\n2.5\n7.5\n");
+            let stated = header(&text).interval_s.unwrap();
+            // Rounding of 1/1e6 and of 1e6 · 1e-6.
+            assert!((stated - 1e-6).abs() < 1e-20, "{line}: {stated}");
+        }
+    }
+}

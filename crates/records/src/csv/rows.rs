@@ -1,0 +1,243 @@
+//! Rows into records, line by line.
+
+use super::dialect::{Dialect, text};
+use super::field::{fields, number};
+use super::times;
+use crate::channels;
+use crate::cut::MOST_SAMPLES;
+use crate::error::{RecordError, name};
+use crate::options::ReadOptions;
+use crate::record::{Channel, Record, Samples};
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// What is to be read of every row.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub dialect: Dialect,
+    pub names: Vec<String>,
+    pub columns: Vec<usize>,
+    /// Column of times and their unit in s.
+    pub time: Option<(usize, f64)>,
+    /// Where no times are written.
+    pub interval_s: Option<f64>,
+    /// Lines that, seen again, separate segments.
+    pub separators: Vec<String>,
+    pub options: ReadOptions,
+}
+
+/// An iterator over the records of a text.
+pub(super) struct Rows {
+    file: PathBuf,
+    reader: BufReader<File>,
+    plan: Plan,
+    line: usize,
+    ended: bool,
+    /// Skipping to the next segment after a bad row.
+    lost: bool,
+    /// Whether anything was given before.
+    shots: u64,
+    block: Block,
+    ready: VecDeque<Result<Record, RecordError>>,
+}
+
+/// Rows since the last separator.
+#[derive(Default)]
+struct Block {
+    times_s: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// What a line is.
+enum Line {
+    Row(Vec<f64>),
+    Separator,
+    Bad(String),
+    End,
+}
+
+impl Rows {
+    pub fn open(file: &Path, plan: Plan) -> io::Result<Self> {
+        let mut reader = BufReader::with_capacity(1 << 16, File::open(file)?);
+        let mut skipped = Vec::new();
+        for _ in 0..plan.dialect.first_row {
+            reader.read_until(b'\n', &mut skipped)?;
+            skipped.clear();
+        }
+        Ok(Self {
+            file: file.to_owned(),
+            reader,
+            line: plan.dialect.first_row,
+            plan,
+            ended: false,
+            lost: false,
+            shots: 0,
+            block: Block::default(),
+            ready: VecDeque::new(),
+        })
+    }
+
+    fn line(&mut self) -> Line {
+        let mut bytes = Vec::new();
+        match self.reader.read_until(b'\n', &mut bytes) {
+            Ok(0) => return Line::End,
+            Ok(_) => self.line += 1,
+            Err(cause) => {
+                self.ready
+                    .push_back(Err(RecordError::reading(&self.file, cause)));
+                return Line::End;
+            }
+        }
+        let whole = bytes.ends_with(b"\n");
+        let line = text(&bytes);
+        let line = line.trim_end_matches(['\r', '\n']);
+        let dialect = &self.plan.dialect;
+        let fields = fields(line, dialect.delimiter);
+        let value = |column: &usize| number(fields.get(*column)?, dialect.decimal_comma);
+        let time = self.plan.time.map(|time| time.0);
+        let values: Option<Vec<f64>> = time.iter().chain(&self.plan.columns).map(value).collect();
+        let blank = fields.iter().all(|field| field.is_empty());
+        match values {
+            Some(values) => Line::Row(values),
+            None if blank || self.plan.separators.iter().any(|known| known == line) => {
+                Line::Separator
+            }
+            None if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
+            None => {
+                let shown: String = line.chars().take(60).collect();
+                Line::Bad(format!(
+                    "line {} is no row of numbers: {shown:?}",
+                    self.line
+                ))
+            }
+        }
+    }
+
+    /// Reads on until something is ready or the file is at its end.
+    fn advance(&mut self) {
+        match self.line() {
+            Line::Row(_) if self.lost => {}
+            Line::Row(values) => self.row(&values),
+            Line::Separator => {
+                self.close();
+                self.lost = false;
+            }
+            Line::Bad(detail) if !self.lost => {
+                self.block = Block::default();
+                self.lost = true;
+                self.shots += 1;
+                let error = RecordError::malformed(&self.file, "text", detail);
+                self.ready.push_back(Err(error));
+            }
+            Line::Bad(_) => {}
+            Line::End => {
+                self.close();
+                self.ended = true;
+            }
+        }
+    }
+
+    fn row(&mut self, values: &[f64]) {
+        let mut values = values;
+        if let Some((_, unit_s)) = self.plan.time {
+            let (time, rest) = values.split_first().unwrap_or((&f64::NAN, &[]));
+            let time_s = time * unit_s;
+            if self.block.times_s.last().is_some_and(|last| time_s < *last) {
+                self.close();
+            }
+            self.block.times_s.push(time_s);
+            values = rest;
+        }
+        self.block.columns.resize_with(values.len(), Vec::new);
+        for (column, value) in self.block.columns.iter_mut().zip(values) {
+            column.push(*value);
+        }
+        let length = self.block.len();
+        if Some(length) == self.plan.options.shot_samples {
+            self.close();
+        } else if length > MOST_SAMPLES {
+            self.block = Block::default();
+            self.lost = true;
+            self.ready.push_back(Err(RecordError::TooLong {
+                source_name: name(&self.file),
+                most: MOST_SAMPLES,
+            }));
+        }
+    }
+
+    /// Makes records of the block.
+    fn close(&mut self) {
+        let block = std::mem::take(&mut self.block);
+        if block.len() == 0 {
+            return;
+        }
+        let whole = 0..block.len();
+        let segments = match self.plan.time {
+            Some(_) => times::segments(&block.times_s),
+            None => std::iter::once(whole).collect(),
+        };
+        for range in segments {
+            self.shots += 1;
+            let record = self.record(&block, range);
+            self.ready.push_back(record);
+        }
+    }
+
+    fn record(&self, block: &Block, range: Range<usize>) -> Result<Record, RecordError> {
+        // The number of the only record would tell nothing, but when it is made
+        // nobody knows whether more will follow.
+        let source = match self.shots {
+            1 => name(&self.file),
+            shot => format!("{}, segment {shot}", name(&self.file)),
+        };
+        let interval_s = match (self.plan.interval_s, block.times_s.get(range.clone())) {
+            (Some(interval_s), _) => interval_s,
+            (None, times) => {
+                let stated = times::interval_s(&source, times.unwrap_or_default())?;
+                channels::interval_s(&self.file, Some(stated), &self.plan.options)?
+            }
+        };
+        let channel = |(name, column): (&String, &Vec<f64>)| Channel {
+            name: name.clone(),
+            samples: Samples::Volts(column.get(range.clone()).unwrap_or_default().to_vec()),
+        };
+        Ok(Record {
+            source,
+            file: self.file.clone(),
+            shot: Some(self.shots),
+            interval_s,
+            channels: self
+                .plan
+                .names
+                .iter()
+                .zip(&block.columns)
+                .map(channel)
+                .collect(),
+            programmed_speed_m_s: None,
+            speed_m_s: None,
+            speed_error_m_s: None,
+            case: None,
+            pretrigger: None,
+        })
+    }
+}
+
+impl Block {
+    fn len(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+}
+
+impl Iterator for Rows {
+    type Item = Result<Record, RecordError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.ready.is_empty() && !self.ended {
+            self.advance();
+        }
+        self.ready.pop_front()
+    }
+}

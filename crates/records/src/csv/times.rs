@@ -1,0 +1,119 @@
+//! Times written beside samples: segments and the interval between samples.
+
+use crate::error::RecordError;
+use std::ops::Range;
+
+/// A step so many times the usual one begins a new segment.
+const GAP: f64 = 10.0;
+
+/// Share of a step by which a time may be off the even ones: files round times;
+/// one lost sample shifts by half a step or more.
+const UNEVEN: f64 = 0.4;
+
+/// Where times jump back, or ahead by many steps.
+pub(super) fn segments(times_s: &[f64]) -> Vec<Range<usize>> {
+    let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let jumps = |usual: f64| {
+        let wide = times_s.windows(2).enumerate();
+        let far = wide.filter(move |(_, pair)| {
+            let step = pair[1] - pair[0];
+            step < 0.0 || (usual > 0.0 && step > GAP * usual)
+        });
+        far.map(|(before, _)| before + 1).collect::<Vec<_>>()
+    };
+    let middle = steps.len() / 2;
+    let usual = match steps.is_empty() {
+        true => 0.0,
+        false => *steps.select_nth_unstable_by(middle, f64::total_cmp).1,
+    };
+    let mut starts = vec![0];
+    starts.extend(jumps(usual));
+    let ends = starts.iter().skip(1).copied().chain([times_s.len()]);
+    starts
+        .iter()
+        .copied()
+        .zip(ends)
+        .map(|(a, b)| a..b)
+        .collect()
+}
+
+/// The even interval of a segment's times.
+///
+/// # Errors
+/// Times that are not finite or not even.
+pub(super) fn interval_s(source: &str, times_s: &[f64]) -> Result<f64, RecordError> {
+    let empty = || RecordError::Empty {
+        source_name: source.to_owned(),
+    };
+    let (first, last) = (
+        *times_s.first().ok_or_else(empty)?,
+        *times_s.last().ok_or_else(empty)?,
+    );
+    let steps = times_s.len() - 1;
+    if steps == 0 {
+        return Err(RecordError::truncated(
+            source.to_owned(),
+            "a single sample has no interval",
+        ));
+    }
+    let interval_s = (last - first) / steps as f64;
+    let even = |i: usize| first + i as f64 * interval_s;
+    let bearable = bearable_s(times_s, interval_s);
+    let off = |(i, time): (usize, &f64)| {
+        let off = (time - even(i)).abs();
+        off.is_nan() || off > bearable
+    };
+    let Some(at) = times_s.iter().enumerate().position(off) else {
+        return Ok(interval_s);
+    };
+    Err(RecordError::UnevenTimes {
+        source_name: source.to_owned(),
+        sample: at + 1,
+        found_s: times_s.get(at).copied().unwrap_or(f64::NAN),
+        expected_s: even(at),
+    })
+}
+
+/// How far a time may be off the even ones: part of a step, or the unit that
+/// they are rounded to where that is so coarse that times repeat.
+fn bearable_s(times_s: &[f64], interval_s: f64) -> f64 {
+    let steps = || times_s.windows(2).map(|pair| pair[1] - pair[0]);
+    let rounding = match steps().any(|step| step == 0.0) {
+        true => steps()
+            .filter(|step| *step > 0.0)
+            .fold(f64::INFINITY, f64::min),
+        false => 0.0,
+    };
+    let finite = if rounding.is_finite() { rounding } else { 0.0 };
+    finite.max(UNEVEN * interval_s.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jumps_back_and_far_ahead_begin_segments() {
+        assert_eq!(segments(&[0.0, 1.0, 2.0, 0.0, 1.0]), [0..3, 3..5]);
+        assert_eq!(segments(&[0.0, 1.0, 2.0, 90.0, 91.0]), [0..3, 3..5]);
+        assert_eq!(segments(&[0.0, 1.0, 2.0]).first(), Some(&(0..3)));
+        assert_eq!(segments(&[]).first(), Some(&(0..0)));
+    }
+
+    #[test]
+    fn rounded_times_are_even_and_a_lost_sample_is_not() {
+        let rounded: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.4).round()).collect();
+        // The ends are rounded too: half a unit over the whole length.
+        let interval = interval_s("x", &rounded).unwrap();
+        assert!((interval - 0.4).abs() < 1.0 / 999.0, "{interval}");
+    }
+
+    #[test]
+    fn a_lost_sample_is_told() {
+        for lost in [1, 500, 998] {
+            let kept = (0..1000).filter(|i| *i != lost).map(f64::from);
+            let times: Vec<f64> = kept.collect();
+            assert!(interval_s("x", &times).is_err(), "{lost}");
+        }
+    }
+}
