@@ -10,7 +10,7 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
-use crate::shot::{Shot, reported, shoot, shoot_checked};
+use crate::shot::{Shot, reported, shoot, shoot_checked, tie};
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::{Passages, RETURN_WITHIN};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
@@ -220,7 +220,6 @@ fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
         sensor_maxima: reported(passages.sensor().maxima()),
         pulse_speed_beads_s: Some(between / passage.tof_incident_s()),
         rebound: None,
-        passage: Ok(passage),
         budget: None,
         trace: None,
         duration_s: flown.time_s,
@@ -232,6 +231,9 @@ fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
         solver: "predictor–corrector of order 4, equal steps".to_owned(),
         tolerance: None,
         step_s: Some(flown.step_s),
-        notes: closed_gaps(plan, system).into_iter().collect(),
+        notes: (closed_gaps(plan, system).into_iter())
+            .chain(tie(&passage, plan.accuracy))
+            .collect(),
+        passage: Ok(passage),
     })
 }

@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::following::Following;
 use crate::plan::{Plan, Solver};
-use crate::shot::{Rebound, Shot, reported};
+use crate::shot::{Rebound, Shot, reported, tie};
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
@@ -41,6 +41,9 @@ impl<'a> Gun<'a> {
     pub(crate) fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
         let mut shot = self.computed(checked)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
+        let passage = shot.passage.as_ref().ok();
+        shot.notes
+            .extend(passage.and_then(|passage| tie(passage, self.plan.accuracy)));
         let residual = residual(&shot);
         if residual > self.plan.accuracy {
             shot.notes.push(format!(

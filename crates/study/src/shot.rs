@@ -126,6 +126,35 @@ pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
     Gun::load(plan)?.shoot(true)
 }
 
+/// Errors of peaks over the accuracy asked of times, at most: [`crate::reproduce`]
+/// takes the same.
+const OF_PEAKS: f64 = 50.0;
+
+/// Which pulse two maxima share that are as high as can be told: the next
+/// computation may pick the other.
+pub(crate) fn tie(passage: &Passage, accuracy: f64) -> Option<String> {
+    let before = |peak: &&Maximum| peak.time_s < passage.wall.time_s;
+    let incoming: Vec<Maximum> = (passage.sensor_maxima.iter().filter(before).copied()).collect();
+    let pulses = [
+        ("passing", &incoming, Some(passage.incident)),
+        ("wall's", &passage.wall_maxima, Some(passage.wall)),
+        ("returning", &passage.returning_maxima, passage.reflected),
+    ];
+    let tied = pulses.into_iter().find(|(_, maxima, picked)| {
+        picked.is_some_and(|picked| {
+            let as_high = picked.value * (1.0 - OF_PEAKS * accuracy);
+            let other = |peak: &&Maximum| peak.value >= as_high && peak.time_s != picked.time_s;
+            maxima.iter().any(|peak| other(&peak))
+        })
+    });
+    tied.map(|(pulse, ..)| {
+        format!(
+            "the {pulse} pulse has two maxima that are equally high as far as an accuracy of {accuracy:e} \
+             tells: its time is that of one of them"
+        )
+    })
+}
+
 /// Maxima above 5 % of the largest.
 pub(crate) fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
     let most = highest(maxima).map_or(0.0, |peak| peak.value);

@@ -137,6 +137,23 @@ fn hertz_pulses_keep_their_time_whatever_the_pick() {
 }
 
 #[test]
+fn two_maxima_as_high_as_can_be_told_are_told_of() {
+    // A heavy striker's train: 13.2407 and 22.6862 after the wall's peak, as high
+    // as each other to 4e-6.
+    let text = "units = \"dimensionless\"\n[striker]\nspeed = 1\nmass = 74.2\n[[beads]]\ncount = 24\n\
+                [[contacts]]\nlaws = [\"elastic_hertz\"]\n[sensors]\nbead = 7\n[far_end]\nkind = \"half-bead\"\n";
+    let experiment = Experiment::from_text("train.toml", text).unwrap();
+    let (train, _) = Plan::from_experiment(&experiment, None).unwrap();
+    let told = |plan: &Plan| {
+        let notes = shoot(plan).unwrap().notes;
+        notes.iter().any(|note| note.contains("two maxima"))
+    };
+    assert!(told(&train.clone().with_accuracy(1e-4)));
+    assert!(!told(&train.with_accuracy(1e-9)));
+    assert!(!told(&plan("dry", 0.5)));
+}
+
+#[test]
 fn one_shot_can_be_timed_in_every_way() {
     let all = shoot(&plan("gear", 0.2).comparing_picks()).unwrap();
     let flights = std::iter::once(all.flight).chain(all.compared);
