@@ -113,11 +113,15 @@ fn with_curve(
         Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
         Err(_) => f64::NAN,
     });
-    let colour = Colour::PALETTE[number % Colour::PALETTE.len()];
+    let colour = colour(number);
     let line = Series::line("", &speeds, &fitted).dash(Dash::Solid);
     chart
         .with(points.colour(colour))
         .with(line.colour(colour).width(FIT_WIDTH))
+}
+
+fn colour(number: usize) -> Colour {
+    Colour::PALETTE[number % Colour::PALETTE.len()]
 }
 
 fn marker(number: usize) -> Marker {
@@ -140,13 +144,17 @@ pub fn ratios(curves: &Curves, reference: &str) -> Figure {
         .h_line(1.0, "")
     };
     let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
-    for (number, wet) in curves.ratios.iter().enumerate() {
+    for wet in &curves.ratios {
+        // The look that the case has beside its reference.
+        let same = |case: &Case| case.name == wet.case;
+        let number = curves.cases.iter().position(same).unwrap_or(0);
         let series = |ratios: &[Ratio]| {
             let speeds: Vec<f64> = ratios.iter().map(|ratio| ratio.speed).collect();
             let values: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.value).collect();
             let errors: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.sigma).collect();
             Series::points(&wet.case, &speeds, &values)
                 .marker(marker(number))
+                .colour(colour(number))
                 .y_error(&errors)
         };
         incident = incident.with(series(&wet.incident));
