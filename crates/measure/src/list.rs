@@ -26,6 +26,12 @@ pub enum ListError {
         "the first line must name the columns: file, and any of shot, case, speed, speed error"
     )]
     NoTitles,
+    /// Speeds in another unit.
+    #[error("the column {title:?} has another unit: speeds and their errors are in m/s")]
+    Unit {
+        /// The column's title.
+        title: String,
+    },
     /// A number that is none.
     #[error("line {line}: {text:?} is no {what}")]
     NoNumber {
@@ -69,6 +75,10 @@ impl ShotList {
             .into_iter()
             .find(|mark| titles.contains(*mark));
         let delimiter = delimiter.unwrap_or(',');
+        if let Some(title) = titles.split(delimiter).find(|title| in_other_unit(title)) {
+            let title = title.trim().to_owned();
+            return Err(ListError::Unit { title });
+        }
         let columns = Columns::of(titles, delimiter).ok_or(ListError::NoTitles)?;
         let entries = lines.map(|(index, line)| columns.entry(line, delimiter, index + 1));
         Ok(Self {
@@ -83,6 +93,18 @@ impl ShotList {
             file.ends_with(&entry.file) && (entry.shot.is_none() || entry.shot == shot)
         })
     }
+}
+
+/// Whether a title is that of speeds and names a unit that is not m/s.
+fn in_other_unit(title: &str) -> bool {
+    let title = title.trim().trim_matches('"').to_lowercase();
+    let of_speed = ["speed", "velocity", "v0", "error"];
+    let Some((name, unit)) = title.split_once(['(', '[']) else {
+        return false;
+    };
+    let unit = unit.trim_end_matches([')', ']']).replace(' ', "");
+    let usual = ["m/s", "ms^-1", "ms-1", "m·s^-1", "m·s⁻¹", "ms⁻¹"];
+    of_speed.iter().any(|word| name.contains(word)) && !usual.contains(&unit.as_str())
 }
 
 impl Columns {
@@ -161,6 +183,18 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn speeds_in_another_unit_are_refused_not_taken_for_metres_a_second() {
+        for title in ["velocity [mm/s]", "speed (cm/s)", "speed error (%)"] {
+            let list = ShotList::parse(&format!("file,{title}\na.csv,500\n"));
+            assert!(matches!(list, Err(ListError::Unit { .. })), "{title}");
+        }
+        for title in ["speed (m/s)", "v0 [m s^-1]", "speed"] {
+            let list = ShotList::parse(&format!("file,{title}\na.csv,0.5\n"));
+            assert!(list.is_ok(), "{title}");
+        }
+    }
 
     #[test]
     fn a_list_gives_files_their_speeds() {

@@ -223,10 +223,14 @@ fn write(
     Ok(())
 }
 
-/// Refused records make the run one with mistakes, whatever else was measured.
+/// Refused records make the run one with mistakes, whatever else was measured;
+/// so does a run in which no record had a time of flight.
 fn judge(measured: &Measurement) -> Result<(), Failure> {
     let refused = measured.refused.len();
     match refused {
+        0 if measured.shots.iter().all(|shot| shot.flight.is_err()) => Err(Failure::User(
+            "no record had a time of flight; shots.csv tells why, one by one".to_owned(),
+        )),
         0 => Ok(()),
         _ => Err(Failure::User(format!(
             "{refused} of {} records were refused; the others were measured",
