@@ -19,4 +19,4 @@ pub use hertzchain_records as records;
 pub use list::{ListError, ShotList};
 pub use run::{Measurement, Options, measure};
 pub use shot::Shot;
-pub use table::{ratios_csv, shots_csv, speeds_csv};
+pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv};

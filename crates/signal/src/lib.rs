@@ -55,10 +55,12 @@ pub use pick::{Peak, largest_peak, onset_s};
 pub use picks::{
     Method, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
 };
-pub use power_law::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
+pub use power_law::{
+    FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,
+};
 pub use reduce::{
-    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups,
-    power_law_both_errors, ratios_at_common, summary,
+    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups, ratios_at_common,
+    summary,
 };
 pub use saturation::{Rails, saturated_runs};
 pub use zero_phase::LowPass;

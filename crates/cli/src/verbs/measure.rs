@@ -12,7 +12,7 @@ use crate::{input, print};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::{ReadOptions, Rows};
 use hertzchain_measure::{
-    Curves, Grouping, Measurement, Options, ShotList, ratios_csv, shots_csv, speeds_csv,
+    Curves, Grouping, Measurement, Options, ShotList, laws_csv, ratios_csv, shots_csv, speeds_csv,
 };
 use hertzchain_signal::{Finding, LowPass, Measuring, Method, Polarity, Shape, Template};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -213,6 +213,7 @@ fn write(
     }
     if !curves.cases.is_empty() {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
+        folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
         folder.figure("times-of-flight", &pictures::times(curves))?;
     }
     if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {
