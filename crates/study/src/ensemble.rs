@@ -29,7 +29,7 @@ pub fn shoot_all(
     checked: bool,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Result<Shot, StudyError>> {
-    each_block(plans, &|block| {
+    each_block(plans, |block| {
         let shots = shoot_block(block, set, checked);
         block.iter().for_each(|_| progress());
         shots
@@ -41,7 +41,7 @@ pub fn shoot_all(
 /// reached. Whatever the ensemble loop does not have, or loses, the wave loop
 /// computes.
 pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, StudyError>> {
-    each_block(plans, &|block| {
+    each_block(plans, |block| {
         let (systems, shots) = loaded(block, |ready| fire(ready, set, (1.0, false)));
         let shots = in_place(&systems, shots.into_iter());
         let shots = block.iter().zip(shots);
@@ -54,7 +54,7 @@ pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, S
 /// Results of a function of plans that go together, in the order of all plans.
 fn each_block(
     plans: &[Plan],
-    of: &(dyn Fn(&[&Plan]) -> Vec<Result<Shot, StudyError>> + Sync),
+    of: impl Fn(&[&Plan]) -> Vec<Result<Shot, StudyError>> + Sync,
 ) -> Vec<Result<Shot, StudyError>> {
     let mut results: Vec<Option<Result<Shot, StudyError>>> = vec![None; plans.len()];
     let blocks = blocks(plans);

@@ -74,9 +74,9 @@ mod tests {
 
     #[test]
     fn slopes_of_parabolas_in_the_logarithms_are_exact_everywhere() {
-        let speeds = [0.075, 0.0751, 0.1, 0.24, 0.6, 1.23];
-        let y = |at: usize| {
-            let x = speeds[at].ln();
+        let speeds: [f64; 6] = [0.075, 0.0751, 0.1, 0.24, 0.6, 1.23];
+        let y = |at: usize| -> Option<f64> {
+            let x: f64 = speeds[at].ln();
             Some((2.0 - 0.2 * x + 0.03 * x * x).exp())
         };
         for row in 0..speeds.len() {
