@@ -3,8 +3,18 @@
 //! The numerics know nothing of chains: they see a [`Problem`], whose residuals
 //! are computed for many points at once.
 
+mod chance;
+mod covariance;
+mod goodness;
+mod least_squares;
+mod linear;
 mod parameter;
 mod problem;
+mod profile;
 
+pub use covariance::Covariance;
+pub use goodness::{Goodness, Runs, runs};
+pub use least_squares::{Binding, Ending, Fit, FitError, Fitting, Jacobian, Loss, Started, fit};
 pub use parameter::{Parameter, ParameterError, Prior};
 pub use problem::{ModelError, Problem, Residuals};
+pub use profile::{End, Interval, Profile, ProfileError, Profiling, RISE_OF_95_PERCENT, profile};
