@@ -1,16 +1,27 @@
 //! From measurements to parameters: fits, uncertainty, identifiability, design.
 //!
 //! The numerics know nothing of chains: they see a [`Problem`], whose residuals
-//! are computed for many points at once.
+//! are computed for many points at once. [`CurveProblem`] is the one of this
+//! program: times of flight of an experiment.
 
+mod chance;
+mod covariance;
 mod curve;
 mod data;
 mod free;
+mod goodness;
+mod least_squares;
+mod linear;
 mod parameter;
 mod problem;
+mod profile;
 
+pub use covariance::Covariance;
 pub use curve::{CurveError, CurveProblem, Model, Predicted, Speeds};
-pub use data::{Data, DataError, DataRow, Defaults, Observable, Place};
+pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
+pub use goodness::{Goodness, Runs, runs};
+pub use least_squares::{Binding, Ending, Fit, FitError, Fitting, Jacobian, Loss, Started, fit};
 pub use parameter::{Parameter, ParameterError, Prior};
 pub use problem::{ModelError, Problem, Residuals};
+pub use profile::{End, Interval, Profile, ProfileError, Profiling, RISE_OF_95_PERCENT, profile};

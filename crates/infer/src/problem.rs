@@ -47,6 +47,6 @@ impl Residuals {
 }
 
 /// Why a model has no residuals at a point.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Default, thiserror::Error)]
 #[error("{0}")]
 pub struct ModelError(pub String);
