@@ -17,7 +17,10 @@ mod problem;
 mod profile;
 
 pub use covariance::Covariance;
-pub use curve::{CurveError, CurveProblem, Model, Predicted, Speeds};
+pub use curve::{
+    CurveError, CurveProblem, FittedCurve, Joint, Model, Part, Predicted, Speeds, Supply,
+    Surrogate, SurrogateError,
+};
 pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
 pub use goodness::{Goodness, Runs, runs};

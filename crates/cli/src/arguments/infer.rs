@@ -141,7 +141,9 @@ pub struct Assignment {
 }
 
 fn assignment(text: &str) -> Result<Assignment, String> {
-    let parts = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
+    let parts = text
+        .split_once('=')
+        .filter(|(name, _)| !name.trim().is_empty());
     let (name, text) = parts.ok_or("expected NAME=VALUE, such as eta=3.2e4")?;
     Ok(Assignment {
         name: name.trim().to_owned(),

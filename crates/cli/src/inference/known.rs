@@ -75,7 +75,11 @@ fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
         false => Err(format!(
             "`{}` has another dimension; expected a number in {}",
             text.trim(),
-            if parameter.unit.is_empty() { "no unit" } else { &parameter.unit }
+            if parameter.unit.is_empty() {
+                "no unit"
+            } else {
+                &parameter.unit
+            }
         )),
     }
 }
@@ -91,7 +95,11 @@ fn prior(parameter: &Parameter, text: &str) -> Result<Prior, String> {
     let (median, factor) = text
         .split_once("*/")
         .ok_or("expected MEAN+-SD, or MEDIAN*/FACTOR")?;
-    let factor = factor.trim().parse::<f64>().ok().filter(|factor| *factor > 1.0);
+    let factor = factor
+        .trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|factor| *factor > 1.0);
     let factor = factor.ok_or("expected a factor above 1 after */")?;
     Ok(Prior::LogNormal {
         median: number(parameter, median)?,

@@ -98,6 +98,8 @@ pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, 
 
 /// As many threads as asked for.
 pub fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build();
     pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
 }
