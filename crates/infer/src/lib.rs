@@ -3,6 +3,10 @@
 //! The numerics know nothing of chains: they see a [`Problem`], whose residuals
 //! are computed for many points at once.
 
+mod curve;
+mod data;
+mod free;
+
 mod chance;
 mod covariance;
 mod goodness;
@@ -11,6 +15,10 @@ mod linear;
 mod parameter;
 mod problem;
 mod profile;
+
+pub use curve::{CurveError, CurveProblem, Model, Predicted, Speeds};
+pub use data::{Data, DataError, DataRow, Defaults, Observable, Place};
+pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
 
 pub use covariance::Covariance;
 pub use goodness::{Goodness, Runs, runs};
