@@ -337,7 +337,7 @@ fn walkers_start_inside_bounds_even_where_a_bound_binds() {
     let mut data = line();
     let (best, covariance) = regression(&data.x, &data.y, 0.3);
     let sd = covariance[1][1].sqrt();
-    let (z, bound) = (0.5, best[1] + 0.5 * sd);
+    let (z, bound) = (0.5_f64, best[1] + 0.5 * sd);
     data.parameters[1] = data.parameters[1].clone().within(bound, 3.0);
     let (found, _, mut chain) = started(
         &data,
