@@ -1,10 +1,12 @@
 //! What a residual costs.
 
+use serde::{Deserialize, Serialize};
+
 /// How fast the cost of a residual r grows; `scale` is where it stops being a
 /// square, in standard deviations.
 ///
 /// With z = (r/scale)² the cost is ½ scale² ρ(z).
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum Loss {
     /// ρ = z: least squares, the likelihood of normal errors.
     #[default]
