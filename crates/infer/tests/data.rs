@@ -82,16 +82,15 @@ fn a_missing_column_is_named_with_what_stands_in_its_place() {
         error.contains("tof_incident_s_error") && error.contains("--tof-error"),
         "{error}"
     );
-    let defaults = Defaults {
-        time_s: Some(1e-7),
-        ..Defaults::default()
+    let selection = Selection {
+        defaults: Defaults {
+            time_s: Some(1e-7),
+            ..Defaults::default()
+        },
+        ..Selection::default()
     };
-    let data = Data::parse(
-        "a.csv",
-        "speed_m_s,tof_incident_s\n0.5,7e-4\n",
-        None,
-        &defaults,
-    );
+    let text = "speed_m_s,tof_incident_s\n0.5,7e-4\n";
+    let data = Data::parse("a.csv", text, &selection);
     assert_eq!(data.unwrap().rows[0].values[0].unwrap().sigma, 1e-7);
 }
 
