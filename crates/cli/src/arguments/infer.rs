@@ -103,6 +103,19 @@ pub struct Fit {
     /// How uncertainty is told, beside the covariance
     #[arg(long, value_enum, value_name = "NAME", default_value = "covariance")]
     pub method: Method,
+    /// Compare with another model of the same data: a preset or file and what is free in it; may be
+    /// given several times
+    #[arg(long, value_name = "MODEL=NAMES", value_parser = against)]
+    pub against: Vec<Against>,
+    /// Most steps of a posterior's walkers
+    #[arg(long, value_name = "COUNT", default_value = "20000")]
+    pub steps: u64,
+    /// Compute every curve of a posterior, instead of interpolating between some hundreds
+    #[arg(long)]
+    pub direct: bool,
+    /// Go on with the walkers of the last run into the same --out
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     /// Count outliers by their size, not its square
     #[arg(long)]
     pub robust: bool,
@@ -148,6 +161,46 @@ fn assignment(text: &str) -> Result<Assignment, String> {
     Ok(Assignment {
         name: name.trim().to_owned(),
         text: text.trim().to_owned(),
+    })
+}
+
+/// Another model and what is free in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Against {
+    /// File or preset.
+    pub model: String,
+    free: Vec<String>,
+}
+
+impl Against {
+    /// The same as options of a fit, computed as another.
+    pub fn options(&self, like: &Modelled) -> (Modelled, Freed) {
+        let file = Some(PathBuf::from(&self.model)).filter(|file| file.exists());
+        let modelled = Modelled {
+            preset: file.is_none().then(|| self.model.clone()),
+            model: file,
+            set: Vec::new(),
+            accuracy: like.accuracy,
+            threads: like.threads,
+        };
+        let freed = Freed {
+            free: self.free.clone(),
+            start: Vec::new(),
+            bounds: Vec::new(),
+            prior: Vec::new(),
+            scale: Vec::new(),
+        };
+        (modelled, freed)
+    }
+}
+
+fn against(text: &str) -> Result<Against, String> {
+    let (model, free) = text
+        .split_once('=')
+        .ok_or("expected MODEL=NAMES, such as hertz-viscoelastic=eta")?;
+    Ok(Against {
+        model: model.trim().to_owned(),
+        free: free.split(',').map(|name| name.trim().to_owned()).collect(),
     })
 }
 

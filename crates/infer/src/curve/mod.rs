@@ -1,6 +1,7 @@
 //! Times of flight that an experiment predicts, for many sets of parameters at
 //! once, and their residuals to measured ones.
 
+mod advice;
 mod band;
 mod joint;
 mod model;
