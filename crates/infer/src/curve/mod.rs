@@ -3,6 +3,7 @@
 
 mod advice;
 mod band;
+mod candidates;
 mod joint;
 mod model;
 mod problem;
@@ -11,6 +12,7 @@ mod surrogate;
 mod whiten;
 
 pub use band::FittedCurve;
+pub use candidates::{ExpectedErrors, Way, WayError, usual_ways};
 pub use joint::{Joint, Part, Supply};
 pub use model::{Model, Predicted, Speeds};
 pub use problem::{CurveError, CurveProblem};
