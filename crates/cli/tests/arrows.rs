@@ -18,7 +18,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     (
         "infer",
-        &["chain", "experiment", "study", "signal", "measure"],
+        &["chain", "experiment", "study", "signal"],
     ),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
