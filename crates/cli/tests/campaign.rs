@@ -155,6 +155,45 @@ fn a_full_disk_is_a_clear_error_and_leaves_what_was_finished() {
     assert!(scratch.files("out") == scratch.files("whole"));
 }
 
+/// Incident times of flight with their errors, in s, as `measure` finds them.
+fn measured(scratch: &Scratch, out: &str) -> Vec<(f64, f64)> {
+    let output = Command::new(env!("CARGO_BIN_EXE_hertzchain"))
+        .current_dir(&scratch.0)
+        .args(["measure", out, "--json"])
+        .output()
+        .unwrap();
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let shots = found["shots"].as_array().unwrap().iter();
+    let tof = |shot: &serde_json::Value| {
+        let tof = &shot["tof_incident_s"];
+        (
+            tof["value"].as_f64().unwrap(),
+            tof["sigma"].as_f64().unwrap(),
+        )
+    };
+    shots.map(tof).collect()
+}
+
+#[test]
+fn measure_reads_separate_channels_as_it_reads_the_summed_one() {
+    let scratch = Scratch::new("separate");
+    scratch.done("summed", &["--shard", "1/4"]);
+    let separate = small().replace(
+        "[campaign.recorder]",
+        "[campaign.recorder]\nchannels = \"separate\"",
+    );
+    fs::write(scratch.0.join("small.toml"), separate).unwrap();
+    scratch.done("separate", &["--shard", "1/4"]);
+    let (one, two) = (measured(&scratch, "summed"), measured(&scratch, "separate"));
+    // Two series of four shots.
+    assert_eq!((one.len(), two.len()), (8, 8));
+    for ((one_s, one_error_s), (two_s, two_error_s)) in one.into_iter().zip(two) {
+        // Five standard errors of the difference: the noise is another.
+        let sure_s = 5.0 * one_error_s.hypot(two_error_s);
+        assert!((one_s - two_s).abs() < sure_s, "{one_s} {two_s} ± {sure_s}");
+    }
+}
+
 #[test]
 fn another_seed_needs_another_folder() {
     let scratch = Scratch::new("seed");

@@ -183,3 +183,31 @@ fn row(observed: &Observed, at: &AtSpeed) -> Chart {
     }
     chart
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+    use super::*;
+    use hertzchain_experiment::Experiment;
+    use hertzchain_rig::claims::{Design, observe};
+    use hertzchain_study::reproduce::Silent;
+
+    #[test]
+    fn a_small_design_has_all_its_pictures() {
+        let text = include_str!("../../../rig/tests/small.toml");
+        let design = Design {
+            rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::but(3, 2e-3)],
+            speeds: 3,
+            shots: 2,
+            first: 1,
+            ..Design::about(Experiment::from_text("small.toml", text).unwrap())
+        };
+        let evidence = observe(&design, &Silent).unwrap();
+        let claims = RigClaims::judge(&design, &evidence).unwrap();
+        for (name, figure) in figures(&evidence, &claims) {
+            let marks = figure.svg().matches("<path").count();
+            assert!(marks > 20, "{name}: {marks}");
+        }
+    }
+}

@@ -98,6 +98,17 @@ pub enum Channels {
     Separate,
 }
 
+impl Channels {
+    /// How many there are.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Summed => 1,
+            Self::Separate => 2,
+        }
+    }
+}
+
 /// Names of channels in a file.
 pub const CHANNELS: &[&str] = &["summed", "separate"];
 
