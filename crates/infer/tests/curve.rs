@@ -3,7 +3,7 @@
 
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::{
-    CurveError, CurveProblem, Data, Defaults, FreeNumber, FreeNumbers, Model, Problem, Speeds,
+    CurveError, CurveProblem, Data, FreeNumber, FreeNumbers, Model, Problem, Selection, Speeds,
 };
 use hertzchain_study::{Plan, shoot};
 
@@ -31,7 +31,7 @@ fn table(model: &Model, point: &[f64], moved: f64, speed_error: f64) -> Data {
             incident + moved * 1e-7
         );
     }
-    Data::parse("made", &text, None, &Defaults::default()).unwrap()
+    Data::parse("made", &text, &Selection::default()).unwrap()
 }
 
 fn problem(model: &Model, data: Data) -> CurveProblem {
@@ -74,7 +74,7 @@ fn bits_of_a_point_depend_on_no_neighbour() {
         .collect();
     let together = model.curves(&points, &speeds);
     for (point, curve) in points.iter().zip(together) {
-        assert_eq!(model.curves(&[point.clone()], &speeds)[0], curve);
+        assert_eq!(model.curves(std::slice::from_ref(point), &speeds)[0], curve);
     }
 }
 

@@ -1,12 +1,12 @@
 //! Tables of measured curves: what is read and what is refused, with its place.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use hertzchain_infer::{Data, Defaults, Observable};
+use hertzchain_infer::{Data, Defaults, Observable, Selection};
 
 const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
 
 fn parse(text: &str) -> Result<Data, String> {
-    let data = Data::parse("a.csv", text, None, &Defaults::default());
+    let data = Data::parse("a.csv", text, &Selection::default());
     data.map_err(|error| error.to_string())
 }
 
@@ -82,23 +82,29 @@ fn a_missing_column_is_named_with_what_stands_in_its_place() {
         error.contains("tof_incident_s_error") && error.contains("--tof-error"),
         "{error}"
     );
-    let defaults = Defaults {
-        time_s: Some(1e-7),
-        ..Defaults::default()
+    let selection = Selection {
+        defaults: Defaults {
+            time_s: Some(1e-7),
+            ..Defaults::default()
+        },
+        ..Selection::default()
     };
-    let data = Data::parse(
-        "a.csv",
-        "speed_m_s,tof_incident_s\n0.5,7e-4\n",
-        None,
-        &defaults,
-    );
+    let text = "speed_m_s,tof_incident_s\n0.5,7e-4\n";
+    let data = Data::parse("a.csv", text, &selection);
     assert_eq!(data.unwrap().rows[0].values[0].unwrap().sigma, 1e-7);
 }
 
 #[test]
 fn one_of_several_cases_must_be_chosen() {
     let text = "case,speed_m_s,tof_incident_s,tof_incident_s_error\ndry,0.5,7e-4,1e-7\npump,0.5,6.9e-4,1e-7\n";
-    let of = |case| Data::parse("a.csv", text, case, &Defaults::default());
+    let of = |case: Option<&str>| {
+        let case = case.map(str::to_owned);
+        let selection = Selection {
+            case,
+            ..Selection::default()
+        };
+        Data::parse("a.csv", text, &selection)
+    };
     let error = of(None).unwrap_err().to_string();
     assert!(
         error.contains("--case") && error.contains("dry, pump"),

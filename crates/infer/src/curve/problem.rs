@@ -73,16 +73,28 @@ impl CurveProblem {
                 names: names.join(", "),
             });
         }
+        Ok(Self::unchecked(model, data, parameters))
+    }
+
+    /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may tell
+    /// what these data do not.
+    #[must_use]
+    pub fn part(model: Model, data: Data) -> Self {
+        let parameters = model.numbers().parameters(&data.speeds_m_s());
+        Self::unchecked(model, data, parameters)
+    }
+
+    fn unchecked(model: Model, data: Data, parameters: Vec<Parameter>) -> Self {
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();
-        Ok(Self {
+        Self {
             model,
             data,
             parameters,
             speeds,
             stencils,
             labels,
-        })
+        }
     }
 
     /// The model.
@@ -111,6 +123,14 @@ impl CurveProblem {
     pub fn curves(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
         let speeds = Speeds::of_rows(&self.data.speeds_m_s());
         self.model.curves(points, &speeds)
+    }
+
+    /// Predictions at all speeds that residuals need, slopes among them.
+    pub(super) fn all_curves(
+        &self,
+        points: &[Vec<f64>],
+    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        self.model.curves(points, &self.speeds)
     }
 
     /// Which row and observable each residual belongs to.
@@ -184,7 +204,10 @@ fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
 }
 
 fn row_labels(row: &DataRow) -> Vec<String> {
-    let speed = row.speed_m_s.value;
+    // Four digits tell rows apart for a reader.
+    let speed: f64 = format!("{:.3e}", row.speed_m_s.value)
+        .parse()
+        .unwrap_or(row.speed_m_s.value);
     let label = |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
     row.observables().map(label).collect()
 }
@@ -199,7 +222,7 @@ impl Problem for CurveProblem {
     }
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
-        let curves = self.model.curves(points, &self.speeds);
+        let curves = self.all_curves(points);
         curves
             .into_iter()
             .map(|curve| self.residuals_of(&curve?))

@@ -25,21 +25,30 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn of(titles: &[String], file: &str) -> Result<Self, DataError> {
-        let missing = |column: &str, expected: &str| DataError::NoColumn {
+    /// Columns of the wanted observables, of which a table must have one.
+    pub(super) fn of(
+        titles: &[String],
+        wanted: &[Observable],
+        file: &str,
+    ) -> Result<Self, DataError> {
+        let missing = |column: &str, expected: String| DataError::NoColumn {
             file: file.to_owned(),
             column: column.to_owned(),
-            expected: expected.to_owned(),
+            expected,
         };
         let speed = measured(titles, "speed_m_s").ok_or_else(|| {
             let near = other_unit(titles, "speed");
-            missing("speed_m_s", &format!("speeds of the striker in m/s{near}"))
+            missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
         })?;
-        let observables = Observable::ALL.map(|of| measured(titles, of.column()));
-        if observables[..2].iter().all(Option::is_none) {
-            let near = other_unit(titles, "tof");
-            let what = format!("times of flight in s, or `tof_reflected_s`{near}");
-            return Err(missing("tof_incident_s", &what));
+        let column = |of: Observable| {
+            let is_wanted = wanted.contains(&of);
+            is_wanted.then(|| measured(titles, of.column())).flatten()
+        };
+        let observables = Observable::ALL.map(column);
+        if observables.iter().all(Option::is_none) {
+            let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
+            let what = format!("times in s or ratios{}", other_unit(titles, "tof"));
+            return Err(missing(&names.join("` or `"), what));
         }
         Ok(Self {
             case: find(titles, &["case"]),
@@ -103,7 +112,8 @@ mod tests {
             "case,speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_deviation,tof_incident_s_error",
             "case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s",
         ] {
-            let columns = Columns::of(&titles(text), "a.csv").unwrap();
+            let wanted = [Observable::Incident];
+            let columns = Columns::of(&titles(text), &wanted, "a.csv").unwrap();
             assert_eq!(columns.speed.sigma.unwrap().at, 2, "{text}");
             let incident = columns.observables[0].clone().unwrap();
             let last = titles(text).len() - 1;

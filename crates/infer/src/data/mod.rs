@@ -6,7 +6,7 @@ mod error;
 mod read;
 
 pub use error::{DataError, Place};
-pub use read::Defaults;
+pub use read::{Defaults, Selection};
 
 use hertzchain_signal::Estimate;
 

@@ -16,29 +16,44 @@ pub struct Defaults {
     pub ratio: Option<f64>,
 }
 
+/// What to take from a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// Which case of a table with a column `case`; needed if it has several.
+    pub case: Option<String>,
+    /// Which measured numbers; others are not looked at.
+    pub observables: Vec<Observable>,
+    /// Standard errors where the table has none.
+    pub defaults: Defaults,
+}
+
+impl Default for Selection {
+    /// Both times of flight.
+    fn default() -> Self {
+        Self {
+            case: None,
+            observables: vec![Observable::Incident, Observable::Reflected],
+            defaults: Defaults::default(),
+        }
+    }
+}
+
 impl Data {
-    /// Reads a table from text: commas, or semicolons with decimal commas.
-    ///
-    /// `case` chooses among those of a table with a column `case`. Cells of
-    /// observables may be empty: that one was not seen.
+    /// Reads a table from text: commas, or semicolons with decimal commas. Cells
+    /// of observables may be empty: that one was not seen.
     ///
     /// # Errors
     /// See [`DataError`]: the first row and column that can't be used.
-    pub fn parse(
-        file: &str,
-        text: &str,
-        case: Option<&str>,
-        defaults: &Defaults,
-    ) -> Result<Self, DataError> {
+    pub fn parse(file: &str, text: &str, selection: &Selection) -> Result<Self, DataError> {
         let (titles, records) = records(file, text)?;
-        let columns = Columns::of(&titles, file)?;
+        let columns = Columns::of(&titles, &selection.observables, file)?;
         let reader = Reader {
             file,
             decimal_comma: delimiter(text) != b',',
-            defaults,
+            defaults: &selection.defaults,
             columns,
         };
-        let (case, records) = reader.of_case(records, case)?;
+        let (case, records) = reader.of_case(records, selection.case.as_deref())?;
         let rows = records
             .iter()
             .filter_map(|record| reader.row(record).transpose());
