@@ -22,7 +22,8 @@ const RUNS: usize = 9;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    pool.install(all)
+    pool.install(|| all().map_err(|error| error.to_string()))?;
+    Ok(())
 }
 
 fn all() -> Result<(), Box<dyn Error>> {
@@ -59,8 +60,12 @@ fn all() -> Result<(), Box<dyn Error>> {
     told("surrogate", || {
         Surrogate::new(&problem, &best, &covariance).map_or(0, |found| found.error as usize)
     });
-    told("6,400 likelihoods of the surrogate", || steps(&surrogate, &best, &covariance));
-    told("6,400 likelihoods of the model", || steps(&problem, &best, &covariance));
+    told("6,400 likelihoods of the surrogate", || {
+        steps(&surrogate, &best, &covariance)
+    });
+    told("6,400 likelihoods of the model", || {
+        steps(&problem, &best, &covariance)
+    });
     Ok(())
 }
 

@@ -73,13 +73,20 @@ impl Held {
     }
 }
 
-fn study((name, file, free, exact): Case, sets: usize, sampled: usize) -> Result<(), Box<dyn Error>> {
+fn study(
+    (name, file, free, exact): Case,
+    sets: usize,
+    sampled: usize,
+) -> Result<(), Box<dyn Error>> {
     let mut experiment = preset(file)?;
     let model = model(&experiment, &free);
     if file == "pump" {
         let paths = [
             ("contacts[1].laws.elastic_hertz.stiffness", exact[0]),
-            ("contacts[1].laws.damping_viscoelastic.relaxation_time", exact[1]),
+            (
+                "contacts[1].laws.damping_viscoelastic.relaxation_time",
+                exact[1],
+            ),
         ];
         experiment = experiment.set(&paths)?;
     }
@@ -100,14 +107,23 @@ fn study((name, file, free, exact): Case, sets: usize, sampled: usize) -> Result
         });
         by_profile(&repeated, &best, &covariance, &exact, &mut profiles)?;
         if seed < sampled {
-            by_posterior(&repeated, (&best, &covariance), seed, &exact, &mut posteriors)?;
+            by_posterior(
+                &repeated,
+                (&best, &covariance),
+                seed,
+                &exact,
+                &mut posteriors,
+            )?;
         }
     }
     println!(
         "{name}: {} and {}; surrogate right to {:.3} standard errors",
         free[0], free[1], surrogate.error
     );
-    println!("| method | data sets | {0} 68 % | {0} 95 % | {1} 68 % | {1} 95 % |", free[0], free[1]);
+    println!(
+        "| method | data sets | {0} 68 % | {0} 95 % | {1} 68 % | {1} 95 % |",
+        free[0], free[1]
+    );
     for (method, held) in [
         ("covariance", &covariances),
         ("profile", &profiles),
@@ -152,6 +168,8 @@ fn by_posterior(
             Err(unconverged) => chain.advance(problem, unconverged.more_steps().max(300))?,
         }
     };
-    held.count(exact, |at, level| posterior.interval(at, [0.682_689, 0.95][level]));
+    held.count(exact, |at, level| {
+        posterior.interval(at, [0.682_689, 0.95][level])
+    });
     Ok(())
 }

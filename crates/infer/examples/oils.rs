@@ -22,9 +22,14 @@ use std::error::Error;
 const SPEEDS: usize = 12;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let trials = std::env::args().nth(1).map_or(Ok(25), |text| text.parse())?;
+    let trials = std::env::args()
+        .nth(1)
+        .map_or(Ok(25), |text| text.parse())?;
     let both = [Observable::Incident, Observable::Reflected];
-    for (what, used) in [("both times", &both[..]), ("incident times alone", &both[..1])] {
+    for (what, used) in [
+        ("both times", &both[..]),
+        ("incident times alone", &both[..1]),
+    ] {
         println!("\n{what}, {SPEEDS} speeds, {trials} trials");
         table(trials, used)?;
     }
@@ -57,7 +62,11 @@ fn table(trials: u64, used: &[Observable]) -> Result<(), Box<dyn Error>> {
             let gauge = Gauge::new(&chains, data(&dry, seed), data(&wet, 10_000 + seed))?;
             let verdict = gauge.verdict(&oils)?;
             let names: Vec<&str> = verdict.allowed().map(|found| found.oil.as_str()).collect();
-            let names = if names.is_empty() { "none of these".to_owned() } else { names.join(" or ") };
+            let names = if names.is_empty() {
+                "none of these".to_owned()
+            } else {
+                names.join(" or ")
+            };
             *said.entry(names).or_default() += 1;
         }
         println!("| {name} | {said:?} |");

@@ -8,7 +8,7 @@ use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
 
-const SPEEDS: usize = 8;
+const SPEEDS: usize = 4;
 
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
@@ -37,16 +37,23 @@ fn the_tables_oils_are_those_of_the_presets() {
             let (k, a) = oil.contact(pair.radius_m, speed);
             // v^b computed twice: rounding.
             assert!((k / pair.hertz_stiffness() - 1.0).abs() < 1e-12, "{name}");
-            assert!((a / pair.left.relaxation_time_s() - 1.0).abs() < 1e-12, "{name}");
+            assert!(
+                (a / pair.left.relaxation_time_s() - 1.0).abs() < 1e-12,
+                "{name}"
+            );
         }
     }
 }
 
 #[test]
 fn each_oil_is_recognised_and_the_others_rejected() {
-    for (seed, (name, called)) in [("motor", "motor oil"), ("gear", "gear oil"), ("pump", "pump oil")]
-        .into_iter()
-        .enumerate()
+    for (seed, (name, called)) in [
+        ("motor", "motor oil"),
+        ("gear", "gear oil"),
+        ("pump", "pump oil"),
+    ]
+    .into_iter()
+    .enumerate()
     {
         let gauge = gauge(wet(&preset(name).unwrap(), seed as u64), seed as u64);
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
@@ -66,7 +73,11 @@ fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
     let gauge = gauge(wet(&unknown, 7), 7);
     let mut table = known_oils().unwrap();
     let verdict = gauge.verdict(&table).unwrap();
-    assert!(verdict.sentence().starts_with("None of these"), "{}", verdict.sentence());
+    assert!(
+        verdict.sentence().starts_with("None of these"),
+        "{}",
+        verdict.sentence()
+    );
     let mut row = table[0].clone();
     if let Description::Material {
         young_modulus_pa, ..
@@ -91,6 +102,15 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
         let contact = row.told.unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         let covariance = contact.covariance();
+        if !contact.others.is_empty() {
+            // Two pairs give the same times: one is the truth, to some percent.
+            let pairs = std::iter::once(contact.ln).chain(contact.others.clone());
+            let near = pairs
+                .map(|ln| (ln[1] - a.ln()).abs())
+                .fold(f64::INFINITY, f64::min);
+            assert!(near < 0.1, "{}: {contact:?}", row.speed_m_s);
+            continue;
+        }
         for (of, exact) in [k, a].into_iter().enumerate() {
             let pull = (contact.ln[of] - exact.ln()) / covariance[of][of].sqrt();
             // Sixteen numbers: of a hundred seeds one would fail.
@@ -113,7 +133,11 @@ fn incident_times_alone_tell_one_combination_and_what_to_add() {
         let exact = k.ln() + combination.exponent * (a / combination.reference_s).ln();
         // The exponent is that at the dry A; to the pump oil's A, up to four times as
         // large, it bends the combination by some percent.
-        assert!((contact.ln[0] - exact).abs() < 0.1, "{}: {combination:?}", row.speed_m_s);
+        assert!(
+            (contact.ln[0] - exact).abs() < 0.1,
+            "{}: {combination:?}",
+            row.speed_m_s
+        );
     }
     assert!(gauge.to_add().unwrap().contains("reflected"));
 }
@@ -132,6 +156,9 @@ fn a_users_oil_may_be_given_by_its_contact() {
     ] {
         let text = text.replace("mine,9e9,-0.1,8e-7,-0.2", row);
         let error = oils("mine.csv", &text).unwrap_err().to_string();
-        assert!(error.contains("mine.csv, line 2") && error.contains(words), "{error}");
+        assert!(
+            error.contains("mine.csv, line 2") && error.contains(words),
+            "{error}"
+        );
     }
 }

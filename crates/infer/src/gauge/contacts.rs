@@ -28,6 +28,8 @@ pub struct Contact {
     /// Shifts of both by one standard error of each independent shift of the dry
     /// contacts' numbers: common to all rows.
     pub shared: Vec<[f64; 2]>,
+    /// Other pairs ln K, ln A that fit as well.
+    pub others: Vec<[f64; 2]>,
     /// Where only one number was measured: what it determines.
     pub combination: Option<Combination>,
 }
@@ -68,6 +70,13 @@ impl Contact {
     }
 }
 
+/// K and A that fit a row.
+struct Solution {
+    point: [f64; 2],
+    covariance: Covariance,
+    cost: f64,
+}
+
 /// What is free in a row, by the number of its measurements.
 #[derive(Clone, Copy, PartialEq)]
 enum Free {
@@ -96,11 +105,15 @@ impl Gauge {
             1 => Free::StiffnessAlone,
             _ => Free::Both,
         };
-        let (point, covariance) = self.solved(row, free, &self.dry_fit.point)?;
+        let mut solutions = self.solutions(row, free)?;
+        let Solution {
+            point, covariance, ..
+        } = solutions.remove(0);
         let mut shared = Vec::new();
         for shift in shifts {
             let moved = self.dry_fit.point.iter().zip(shift).map(|(x, s)| x + s);
-            let (other, _) = self.solved(row, free, &moved.collect::<Vec<f64>>())?;
+            let moved: Vec<f64> = moved.collect();
+            let other = self.solved(row, free, &moved, point)?.point;
             shared.push([0, 1].map(|i| (other[i] / point[i]).ln()));
         }
         let entry = |i: usize, j: usize| {
@@ -111,11 +124,50 @@ impl Gauge {
             ln: point.map(f64::ln),
             own: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
             shared,
+            others: solutions
+                .into_iter()
+                .map(|s| s.point.map(f64::ln))
+                .collect(),
             combination: match free {
                 Free::Both => None,
                 Free::StiffnessAlone => Some(self.combination(row, point)?),
             },
         })
+    }
+
+    /// All that fit as well as the best, from several starts, the best first:
+    /// times of flight need not determine K and A uniquely.
+    fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
+        let [stiffness, relaxation] = self.dry_contact();
+        let starts = match free {
+            Free::Both => &TIMES_DRY[..],
+            Free::StiffnessAlone => &TIMES_DRY[..1],
+        };
+        let mut found: Vec<Solution> = Vec::new();
+        let mut failed = None;
+        for times in starts {
+            match self.solved(
+                row,
+                free,
+                &self.dry_fit.point,
+                [stiffness, times * relaxation],
+            ) {
+                Ok(solution) => found.push(solution),
+                Err(error) => failed = Some(error),
+            }
+        }
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let Some(best) = found.first().map(|best| best.cost) else {
+            return Err(failed.unwrap_or(FitError::NothingFree));
+        };
+        let mut distinct: Vec<Solution> = Vec::new();
+        for solution in found {
+            let same = |other: &Solution| (solution.point[1] / other.point[1]).ln().abs() < SAME;
+            if solution.cost < best + AS_GOOD && !distinct.iter().any(same) {
+                distinct.push(solution);
+            }
+        }
+        Ok(distinct)
     }
 
     /// K and A that one row asks for, with given numbers of the dry contacts.
@@ -124,17 +176,29 @@ impl Gauge {
         row: usize,
         free: Free,
         dry: &[f64],
-    ) -> Result<([f64; 2], Covariance), FitError> {
-        let problem = self.row_problem(row, free, dry);
+        start: [f64; 2],
+    ) -> Result<Solution, FitError> {
+        let problem = self.row_problem(row, (free, start), dry);
         let how = Fitting {
             iterations: ITERATIONS,
+            tolerance: TOLERANCE,
             ..Fitting::default()
         };
         let fitted = fit(&problem, &how)?;
-        let covariance = Covariance::new(problem.parameters(), &fitted);
+        Ok(Solution {
+            covariance: Covariance::new(problem.parameters(), &fitted),
+            point: [
+                fitted.point[0],
+                fitted.point.get(1).copied().unwrap_or(start[1]),
+            ],
+            cost: fitted.cost,
+        })
+    }
+
+    /// K and A of the dry contacts.
+    fn dry_contact(&self) -> [f64; 2] {
         let start = self.start();
-        let relaxation = fitted.point.get(1).copied().unwrap_or(start[1].start);
-        Ok(([fitted.point[0], relaxation], covariance))
+        [0, 1].map(|at| start.get(at).map_or(f64::NAN, |p: &Parameter| p.start))
     }
 
     /// The last two of the wet model's parameters: K and A.
@@ -143,12 +207,16 @@ impl Gauge {
         all.into_iter().skip(self.dry_fit.point.len()).collect()
     }
 
-    fn row_problem(&self, row: usize, free: Free, dry: &[f64]) -> Joint {
+    fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> Joint {
         let data = Data {
             rows: vec![self.data.rows[row].clone()],
             ..self.data.clone()
         };
-        let start = self.start();
+        let mut start = self.start();
+        for (parameter, value) in start.iter_mut().zip(at) {
+            parameter.start = value;
+            parameter.scale = value;
+        }
         let mut supplies: Vec<Supply> = dry.iter().map(|value| Supply::Fixed(*value)).collect();
         supplies.push(Supply::Free(0));
         let parameters = match free {
@@ -157,7 +225,7 @@ impl Gauge {
                 start
             }
             Free::StiffnessAlone => {
-                supplies.push(Supply::Fixed(start[1].start));
+                supplies.push(Supply::Fixed(at[1]));
                 start.into_iter().take(1).collect()
             }
         };
@@ -167,7 +235,7 @@ impl Gauge {
 
     /// What a change of A is worth in K, from derivatives of the one residual.
     fn combination(&self, row: usize, point: [f64; 2]) -> Result<Combination, FitError> {
-        let problem = self.row_problem(row, Free::Both, &self.dry_fit.point);
+        let problem = self.row_problem(row, (Free::Both, point), &self.dry_fit.point);
         let moved = |at: usize, sign: f64| {
             let mut moved = point.to_vec();
             moved[at] *= (sign * STEP).exp();
@@ -185,6 +253,17 @@ impl Gauge {
             exponent: slopes[1] / slopes[0],
             reference_s: point[1],
         })
+    }
+
+    /// What would tell solutions apart that fit one row equally well.
+    #[must_use]
+    pub fn ambiguous(rows: &[WetRow]) -> Option<&'static str> {
+        let told = rows.iter().filter_map(|row| row.told.as_ref().ok());
+        let several = told.into_iter().any(|contact| !contact.others.is_empty());
+        several.then_some(
+            "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
+             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Power laws leave these rows out.",
+        )
     }
 
     /// Whether any row has more than one number, so that K and A come apart.
@@ -207,6 +286,18 @@ impl Gauge {
 
 /// Iterations of one row's fit: two equations with two unknowns are solved in some ten.
 const ITERATIONS: usize = 60;
+
+/// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
+const TIMES_DRY: [f64; 3] = [1.0, 4.0, 12.0];
+
+/// Difference of cost within which two solutions are equally good.
+const AS_GOOD: f64 = 1.0;
+
+/// Difference in ln A below which two solutions are one.
+const SAME: f64 = 0.02;
+
+/// Fall of chi-square/2 below which a row is solved: a thousandth of a standard error.
+const TOLERANCE: f64 = 1e-6;
 
 /// Half the step in ln K and ln A of the derivatives.
 const STEP: f64 = 0.01;

@@ -29,6 +29,14 @@ impl Match {
     }
 }
 
+/// Fall of chi-square/2 below which an oil's distance is known well enough: a
+/// hundredth of what would change a verdict.
+const TOLERANCE: f64 = 0.01;
+
+/// Iterations after which an oil is as near as it gets: two or three numbers that
+/// start at their dry values.
+const ITERATIONS: usize = 20;
+
 /// Below this probability an oil is rejected.
 const LEAST_PROBABILITY: f64 = 0.01;
 
@@ -131,7 +139,12 @@ impl Gauge {
             parameter.start = *value;
         }
         let joint = Joint::new(parameters, vec![dry_part, wet_part]);
-        let fitted = fit(&joint, &Fitting::default()).map_err(|error| error.to_string())?;
+        let how = Fitting {
+            tolerance: TOLERANCE,
+            iterations: ITERATIONS,
+            ..Fitting::default()
+        };
+        let fitted = fit(&joint, &how).map_err(|error| error.to_string())?;
         let wet_residuals = &fitted.residuals[self.dry.residual_count()..];
         matched(&oil.name, wet, wet_residuals)
     }

@@ -24,7 +24,9 @@ pub const TIME_S: f64 = 0.5e-6;
 
 /// A model of an experiment with these numbers free.
 pub fn model(experiment: &Experiment, names: &[&str]) -> Model {
-    let numbers = names.iter().map(|name| FreeNumber::find(experiment, name, None).unwrap());
+    let numbers = names
+        .iter()
+        .map(|name| FreeNumber::find(experiment, name, None).unwrap());
     Model::new(experiment, FreeNumbers::new(numbers.collect()).unwrap()).unwrap()
 }
 
@@ -50,7 +52,10 @@ impl Truth {
         let exact = model(experiment, &[]).with_accuracy(1e-7);
         let at = |factor: f64| {
             let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
-            exact.curves(&[Vec::new()], &Speeds::of_rows(&speeds)).remove(0).unwrap()
+            exact
+                .curves(&[Vec::new()], &Speeds::of_rows(&speeds))
+                .remove(0)
+                .unwrap()
         };
         let [below, curve, above] = [1.0 - ASIDE, 1.0, 1.0 + ASIDE].map(at);
         let width = ((1.0 + ASIDE) / (1.0 - ASIDE)).ln();

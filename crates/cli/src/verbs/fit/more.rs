@@ -129,12 +129,24 @@ pub struct Rival {
     pub foretells: CrossValidation,
 }
 
+/// A model that found no minimum.
+pub struct Lost {
+    /// Its name, with what is free.
+    pub name: String,
+    /// How far from the data it ended.
+    pub chi_square: f64,
+    /// Why it ended there.
+    pub why: String,
+}
+
 /// All models, the fit's own first, and what the data say of them.
 pub struct Rivals {
     /// Models.
     pub all: Vec<Rival>,
-    /// Their comparison.
-    pub comparison: Comparison,
+    /// Models that found no minimum, and so are out of the comparison.
+    pub lost: Vec<Lost>,
+    /// Their comparison, if at least two are left.
+    pub comparison: Option<Comparison>,
 }
 
 /// Fits the other models to the same data, if any are asked for.
@@ -152,8 +164,12 @@ pub fn rivals(
         arguments.freed.free.join(", ")
     );
     let mut all = vec![rival(name, problem, own.clone(), arguments.seed)?];
+    let mut lost = Vec::new();
     for against in &arguments.against {
-        all.push(other(against, problem, arguments)?);
+        match other(against, problem, arguments)? {
+            Ok(rival) => all.push(rival),
+            Err(without) => lost.push(without),
+        }
     }
     let compared: Vec<Compared<'_>> = all
         .iter()
@@ -163,16 +179,25 @@ pub fn rivals(
             cross_validation: Some(&rival.foretells),
         })
         .collect();
-    let comparison = compare(&compared).map_err(user)?;
-    Ok(Some(Rivals { all, comparison }))
+    let comparison = match compared.len() {
+        1 => None,
+        _ => Some(compare(&compared).map_err(user)?),
+    };
+    Ok(Some(Rivals {
+        all,
+        lost,
+        comparison,
+    }))
 }
 
 fn other(
     against: &Against,
     problem: &CurveProblem,
     arguments: &Arguments,
-) -> Result<Rival, Failure> {
-    let (modelled, freed) = against.options(&arguments.modelled);
+) -> Result<Result<Rival, Lost>, Failure> {
+    let (mut modelled, freed) = against.options(&arguments.modelled);
+    // A model far from the data is steep there: its noise would hide the minimum.
+    modelled.accuracy = modelled.accuracy.min(RIVALS_ACCURACY);
     let data = problem.data().clone();
     let experiment = inference::experiment(&modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &modelled, &freed)?;
@@ -183,10 +208,20 @@ fn other(
         seed: arguments.seed,
         ..Fitting::default()
     };
-    let told = |error| Failure::User(format!("--against {name}: {error}"));
-    let fit = fit(&problem, &how).map_err(told)?;
-    rival(name.clone(), &problem, fit, arguments.seed)
+    let fit =
+        fit(&problem, &how).map_err(|error| Failure::User(format!("--against {name}: {error}")))?;
+    if !fit.ending.converged() {
+        return Ok(Err(Lost {
+            chi_square: fit.chi_square(),
+            why: fit.ending.to_string(),
+            name,
+        }));
+    }
+    Ok(Ok(rival(name, &problem, fit, arguments.seed)?))
 }
+
+/// Relative accuracy of other models' times of flight.
+const RIVALS_ACCURACY: f64 = 1e-6;
 
 fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Rival, Failure> {
     // What was measured at one speed is left out together.
@@ -206,4 +241,4 @@ fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Ri
 }
 
 /// Parts into which rows are dealt for cross-validation.
-const PARTS: usize = 10;
+const PARTS: usize = 5;

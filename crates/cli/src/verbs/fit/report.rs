@@ -5,7 +5,7 @@ use super::more::{More, Rivals, Sampled};
 use crate::format::{self, digits};
 use crate::inference::words::{doubt, estimate, percent};
 use crate::print::heading;
-use hertzchain_infer::{End, Goodness, Observable, Parameter, Problem, Profile};
+use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -230,18 +230,32 @@ fn sampled_text(fitted: &Fitted, sampled: &Sampled) -> String {
 
 /// Models of the same data.
 fn rivals(rivals: &Rivals) -> String {
+    let lost = rivals.lost.iter().map(|lost| {
+        format!(
+            "{} is far from the data: chi-square {} where it ended ({})\n",
+            lost.name,
+            digits(lost.chi_square, 4),
+            lost.why
+        )
+    });
+    let lost: String = lost.collect();
+    let compared = rivals.comparison.as_ref();
+    compared.map_or(String::new(), |found| compared_text(rivals, found)) + &lost
+}
+
+fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
     let row = |&at: &usize| {
-        let (rival, criteria) = (&rivals.all[at], &rivals.comparison.criteria[at]);
+        let (rival, criteria) = (&rivals.all[at], &comparison.criteria[at]);
         vec![
             rival.name.clone(),
             criteria.parameters.to_string(),
             digits(rival.fit.chi_square(), 5),
-            digits(rivals.comparison.aicc_above_best[at], 4),
+            digits(comparison.aicc_above_best[at], 4),
             digits(criteria.bic, 6),
             digits(rival.foretells.mean, 5),
         ]
     };
-    let rows: Vec<Vec<String>> = rivals.comparison.order.iter().map(row).collect();
+    let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
     let head = [
         "model",
         "free",
@@ -250,11 +264,8 @@ fn rivals(rivals: &Rivals) -> String {
         "BIC",
         "cross-validated error",
     ];
-    format!(
-        "\n{}{}\n",
-        format::table(&head.map(str::to_owned), &rows),
-        rivals.comparison.sentence
-    )
+    let table = format::table(&head.map(str::to_owned), &rows);
+    format!("\n{table}{}\n", comparison.sentence)
 }
 
 /// What observables are called where space is short.

@@ -4,7 +4,7 @@ use super::Fitted;
 use super::more::{More, Rival, Rivals};
 use crate::arguments::infer::Fit as Arguments;
 use crate::table::cell;
-use hertzchain_infer::{End, Observable, Parameter, Prior, Problem, Profile};
+use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Problem, Profile};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
@@ -150,9 +150,19 @@ fn posterior(fitted: &Fitted) -> Value {
 }
 
 fn comparison(rivals: &Rivals) -> Value {
+    json!({
+        "models": rivals.comparison.as_ref().map(|found| compared(rivals, found)),
+        "sentence": rivals.comparison.as_ref().map(|found| found.sentence.clone()),
+        "without_minimum": rivals.lost.iter().map(|lost| json!({
+            "model": lost.name, "chi_square": lost.chi_square, "why": lost.why,
+        })).collect::<Value>(),
+    })
+}
+
+fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
     let finite = |x: f64| x.is_finite().then_some(x);
     let one = |(at, rival): (usize, &Rival)| {
-        let criteria = &rivals.comparison.criteria[at];
+        let criteria = &comparison.criteria[at];
         json!({
             "model": rival.name,
             "point": rival.fit.point,
@@ -160,14 +170,11 @@ fn comparison(rivals: &Rivals) -> Value {
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),
             "bic": criteria.bic,
-            "weight": rivals.comparison.weights[at],
+            "weight": comparison.weights[at],
             "cross_validation": { "mean": rival.foretells.mean, "error": rival.foretells.error },
         })
     };
-    json!({
-        "models": rivals.all.iter().enumerate().map(one).collect::<Value>(),
-        "sentence": rivals.comparison.sentence,
-    })
+    rivals.all.iter().enumerate().map(one).collect()
 }
 
 /// One line a value of a profile.

@@ -6,7 +6,7 @@ use crate::inference::words::{estimate, percent};
 use crate::print::heading;
 use crate::table::cell;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Contact, Gauge, SharedLaw, WetRow};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -22,6 +22,7 @@ pub fn text(gauged: &Gauged) -> String {
             "One number a speed determines one combination of K and A. To tell both, {add}.\n"
         );
     }
+    text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
     text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
@@ -48,7 +49,7 @@ fn shown(contact: &Contact) -> [String; 3] {
     };
     let stiffness = both(1e-9 * k, 1e-9 * k_sd);
     match &contact.combination {
-        None => [stiffness, both(1e9 * a, 1e9 * a_sd), String::new()],
+        None => [stiffness, both(1e9 * a, 1e9 * a_sd), others(contact)],
         Some(combination) => [
             stiffness,
             "–".to_owned(),
@@ -61,6 +62,20 @@ fn shown(contact: &Contact) -> [String; 3] {
     }
 }
 
+/// Other pairs that fit as well.
+fn others(contact: &Contact) -> String {
+    let pair = |ln: &[f64; 2]| {
+        let (k, a) = (digits(1e-9 * ln[0].exp(), 4), digits(1e9 * ln[1].exp(), 4));
+        format!("or {k}, {a}")
+    };
+    contact
+        .others
+        .iter()
+        .map(pair)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
 fn contacts(gauged: &Gauged) -> String {
     let row = |row: &WetRow| {
         let speed = digits(row.speed_m_s, 4);
@@ -71,7 +86,7 @@ fn contacts(gauged: &Gauged) -> String {
         std::iter::once(speed).chain(cells).collect::<Vec<_>>()
     };
     let rows: Vec<Vec<String>> = gauged.rows.iter().map(row).collect();
-    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", "determined"];
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", "also"];
     let few = rows.iter().all(|row| row[3].is_empty());
     let shown = if few { 3 } else { 4 };
     let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
@@ -154,6 +169,15 @@ fn row(row: &WetRow) -> Value {
                 None => {
                     all["relaxation_time_s"] = json!({ "value": a, "standard_error": a_sd });
                     all["ln_covariance"] = json!(contact.covariance());
+                    all["others"] = contact
+                        .others
+                        .iter()
+                        .map(|ln| {
+                            json!({
+                                "stiffness": ln[0].exp(), "relaxation_time_s": ln[1].exp(),
+                            })
+                        })
+                        .collect();
                 }
                 Some(combination) => {
                     all["stiffness_times_relaxation_to"] = json!({
