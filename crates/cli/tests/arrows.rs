@@ -16,6 +16,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
         "cli",
@@ -27,6 +28,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "figures",
             "rig",
             "measure",
+            "infer",
         ],
     ),
 ];

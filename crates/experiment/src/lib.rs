@@ -74,12 +74,12 @@ pub mod units;
 pub use experiment::{Experiment, OpenError};
 pub use finding::{Finding, Mistakes, Source, Warning};
 pub use laws::LawSpec;
-pub use paths::{Named, PathError};
+pub use paths::{Named, PathError, Place};
 pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use schema::schema;
 pub use spec::{
-    Actuator, Amplifier, Campaign, Laying, Liquid, LowPass, Method, Photogate, Recorder, Rig,
-    RigPart, RigPartKind, SectionSpec, Solver, Trigger,
+    Actuator, Amplifier, Campaign, Channels, Laying, Liquid, LowPass, Method, Photogate, Recorder,
+    Rig, RigPart, RigPartKind, SectionSpec, Solver, Trigger,
 };
 pub use value::Units;

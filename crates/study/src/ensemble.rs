@@ -56,6 +56,22 @@ pub fn shoot_tuned(
     })
 }
 
+/// The same as [`shoot_all`] for who needs many shots at known accuracy more than the accuracy of
+/// each, such as a fit: nothing is computed twice, and no shot tells what it
+/// reached. Whatever the ensemble loop does not have, or loses, the wave loop
+/// computes.
+pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, StudyError>> {
+    in_blocks(plans, &|| {}, |block| {
+        let own = block.first().and_then(|plan| Setting::of(plan));
+        let once = |own: Setting| fire(block, &load(block), set, &own.longer(1.0));
+        let shots = own.map_or_else(|| vec![None; block.len()], once);
+        let shots = block.iter().zip(shots);
+        shots
+            .map(|(plan, shot)| shot.map_or_else(|| shoot(plan), Ok))
+            .collect()
+    })
+}
+
 /// Plans in blocks over threads, each block as `fired` has it.
 fn in_blocks(
     plans: &[Plan],

@@ -33,7 +33,7 @@ mod sweep;
 mod tuned;
 
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use ensemble::{shoot_all, shoot_tuned};
+pub use ensemble::{shoot_all, shoot_tuned, shoot_unjudged};
 pub use error::StudyError;
 pub use flight::Flight;
 pub use hertzchain_chain::InstructionSet;

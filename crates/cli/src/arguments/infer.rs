@@ -1,0 +1,306 @@
+//! Arguments of the verbs that go from times of flight to parameters.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// A measured curve.
+#[derive(Debug, Args)]
+pub struct Measured {
+    /// Case of a table of several, and of an experiment that has cases
+    #[arg(long, value_name = "CASE")]
+    pub case: Option<String>,
+    /// What to use of each row, separated by commas
+    #[arg(
+        long = "use",
+        value_enum,
+        value_name = "WHAT",
+        value_delimiter = ',',
+        default_value = "incident,reflected"
+    )]
+    pub observables: Vec<What>,
+    /// Standard error of speeds in m/s where the table has none
+    #[arg(long, value_name = "SPEED", value_parser = positive)]
+    pub speed_error: Option<f64>,
+    /// Standard error of times of flight in s where the table has none
+    #[arg(long, value_name = "TIME", value_parser = positive)]
+    pub tof_error: Option<f64>,
+    /// Standard error of ratios of peaks where the table has none
+    #[arg(long, value_name = "RATIO", value_parser = positive)]
+    pub ratio_error: Option<f64>,
+}
+
+/// Observables by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// Incident times of flight
+    Incident,
+    /// Reflected times of flight
+    Reflected,
+    /// Peaks at the wall over passing ones; needs the gains of both sensors to be alike, or
+    /// wall_gain to be free
+    WallRatio,
+    /// Returning peaks over passing ones, both of one sensor
+    ReturningRatio,
+}
+
+/// A model with free numbers.
+#[derive(Debug, Args)]
+pub struct Modelled {
+    /// Experiment file of the model
+    #[arg(long, short, value_name = "FILE", conflicts_with = "preset")]
+    pub model: Option<PathBuf>,
+    /// A model that comes with the program; `hertzchain presets` lists them
+    #[arg(long, short, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Set a number that stays fixed, such as incline=0.5deg
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Relative accuracy of the model's times of flight
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy)]
+    pub accuracy: f64,
+    /// Threads; all cores when absent; results do not depend on it
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    pub threads: Option<usize>,
+}
+
+/// Which numbers are free, and what is known of them.
+#[derive(Debug, Args)]
+pub struct Freed {
+    /// Free numbers, separated by commas: short names (Y, nu, eta, K, A, B, of a material or section
+    /// as in pump-oil.eta or wet.K) or paths of the experiment file; followed by :power for a power
+    /// law of speed, by :each for a value a speed
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    pub free: Vec<String>,
+    /// Where a number starts, if not at the experiment's value
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub start: Vec<Assignment>,
+    /// What a number may be
+    #[arg(long, value_name = "NAME=FROM:TO", value_parser = assignment)]
+    pub bounds: Vec<Assignment>,
+    /// What is known of a number: normal, or normal in the logarithm by a factor
+    #[arg(long, value_name = "NAME=MEAN+-SD or NAME=MEDIAN*/FACTOR", value_parser = assignment)]
+    pub prior: Vec<Assignment>,
+    /// Size of a change of a number that matters
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub scale: Vec<Assignment>,
+}
+
+/// Arguments of `fit`.
+#[derive(Debug, Args)]
+pub struct Fit {
+    /// Table (CSV) of times of flight against speed, such as speeds.csv of `measure`
+    #[arg(value_name = "DATA")]
+    pub data: PathBuf,
+    /// The curve.
+    #[command(flatten)]
+    pub measured: Measured,
+    /// The model.
+    #[command(flatten)]
+    pub modelled: Modelled,
+    /// What is free.
+    #[command(flatten)]
+    pub freed: Freed,
+    /// How uncertainty is told, beside the covariance
+    #[arg(long, value_enum, value_name = "NAME", default_value = "covariance")]
+    pub method: Method,
+    /// Compare with another model of the same data: a preset or file and what is free in it; may be
+    /// given several times
+    #[arg(long, value_name = "MODEL=NAMES", value_parser = against)]
+    pub against: Vec<Against>,
+    /// Most steps of a posterior's walkers
+    #[arg(long, value_name = "COUNT", default_value = "20000")]
+    pub steps: u64,
+    /// Compute every curve of a posterior, instead of interpolating between some hundreds
+    #[arg(long)]
+    pub direct: bool,
+    /// Go on with the walkers of the last run into the same --out
+    #[arg(long, requires = "out")]
+    pub resume: bool,
+    /// Count outliers by their size, not its square
+    #[arg(long)]
+    pub robust: bool,
+    /// Starts: the first as given, others spread over bounds and priors
+    #[arg(long, value_name = "COUNT", default_value = "1", value_parser = count)]
+    pub starts: usize,
+    /// Seed of all that is random
+    #[arg(long, value_name = "NUMBER", default_value = "0")]
+    pub seed: u64,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write fit.json, tables (CSV) and figures (SVG, PNG) into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `design`.
+#[derive(Debug, Args)]
+pub struct Design {
+    /// Table (CSV) of times of flight measured so far
+    #[arg(value_name = "DATA")]
+    pub data: PathBuf,
+    /// The curve.
+    #[command(flatten)]
+    pub measured: Measured,
+    /// The model.
+    #[command(flatten)]
+    pub modelled: Modelled,
+    /// What is free.
+    #[command(flatten)]
+    pub freed: Freed,
+    /// Parameters to tighten, as the fit names them; all when absent
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub target: Vec<String>,
+    /// Speeds that could be measured: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT; eight over
+    /// the range of the data when absent
+    #[arg(long, value_name = "SPEEDS")]
+    pub speeds: Option<String>,
+    /// Length of the proposed series
+    #[arg(long, value_name = "COUNT", default_value = "5")]
+    pub picks: usize,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write design.json and design.csv into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `gauge`.
+#[derive(Debug, Args)]
+pub struct Gauge {
+    /// Table (CSV) of times of flight against speed of the wet chain
+    #[arg(value_name = "WET")]
+    pub wet: PathBuf,
+    /// The same of the dry chain
+    #[arg(long, value_name = "DRY")]
+    pub dry: PathBuf,
+    /// Case of the wet table, if it has several
+    #[arg(long, value_name = "CASE")]
+    pub wet_case: Option<String>,
+    /// Case of the dry table, if it has several
+    #[arg(long, value_name = "CASE")]
+    pub dry_case: Option<String>,
+    /// The curves.
+    #[command(flatten)]
+    pub measured: Measured,
+    /// Experiment file of the wet chain, a section of it with `wet = true`
+    #[arg(long, short, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+    /// Wet chain that comes with the program; its oil's own numbers play no part
+    #[arg(long, short, value_name = "NAME", default_value = "pump")]
+    pub preset: Option<String>,
+    /// Experiment file of the dry chain
+    #[arg(long, value_name = "FILE")]
+    pub dry_model: Option<PathBuf>,
+    /// Dry chain that comes with the program
+    #[arg(long, value_name = "NAME", default_value = "dry")]
+    pub dry_preset: Option<String>,
+    /// Free numbers of the dry contacts, by names that both models know
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "aisi316.eta,dry.B"
+    )]
+    pub dry_free: Vec<String>,
+    /// Table (CSV) of further oils, with the columns of the program's own
+    #[arg(long, value_name = "FILE")]
+    pub oils: Option<PathBuf>,
+    /// Relative accuracy of the model's times of flight
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy)]
+    pub accuracy: f64,
+    /// Threads; all cores when absent; results do not depend on it
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    pub threads: Option<usize>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write gauge.json, contacts.csv and a figure (SVG, PNG) into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Ways to tell uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// By the curvature at the best fit
+    Covariance,
+    /// By how the fit worsens as each parameter is moved and the others follow
+    Profile,
+    /// By sampling the posterior
+    Posterior,
+}
+
+/// A name and the text that stands for its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// Name.
+    pub name: String,
+    /// Text after the sign.
+    pub text: String,
+}
+
+fn assignment(text: &str) -> Result<Assignment, String> {
+    let parts = text
+        .split_once('=')
+        .filter(|(name, _)| !name.trim().is_empty());
+    let (name, text) = parts.ok_or("expected NAME=VALUE, such as eta=3.2e4")?;
+    Ok(Assignment {
+        name: name.trim().to_owned(),
+        text: text.trim().to_owned(),
+    })
+}
+
+/// Another model and what is free in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Against {
+    /// File or preset.
+    pub model: String,
+    free: Vec<String>,
+}
+
+impl Against {
+    /// The same as options of a fit, computed as another.
+    pub fn options(&self, like: &Modelled) -> (Modelled, Freed) {
+        let file = Some(PathBuf::from(&self.model)).filter(|file| file.exists());
+        let modelled = Modelled {
+            preset: file.is_none().then(|| self.model.clone()),
+            model: file,
+            set: Vec::new(),
+            accuracy: like.accuracy,
+            threads: like.threads,
+        };
+        let freed = Freed {
+            free: self.free.clone(),
+            start: Vec::new(),
+            bounds: Vec::new(),
+            prior: Vec::new(),
+            scale: Vec::new(),
+        };
+        (modelled, freed)
+    }
+}
+
+fn against(text: &str) -> Result<Against, String> {
+    let (model, free) = text
+        .split_once('=')
+        .ok_or("expected MODEL=NAMES, such as hertz-viscoelastic=eta")?;
+    Ok(Against {
+        model: model.trim().to_owned(),
+        free: free.split(',').map(|name| name.trim().to_owned()).collect(),
+    })
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a positive number in SI, such as 3e-7".to_owned())
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    let number = text.trim().parse().ok();
+    number
+        .filter(|count| (1..=1000).contains(count))
+        .ok_or_else(|| "expected a whole number from 1 to 1000".to_owned())
+}
