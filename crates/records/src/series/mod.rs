@@ -5,6 +5,6 @@ mod read;
 mod truth;
 mod write;
 
-pub(crate) use read::open;
+pub(crate) use read::{attribute_number, is_ours, open};
 pub use truth::truth;
 pub use write::{SeriesInfo, SeriesWriter, ShotRow};
