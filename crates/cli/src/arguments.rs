@@ -1,5 +1,6 @@
 //! The command line, declared once: help, man pages and completions follow.
 
+pub mod infer;
 pub mod measure;
 
 use crate::given::Given;
@@ -49,6 +50,8 @@ pub enum Verb {
     Campaign(Campaign),
     /// Measure times of flight on recordings of any rig, with errors and curves
     Measure(measure::Measure),
+    /// Fit contact parameters to times of flight, with errors one can trust
+    Fit(infer::Fit),
     /// Check an experiment file and print what was understood; run nothing
     Check(Check),
     /// Print what theory says of a chain's waves
@@ -108,7 +111,7 @@ pub struct How {
     pub check: bool,
 }
 
-fn accuracy(text: &str) -> Result<f64, String> {
+pub(crate) fn accuracy(text: &str) -> Result<f64, String> {
     let number: f64 = text
         .parse()
         .map_err(|_| "expected a number such as 1e-6".to_owned())?;
@@ -121,7 +124,7 @@ fn accuracy(text: &str) -> Result<f64, String> {
 /// More threads than any machine has cores.
 const MOST_THREADS: usize = 1024;
 
-fn threads(text: &str) -> Result<usize, String> {
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
     match text.trim().parse() {
         Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(count),
         _ => Err(format!("expected a whole number from 1 to {MOST_THREADS}")),

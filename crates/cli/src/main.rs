@@ -6,6 +6,7 @@ mod failure;
 mod folder;
 mod format;
 mod given;
+mod inference;
 mod input;
 mod json;
 mod missing;
@@ -38,6 +39,7 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
         Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
         Verb::Measure(arguments) => verbs::measure::run(&arguments),
+        Verb::Fit(arguments) => verbs::fit::run(&arguments),
         Verb::Check(arguments) => verbs::check::run(&arguments),
         Verb::Theory(arguments) => verbs::theory::run(&arguments),
         Verb::Laws(arguments) => verbs::laws::run(&arguments),

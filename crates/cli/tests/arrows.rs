@@ -16,6 +16,10 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    (
+        "infer",
+        &["chain", "experiment", "study", "signal", "measure"],
+    ),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
         "cli",
@@ -27,6 +31,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "figures",
             "rig",
             "measure",
+            "infer",
         ],
     ),
 ];

@@ -355,6 +355,13 @@ impl Experiment {
         self.spec.friction_coefficient
     }
 
+    /// Name of the effective material of a section's contacts, if it has one.
+    #[must_use]
+    pub fn effective_material(&self, section: &SectionSpec) -> Option<&str> {
+        let material = self.spec.materials.0.get(section.material?)?;
+        Some(&material.name)
+    }
+
     /// Sections of contacts with their laws, in the reading.
     #[must_use]
     pub fn sections(&self) -> &[SectionSpec] {

@@ -74,7 +74,7 @@ pub mod units;
 pub use experiment::{Experiment, OpenError};
 pub use finding::{Finding, Mistakes, Source, Warning};
 pub use laws::LawSpec;
-pub use paths::{Named, PathError};
+pub use paths::{Named, PathError, Place};
 pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use schema::schema;

@@ -110,6 +110,22 @@ fn what_the_file_leaves_out_can_be_set_too() {
 }
 
 #[test]
+fn a_place_for_a_number_is_known_before_the_file_fills_it() {
+    let dry = preset("dry").unwrap();
+    let stiffness = dry.place("elastic_hertz.stiffness").unwrap();
+    assert_eq!(stiffness.path, "contacts[0].laws.elastic_hertz.stiffness");
+    assert_eq!(
+        (stiffness.value, stiffness.unit.as_str()),
+        (None, "N/m^(3/2)")
+    );
+    let cubic = dry.place("coefficient").unwrap();
+    assert_eq!(cubic.value, Some(77.0));
+    assert!(dry.places().contains(&cubic));
+    assert!(dry.place("beads[0].count").unwrap().is_count);
+    assert!(dry.place("hardness").is_err());
+}
+
+#[test]
 fn an_unfit_value_is_a_report_at_its_place_in_the_file() {
     let dry = preset("dry").unwrap();
     let Err(PathError::Mistakes(mistakes)) = dry.set(&[("beads[0].mass", -1.0)]) else {

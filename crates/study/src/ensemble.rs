@@ -29,15 +29,40 @@ pub fn shoot_all(
     checked: bool,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Result<Shot, StudyError>> {
+    each_block(plans, |block| {
+        let shots = shoot_block(block, set, checked);
+        block.iter().for_each(|_| progress());
+        shots
+    })
+}
+
+/// The same for who needs many shots at known accuracy more than the accuracy of
+/// each, such as a fit: nothing is computed twice, and no shot tells what it
+/// reached. Whatever the ensemble loop does not have, or loses, the wave loop
+/// computes.
+pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, StudyError>> {
+    each_block(plans, |block| {
+        let (systems, shots) = loaded(block, |ready| fire(ready, set, (1.0, false)));
+        let shots = in_place(&systems, shots.into_iter());
+        let shots = block.iter().zip(shots);
+        shots
+            .map(|(plan, shot)| shot.map_or_else(|| shoot(plan), Ok))
+            .collect()
+    })
+}
+
+/// Results of a function of plans that go together, in the order of all plans.
+fn each_block(
+    plans: &[Plan],
+    of: impl Fn(&[&Plan]) -> Vec<Result<Shot, StudyError>> + Sync,
+) -> Vec<Result<Shot, StudyError>> {
     let mut results: Vec<Option<Result<Shot, StudyError>>> = vec![None; plans.len()];
     let blocks = blocks(plans);
     let fired: Vec<_> = blocks
         .par_iter()
         .flat_map_iter(|block| {
-            let fired: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
-            let shots = shoot_block(&fired, set, checked);
-            fired.iter().for_each(|_| progress());
-            block.iter().copied().zip(shots).collect::<Vec<_>>()
+            let together: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
+            block.iter().copied().zip(of(&together)).collect::<Vec<_>>()
         })
         .collect();
     for (at, shot) in fired {
@@ -119,6 +144,20 @@ fn shoot_block(
 /// `None` where the wave loop must have a look, because that is not what was
 /// asked or if only to say what is wrong.
 fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+    let (systems, kept) = loaded(plans, |ready| {
+        let shots = fire(ready, set, (1.0, true)).into_iter();
+        let [near, far] = LONGER.map(|longer| fire(ready, set, (longer, false)));
+        let judges = near.into_iter().zip(far);
+        shots
+            .zip(judges)
+            .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]))
+            .collect::<Vec<_>>()
+    });
+    in_place(&systems, kept.into_iter())
+}
+
+/// The systems of plans that the ensemble loop can fire, and a function of those.
+fn loaded<T>(plans: &[&Plan], of: impl Fn(&[(&Plan, &System)]) -> T) -> (Vec<Option<System>>, T) {
     let load = |plan: &&Plan| {
         let suits = suits(plan) && plan.check().is_ok();
         suits.then(|| System::new(&plan.chain).ok()).flatten()
@@ -128,15 +167,18 @@ fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let ready: Vec<(&Plan, &System)> = ready
         .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
         .collect();
-    let shots = fire(&ready, set, (1.0, true)).into_iter();
-    let [near, far] = LONGER.map(|longer| fire(&ready, set, (longer, false)));
-    let judges = near.into_iter().zip(far);
-    let mut kept = shots
-        .zip(judges)
-        .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]));
+    let of_ready = of(&ready);
+    (systems, of_ready)
+}
+
+/// Shots of the systems that there are, in the place of each.
+fn in_place(
+    systems: &[Option<System>],
+    mut shots: impl Iterator<Item = Option<Shot>>,
+) -> Vec<Option<Shot>> {
     systems
         .iter()
-        .map(|system| system.as_ref().and_then(|_| kept.next().flatten()))
+        .map(|system| system.as_ref().and_then(|_| shots.next().flatten()))
         .collect()
 }
 

@@ -32,7 +32,7 @@ mod speeds;
 mod sweep;
 
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use ensemble::shoot_all;
+pub use ensemble::{shoot_all, shoot_unjudged};
 pub use error::StudyError;
 pub use flight::Flight;
 pub use hertzchain_chain::InstructionSet;

@@ -3,6 +3,7 @@
 pub mod campaign;
 pub mod check;
 pub mod completions;
+pub mod fit;
 pub mod laws;
 pub mod man;
 pub mod measure;

@@ -29,6 +29,19 @@ pub struct Named {
     pub is_count: bool,
 }
 
+/// A place for a number, whether or not the file gives one there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Full path.
+    pub path: String,
+    /// Value in SI, where the file gives one.
+    pub value: Option<f64>,
+    /// SI unit; "1" for a plain number.
+    pub unit: String,
+    /// Whether it counts something and must stay whole.
+    pub is_count: bool,
+}
+
 /// Why a path can't be followed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum PathError {
@@ -78,6 +91,22 @@ impl Experiment {
             })
         };
         self.slots().into_iter().filter_map(given).collect()
+    }
+
+    /// Every place where a number stands or could stand, in the file's order.
+    #[must_use]
+    pub fn places(&self) -> Vec<Place> {
+        let place = |slot: Slot<'_>| slot.place(self.units());
+        self.slots().into_iter().map(place).collect()
+    }
+
+    /// The place that a path or an end of one names.
+    ///
+    /// # Errors
+    /// An unknown or ambiguous path.
+    pub fn place(&self, path: &str) -> Result<Place, PathError> {
+        let slots = self.slots();
+        Ok(find(&slots, path)?.clone().place(self.units()))
     }
 
     /// The value of a named number in SI.

@@ -1,5 +1,6 @@
 //! Where numbers stand, or could stand, in a file.
 
+use super::Place;
 use crate::check::POWER_LAW;
 use crate::document::{Node, Value};
 use crate::keys::{Fields, Key, Kind, Limits, RIG, ROOT};
@@ -19,6 +20,16 @@ pub(super) struct Slot<'a> {
 }
 
 impl Slot<'_> {
+    /// This place, for those who know nothing of trees.
+    pub(super) fn place(self, units: Units) -> Place {
+        Place {
+            value: self.value(units).map(|si| si.value),
+            unit: self.unit.into_owned(),
+            path: self.path,
+            is_count: self.is_count,
+        }
+    }
+
     /// The value in SI, where the file gives one.
     pub(super) fn value(&self, units: Units) -> Option<Si> {
         let node = self.node?;

@@ -1,0 +1,108 @@
+//! What the command line says of parameters: starts, bounds, priors, scales.
+
+use crate::arguments::infer::{Assignment, Freed};
+use crate::failure::Failure;
+use hertzchain_experiment::units::{Dimension, parse_quantity, parse_unit};
+use hertzchain_infer::{Parameter, Prior};
+
+/// The number in a text, whatever its unit.
+pub fn any_number(text: &str) -> Option<f64> {
+    parse_quantity(text).ok().map(|quantity| quantity.value)
+}
+
+/// Puts what the command line says into parameters.
+pub fn apply(freed: &Freed, parameters: &mut [Parameter]) -> Result<(), Failure> {
+    each("--start", &freed.start, parameters, |parameter, text| {
+        parameter.start = number(parameter, text)?;
+        parameter.scale = match parameter.start {
+            0.0 => parameter.scale,
+            start => start.abs(),
+        };
+        Ok(())
+    })?;
+    each("--bounds", &freed.bounds, parameters, |parameter, text| {
+        let parts = text.split_once(':').ok_or("expected FROM:TO")?;
+        parameter.lower = number(parameter, parts.0)?;
+        parameter.upper = number(parameter, parts.1)?;
+        Ok(())
+    })?;
+    each("--prior", &freed.prior, parameters, |parameter, text| {
+        parameter.prior = prior(parameter, text)?;
+        Ok(())
+    })?;
+    each("--scale", &freed.scale, parameters, |parameter, text| {
+        parameter.scale = number(parameter, text)?;
+        Ok(())
+    })
+}
+
+/// Does something with every parameter that an option names: by its own name, or
+/// all of one number's by that.
+fn each(
+    option: &str,
+    given: &[Assignment],
+    parameters: &mut [Parameter],
+    mut put: impl FnMut(&mut Parameter, &str) -> Result<(), String>,
+) -> Result<(), Failure> {
+    let known: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
+    for Assignment { name, text } in given {
+        let of_number = format!("{name}@");
+        let first = format!("{name}.prefactor");
+        let meant = |p: &&mut Parameter| {
+            p.name == *name || p.name.starts_with(&of_number) || p.name == first
+        };
+        let mut found = parameters.iter_mut().filter(meant).peekable();
+        if found.peek().is_none() {
+            return Err(Failure::User(format!(
+                "{option} {name}={text}: nothing of this name is free; free are {}",
+                known.join(", ")
+            )));
+        }
+        for parameter in found {
+            put(parameter, text)
+                .map_err(|error| Failure::User(format!("{option} {name}={text}: {error}")))?;
+        }
+    }
+    Ok(())
+}
+
+/// A number in the parameter's unit: plain in SI, or with a unit of its own.
+fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
+    let quantity = parse_quantity(text).map_err(|error| error.to_string())?;
+    let own = parse_unit(&parameter.unit).map_or(Dimension::NONE, |unit| unit.dimension);
+    match quantity.dimension == Dimension::NONE || quantity.dimension == own {
+        true => Ok(quantity.value),
+        false => Err(format!(
+            "`{}` has another dimension; expected a number in {}",
+            text.trim(),
+            if parameter.unit.is_empty() {
+                "no unit"
+            } else {
+                &parameter.unit
+            }
+        )),
+    }
+}
+
+fn prior(parameter: &Parameter, text: &str) -> Result<Prior, String> {
+    let normal = text.split_once("+-").or_else(|| text.split_once('±'));
+    if let Some((mean, sd)) = normal {
+        return Ok(Prior::Normal {
+            mean: number(parameter, mean)?,
+            sd: number(parameter, sd)?,
+        });
+    }
+    let (median, factor) = text
+        .split_once("*/")
+        .ok_or("expected MEAN+-SD, or MEDIAN*/FACTOR")?;
+    let factor = factor
+        .trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|factor| *factor > 1.0);
+    let factor = factor.ok_or("expected a factor above 1 after */")?;
+    Ok(Prior::LogNormal {
+        median: number(parameter, median)?,
+        ln_sd: factor.ln(),
+    })
+}

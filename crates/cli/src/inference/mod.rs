@@ -1,0 +1,105 @@
+//! From arguments to a problem of inference.
+
+mod known;
+pub mod words;
+
+use crate::arguments::Input;
+use crate::arguments::infer::{Freed, Measured, Modelled, What};
+use crate::failure::Failure;
+use crate::input;
+use hertzchain_experiment::{Experiment, PathError, Units};
+use hertzchain_infer::{
+    CurveProblem, Data, Defaults, FreeError, FreeNumber, FreeNumbers, Model, Observable, Selection,
+};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::fs;
+use std::path::Path;
+
+/// A mistake of the user's, told as it is.
+pub fn user(error: impl std::fmt::Display) -> Failure {
+    Failure::User(error.to_string())
+}
+
+/// A measured curve with what is to be used of it.
+pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
+    let text = fs::read_to_string(file)
+        .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
+    let selection = Selection {
+        case: measured.case.clone(),
+        observables: measured.observables.iter().map(|what| of(*what)).collect(),
+        defaults: Defaults {
+            speed_m_s: measured.speed_error,
+            time_s: measured.tof_error,
+            ratio: measured.ratio_error,
+        },
+    };
+    Data::parse(&file.display().to_string(), &text, &selection).map_err(user)
+}
+
+fn of(what: What) -> Observable {
+    match what {
+        What::Incident => Observable::Incident,
+        What::Reflected => Observable::Reflected,
+        What::WallRatio => Observable::WallOverPassing,
+        What::ReturningRatio => Observable::ReturningOverPassing,
+    }
+}
+
+/// The model's experiment, with what is set and in its case.
+pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
+    let mut experiment = input::open(&Input {
+        file: modelled.model.clone(),
+        preset: modelled.preset.clone(),
+    })?;
+    if let Some(case) = case.and_then(|case| experiment.case(case)) {
+        experiment = case?;
+    }
+    if experiment.units() == Units::Dimensionless {
+        return Err(Failure::User(
+            "times of flight in s need a model in SI units; this one is dimensionless".to_owned(),
+        ));
+    }
+    for set in &modelled.set {
+        let changed = experiment.set_text(&[(&set.name, &set.text)]);
+        experiment = changed.map_err(|error| match error {
+            PathError::Mistakes(mistakes) => mistakes.into(),
+            other => Failure::User(format!("--set {}: {other}", set.name)),
+        })?;
+    }
+    Ok(experiment)
+}
+
+/// A model with its free numbers.
+pub fn model(
+    experiment: &Experiment,
+    modelled: &Modelled,
+    freed: &Freed,
+) -> Result<Model, Failure> {
+    let number = |name: &String| {
+        let plain = name.split(':').next().unwrap_or_default().trim();
+        let start = freed.start.iter().find(|start| start.name == plain);
+        // The unit is not known before the number is: it is looked at below.
+        let start = start.and_then(|start| known::any_number(&start.text));
+        FreeNumber::find(experiment, name, start)
+    };
+    let numbers: Result<Vec<_>, FreeError> = freed.free.iter().map(number).collect();
+    let numbers = FreeNumbers::new(numbers.map_err(user)?).map_err(user)?;
+    let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy);
+    model.set = input::instruction_set()?;
+    Ok(model)
+}
+
+/// Data against a model with what is known of its parameters.
+pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, Failure> {
+    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    known::apply(freed, &mut parameters)?;
+    CurveProblem::new(model, data, parameters).map_err(user)
+}
+
+/// As many threads as asked for.
+pub fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build();
+    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
+}

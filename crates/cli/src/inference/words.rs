@@ -1,0 +1,53 @@
+//! Numbers of inference in words.
+
+use crate::format::{digits, with_error};
+use hertzchain_infer::{Ending, Parameter};
+
+/// A value and its standard error, with the unit of its parameter: both over a
+/// power of ten where they are large or small.
+pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
+    let unit = match parameter.unit.as_str() {
+        "" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    if sd == 0.0 {
+        return format!("{}{unit}, at its bound", digits(value, 7));
+    }
+    if !sd.is_finite() {
+        return format!("{}{unit}, not determined", digits(value, 7));
+    }
+    let power = match value.abs().log10().floor() {
+        power if (-3.0..5.0).contains(&power) || !power.is_finite() => 0,
+        power => power as i32,
+    };
+    let size = 10_f64.powi(power);
+    let (value, sd) = with_error(value / size, sd / size);
+    match power {
+        0 => format!("{value} ± {sd}{unit}"),
+        _ => format!("({value} ± {sd})·1e{power}{unit}"),
+    }
+}
+
+/// A share in percent.
+pub fn percent(share: f64) -> String {
+    match share {
+        share if share < 1e-4 => format!("{:.0e} %", 100.0 * share),
+        share => format!("{} %", digits(100.0 * share, 2)),
+    }
+}
+
+/// Why a fit ended where it did, if that is worth a warning.
+pub fn doubt(ending: &Ending) -> Option<String> {
+    match ending {
+        Ending::Minimum | Ending::Floor { .. } => None,
+        Ending::Stuck { expected_fall } => Some(format!(
+            "the fit is stuck where chi-square/2 should still fall by {expected_fall:.1e}: start elsewhere (--start, --starts)"
+        )),
+        Ending::Iterations { expected_fall } => Some(format!(
+            "the fit ran out of iterations where chi-square/2 should still fall by {expected_fall:.1e}: start nearer"
+        )),
+        other if other.converged() => None,
+        Ending::ModelFails(error) => Some(format!("the fit ended where the model fails: {error}")),
+        other => Some(format!("the fit did not converge: {other:?}")),
+    }
+}

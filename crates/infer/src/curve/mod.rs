@@ -1,0 +1,16 @@
+//! Times of flight that an experiment predicts, for many sets of parameters at
+//! once, and their residuals to measured ones.
+
+mod band;
+mod joint;
+mod model;
+mod problem;
+mod stencil;
+mod surrogate;
+mod whiten;
+
+pub use band::FittedCurve;
+pub use joint::{Joint, Part, Supply};
+pub use model::{Model, Predicted, Speeds};
+pub use problem::{CurveError, CurveProblem};
+pub use surrogate::{Surrogate, SurrogateError};

@@ -1,0 +1,189 @@
+//! Curves of many points as lanes of one ensemble.
+
+use crate::free::{FreeNumbers, Settings};
+use crate::problem::ModelError;
+use hertzchain_experiment::{Experiment, Mistakes, PathError};
+use hertzchain_study::{InstructionSet, Plan, Shot, shoot_all, shoot_unjudged};
+use rayon::prelude::*;
+use std::fmt::Display;
+
+/// What a model predicts at one speed, in the order of
+/// [`Observable::ALL`](crate::Observable::ALL); `None` where no such pulse is seen.
+pub type Predicted = [Option<f64>; 4];
+
+/// Speeds of a curve in m/s, each with the row of the data that it belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Speeds {
+    /// Rows and speeds.
+    pub at: Vec<(usize, f64)>,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+impl Speeds {
+    /// One speed a row.
+    #[must_use]
+    pub fn of_rows(speeds_m_s: &[f64]) -> Self {
+        Self {
+            at: speeds_m_s.iter().copied().enumerate().collect(),
+            rows: speeds_m_s.len(),
+        }
+    }
+}
+
+/// An experiment whose free numbers are parameters.
+#[derive(Clone, Debug)]
+pub struct Model {
+    experiment: Experiment,
+    numbers: FreeNumbers,
+    /// Relative accuracy of times of flight.
+    pub accuracy: f64,
+    /// Vector instructions of the ensemble.
+    pub set: InstructionSet,
+}
+
+/// A shot to be computed, and what its wall signal is multiplied by.
+type Planned = Result<(Plan, f64), ModelError>;
+
+impl Model {
+    /// A fit's accuracy: on the paper's chains the steps it takes leave errors
+    /// below 2e-6 of every time of flight, a hundredth of a good measurement's.
+    pub const ACCURACY: f64 = 1e-5;
+
+    /// A model at [`Self::ACCURACY`].
+    ///
+    /// # Errors
+    /// An experiment without a striker, whose speed is what curves run over.
+    pub fn new(experiment: &Experiment, numbers: FreeNumbers) -> Result<Self, Mistakes> {
+        experiment.needs_striker("a fit of times of flight needs a chain with a striker")?;
+        Ok(Self {
+            experiment: experiment.clone(),
+            numbers,
+            accuracy: Self::ACCURACY,
+            set: InstructionSet::default(),
+        })
+    }
+
+    /// The same model at another accuracy.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.accuracy = accuracy;
+        self
+    }
+
+    /// Its free numbers.
+    #[must_use]
+    pub fn numbers(&self) -> &FreeNumbers {
+        &self.numbers
+    }
+
+    /// The experiment that its parameters change.
+    #[must_use]
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// Predictions at all speeds for every point.
+    ///
+    /// A point that fails at one speed has no curve: its error says where and why.
+    #[must_use]
+    pub fn curves(
+        &self,
+        points: &[Vec<f64>],
+        speeds: &Speeds,
+    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        let planned: Vec<Result<Vec<(Plan, f64)>, ModelError>> = points
+            .par_iter()
+            .map(|point| self.plans(point, speeds))
+            .collect();
+        let sound = planned.iter().filter_map(|plans| plans.as_ref().ok());
+        let plans: Vec<Plan> = sound.flatten().map(|(plan, _)| plan.clone()).collect();
+        let mut shots = shoot_unjudged(&plans, self.set).into_iter();
+        let curve = |plans: Result<Vec<(Plan, f64)>, ModelError>| {
+            let plans = plans?;
+            // All of the point's shots, so that the next point's are next.
+            let own: Vec<_> = shots.by_ref().take(plans.len()).collect();
+            let rows = own.into_iter().zip(plans).zip(&speeds.at);
+            rows.map(|((shot, (_, gain)), (_, speed))| {
+                predicted(&shot.map_err(|error| at(*speed, error))?, gain)
+                    .map_err(|error| at(*speed, error))
+            })
+            .collect()
+        };
+        planned.into_iter().map(curve).collect()
+    }
+
+    /// The largest relative error of one curve's times of flight, each shot of
+    /// which is computed again with longer steps, or more tightly.
+    ///
+    /// # Errors
+    /// What is in the way of a shot.
+    pub fn accuracy_reached(&self, point: &[f64], speeds: &Speeds) -> Result<f64, ModelError> {
+        let plans = self.plans(point, speeds)?;
+        let plans: Vec<Plan> = plans.into_iter().map(|(plan, _)| plan).collect();
+        let shots = shoot_all(&plans, self.set, true, &|| {});
+        let mut worst: f64 = 0.0;
+        for (shot, (_, speed)) in shots.into_iter().zip(&speeds.at) {
+            let shot = shot.map_err(|error| at(*speed, error))?;
+            worst = worst.max(shot.accuracy_reached.unwrap_or(self.accuracy));
+        }
+        Ok(worst)
+    }
+
+    /// A point's shots.
+    fn plans(&self, point: &[f64], speeds: &Speeds) -> Result<Vec<(Plan, f64)>, ModelError> {
+        let mut latest: Option<(Settings, Experiment)> = None;
+        let mut plan = |&(row, speed_m_s): &(usize, f64)| -> Planned {
+            let settings = self.numbers.settings(point, speeds.rows, (row, speed_m_s));
+            let experiment = match latest.take() {
+                Some((same, experiment)) if same == settings => experiment,
+                _ => self
+                    .set(&settings)
+                    .map_err(|error| at(speed_m_s, brief(&error)))?,
+            };
+            let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
+            let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, told(&mistakes)))?;
+            let gain = settings.wall_gain;
+            latest = Some((settings, experiment));
+            Ok((plan.for_flights().with_accuracy(self.accuracy), gain))
+        };
+        speeds.at.iter().map(&mut plan).collect()
+    }
+
+    /// The experiment with settings.
+    fn set(&self, settings: &Settings) -> Result<Experiment, PathError> {
+        let numbers = settings.numbers.iter();
+        let numbers: Vec<(&str, f64)> = numbers.map(|(path, v)| (path.as_str(), *v)).collect();
+        self.experiment.set(&numbers)
+    }
+}
+
+fn at(speed_m_s: f64, error: impl Display) -> ModelError {
+    ModelError(format!("at {speed_m_s} m/s: {error}"))
+}
+
+fn brief(error: &PathError) -> String {
+    match error {
+        PathError::Mistakes(mistakes) => told(mistakes),
+        other => other.to_string(),
+    }
+}
+
+/// The first mistake, without its place: the file has none for a fit's numbers.
+fn told(mistakes: &Mistakes) -> String {
+    let first = mistakes.findings().first();
+    first.map_or_else(|| mistakes.to_string(), ToString::to_string)
+}
+
+/// What a shot shows; `gain` multiplies the wall's signal.
+fn predicted(shot: &Shot, gain: f64) -> Result<Predicted, String> {
+    let passage = shot.passage.as_ref().map_err(ToString::to_string)?;
+    let flight = shot.flight.ok_or("no pulse was seen to pass")?;
+    let over_passing = |peak: f64| peak / passage.incident.value;
+    Ok([
+        Some(flight.incident_s),
+        flight.reflected_s,
+        Some(gain * over_passing(passage.wall.value)),
+        passage.reflected.map(|peak| over_passing(peak.value)),
+    ])
+}

@@ -1,0 +1,235 @@
+//! Measured curves against a model's.
+
+use super::model::{Model, Predicted, Speeds};
+use super::stencil::Stencil;
+use super::whiten::whiten;
+use crate::data::{Data, DataRow, Observable};
+use crate::problem::{ModelError, Problem, Residuals};
+use crate::{Parameter, ParameterError};
+
+/// Relative distance of the speeds around each row's, where there are too
+/// few rows to tell a slope.
+const ASIDE: f64 = 0.02;
+
+/// Times of flight and ratios of peaks against those of a model.
+///
+/// Residuals are measured − predicted, made independent within each row:
+/// errors of the speed move all that was measured at it together, by the
+/// slope of the model's own curve.
+#[derive(Clone, Debug)]
+pub struct CurveProblem {
+    model: Model,
+    data: Data,
+    parameters: Vec<Parameter>,
+    speeds: Speeds,
+    stencils: Vec<Stencil>,
+    labels: Vec<String>,
+}
+
+/// Why data can't be fitted with a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CurveError {
+    /// Fewer numbers than unknowns.
+    #[error(
+        "{file} has {values} measured values for {parameters} free parameters ({names}): free \
+         fewer, or add speeds or reflected times of flight"
+    )]
+    TooFew {
+        /// Where the data come from.
+        file: String,
+        /// Measured values.
+        values: usize,
+        /// Free parameters.
+        parameters: usize,
+        /// Their names.
+        names: String,
+    },
+    /// No parameter.
+    #[error("no parameter is free: name some, such as eta,B")]
+    NothingFree,
+    /// A parameter that is not sound.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+}
+
+impl CurveProblem {
+    /// A model against data. `parameters` are the model's own, perhaps with other
+    /// starts, bounds and priors.
+    ///
+    /// # Errors
+    /// See [`CurveError`].
+    pub fn new(model: Model, data: Data, parameters: Vec<Parameter>) -> Result<Self, CurveError> {
+        if parameters.is_empty() {
+            return Err(CurveError::NothingFree);
+        }
+        parameters.iter().try_for_each(Parameter::check)?;
+        let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
+        if data.value_count() < parameters.len() {
+            return Err(CurveError::TooFew {
+                values: data.value_count(),
+                file: data.file,
+                parameters: parameters.len(),
+                names: names.join(", "),
+            });
+        }
+        Ok(Self::unchecked(model, data, parameters))
+    }
+
+    /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may tell
+    /// what these data do not.
+    #[must_use]
+    pub fn part(model: Model, data: Data) -> Self {
+        let parameters = model.numbers().parameters(&data.speeds_m_s());
+        Self::unchecked(model, data, parameters)
+    }
+
+    fn unchecked(model: Model, data: Data, parameters: Vec<Parameter>) -> Self {
+        let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
+        let labels = data.rows.iter().flat_map(row_labels).collect();
+        Self {
+            model,
+            data,
+            parameters,
+            speeds,
+            stencils,
+            labels,
+        }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The data.
+    #[must_use]
+    pub fn data(&self) -> &Data {
+        &self.data
+    }
+
+    /// The same problem with other measured values at the same speeds, such as
+    /// those of a simulated repetition.
+    ///
+    /// # Errors
+    /// See [`CurveError`].
+    pub fn with_data(&self, data: Data) -> Result<Self, CurveError> {
+        Self::new(self.model.clone(), data, self.parameters.clone())
+    }
+
+    /// Predictions at the data's speeds, one set of rows a point.
+    #[must_use]
+    pub fn curves(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        let speeds = Speeds::of_rows(&self.data.speeds_m_s());
+        self.model.curves(points, &speeds)
+    }
+
+    /// Predictions at all speeds that residuals need, slopes among them.
+    pub(super) fn all_curves(
+        &self,
+        points: &[Vec<f64>],
+    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        self.model.curves(points, &self.speeds)
+    }
+
+    /// Which row and observable each residual belongs to.
+    #[must_use]
+    pub fn measured(&self) -> Vec<(usize, Observable)> {
+        let rows = self.data.rows.iter().enumerate();
+        rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of)))
+            .collect()
+    }
+
+    /// Residuals of a predicted curve.
+    pub(crate) fn residuals_of(&self, curve: &[Predicted]) -> Result<Residuals, ModelError> {
+        let mut residuals = Residuals::default();
+        for (row, measured) in self.data.rows.iter().enumerate() {
+            for (standardised, ln_sigma) in self.row(row, measured, curve)? {
+                residuals.standardised.push(standardised);
+                residuals.ln_sigmas.push(ln_sigma);
+            }
+        }
+        Ok(residuals)
+    }
+
+    /// Residuals of a row, independent and standardised, with ln σ.
+    fn row(
+        &self,
+        row: usize,
+        measured: &DataRow,
+        curve: &[Predicted],
+    ) -> Result<Vec<(f64, f64)>, ModelError> {
+        let stencil = &self.stencils[row];
+        let own = stencil.own();
+        let [mut misses, mut sigmas, mut moved] = [Vec::new(), Vec::new(), Vec::new()];
+        for of in measured.observables() {
+            let Some(value) = measured.value(of) else {
+                continue;
+            };
+            let none = || {
+                let (name, speed) = (of.name(), measured.speed_m_s.value);
+                ModelError(format!("at {speed} m/s: the model has no {name}"))
+            };
+            let at = |speed: usize| curve.get(speed)?[of.index()];
+            let predicted = at(own).ok_or_else(none)?;
+            let relative = measured.speed_m_s.sigma / measured.speed_m_s.value;
+            let slope = match relative {
+                0.0 => 0.0,
+                _ => stencil.slope(at).ok_or_else(none)?,
+            };
+            misses.push(value.value - predicted);
+            sigmas.push(value.sigma);
+            moved.push(slope * predicted * relative);
+        }
+        Ok(whiten(&misses, &sigmas, &moved))
+    }
+}
+
+/// Speeds to compute, and for each row what its slope is made of: the rows' own
+/// speeds, or each with two around it where they are too few.
+fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
+    let rows = 0..speeds_m_s.len();
+    let own: Option<Vec<Stencil>> = rows.map(|row| Stencil::new(speeds_m_s, row)).collect();
+    if let Some(stencils) = own {
+        return (Speeds::of_rows(speeds_m_s), stencils);
+    }
+    let around = |(row, speed): (usize, &f64)| {
+        [1.0 - ASIDE, 1.0, 1.0 + ASIDE].map(|factor| (row, factor * speed))
+    };
+    let at: Vec<(usize, f64)> = speeds_m_s.iter().enumerate().flat_map(around).collect();
+    let rows = speeds_m_s.len();
+    let stencils = (0..rows).map(|row| Stencil::around(ASIDE, 3 * row));
+    (Speeds { at, rows }, stencils.collect())
+}
+
+fn row_labels(row: &DataRow) -> Vec<String> {
+    // Four digits tell rows apart for a reader.
+    let speed: f64 = format!("{:.3e}", row.speed_m_s.value)
+        .parse()
+        .unwrap_or(row.speed_m_s.value);
+    let label = |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
+    row.observables().map(label).collect()
+}
+
+impl Problem for CurveProblem {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn residual_count(&self) -> usize {
+        self.data.value_count()
+    }
+
+    fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
+        let curves = self.all_curves(points);
+        curves
+            .into_iter()
+            .map(|curve| self.residuals_of(&curve?))
+            .collect()
+    }
+
+    fn residual_label(&self, index: usize) -> String {
+        self.labels.get(index).cloned().unwrap_or_default()
+    }
+}

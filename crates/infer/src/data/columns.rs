@@ -1,0 +1,123 @@
+//! Which column is what, by title.
+
+use super::{DataError, Observable};
+
+/// A column: its place and its title.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub(super) at: usize,
+    pub(super) title: String,
+}
+
+/// A measured quantity's column and that of its standard error.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub(super) value: Column,
+    pub(super) sigma: Option<Column>,
+}
+
+/// All columns that a fit can use.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Columns {
+    pub(super) case: Option<Column>,
+    pub(super) speed: Measured,
+    pub(super) observables: [Option<Measured>; 4],
+}
+
+impl Columns {
+    /// Columns of the wanted observables, of which a table must have one.
+    pub(super) fn of(
+        titles: &[String],
+        wanted: &[Observable],
+        file: &str,
+    ) -> Result<Self, DataError> {
+        let missing = |column: &str, expected: String| DataError::NoColumn {
+            file: file.to_owned(),
+            column: column.to_owned(),
+            expected,
+        };
+        let speed = measured(titles, "speed_m_s").ok_or_else(|| {
+            let near = other_unit(titles, "speed");
+            missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
+        })?;
+        let column = |of: Observable| {
+            let is_wanted = wanted.contains(&of);
+            is_wanted.then(|| measured(titles, of.column())).flatten()
+        };
+        let observables = Observable::ALL.map(column);
+        if observables.iter().all(Option::is_none) {
+            let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
+            let what = format!("times in s or ratios{}", other_unit(titles, "tof"));
+            return Err(missing(&names.join("` or `"), what));
+        }
+        Ok(Self {
+            case: find(titles, &["case"]),
+            speed,
+            observables,
+        })
+    }
+}
+
+/// A hint at a column that looks like the one wanted.
+fn other_unit(titles: &[String], beginning: &str) -> String {
+    let near = titles.iter().find(|title| title.starts_with(beginning));
+    near.map_or(String::new(), |title| {
+        format!("; `{title}` is not read, since its title does not end with the SI unit")
+    })
+}
+
+fn find(titles: &[String], names: &[&str]) -> Option<Column> {
+    let found = |name: &&str| titles.iter().position(|title| title == name);
+    let at = names.iter().find_map(found)?;
+    Some(Column {
+        at,
+        title: titles[at].clone(),
+    })
+}
+
+/// The column of a quantity, and that of its error under any of the names that
+/// `measure` gives it: `x_s_error`, `x_error_s`, `x_sigma_s`.
+fn measured(titles: &[String], name: &str) -> Option<Measured> {
+    let value = find(titles, &[name])?;
+    let unit = ["_m_s", "_s"]
+        .into_iter()
+        .find(|unit| name.ends_with(unit) && name.len() > unit.len());
+    let unit = unit.unwrap_or("");
+    let stem = name.strip_suffix(unit).unwrap_or(name);
+    let names = [
+        format!("{name}_error"),
+        format!("{stem}_error{unit}"),
+        format!("{stem}_sigma{unit}"),
+        format!("{name}_sigma"),
+    ];
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Some(Measured {
+        value,
+        sigma: find(titles, &names),
+    })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+mod tests {
+    use super::*;
+
+    fn titles(text: &str) -> Vec<String> {
+        text.split(',').map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn errors_are_found_under_the_names_of_both_tables_of_measure() {
+        for text in [
+            "case,speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_deviation,tof_incident_s_error",
+            "case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s",
+        ] {
+            let wanted = [Observable::Incident];
+            let columns = Columns::of(&titles(text), &wanted, "a.csv").unwrap();
+            assert_eq!(columns.speed.sigma.unwrap().at, 2, "{text}");
+            let incident = columns.observables[0].clone().unwrap();
+            let last = titles(text).len() - 1;
+            assert_eq!(incident.sigma.unwrap().at, last, "{text}");
+        }
+    }
+}

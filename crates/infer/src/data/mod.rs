@@ -1,0 +1,137 @@
+//! Measured times of flight: tables of one row a speed.
+
+mod check;
+mod columns;
+mod error;
+mod read;
+
+pub use error::{DataError, Place};
+pub use read::{Defaults, Selection};
+
+use hertzchain_signal::Estimate;
+
+/// A measured number of a row that a model can predict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Observable {
+    /// Incident time of flight in s.
+    Incident,
+    /// Reflected time of flight in s.
+    Reflected,
+    /// Peak at the wall over the passing peak.
+    WallOverPassing,
+    /// Returning peak over the passing peak.
+    ReturningOverPassing,
+}
+
+impl Observable {
+    /// Every observable, in the order of a row.
+    pub const ALL: [Self; 4] = [
+        Self::Incident,
+        Self::Reflected,
+        Self::WallOverPassing,
+        Self::ReturningOverPassing,
+    ];
+
+    /// Its column in a table.
+    #[must_use]
+    pub const fn column(self) -> &'static str {
+        match self {
+            Self::Incident => "tof_incident_s",
+            Self::Reflected => "tof_reflected_s",
+            Self::WallOverPassing => "wall_over_passing",
+            Self::ReturningOverPassing => "returning_over_passing",
+        }
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Incident => "incident ToF",
+            Self::Reflected => "reflected ToF",
+            Self::WallOverPassing => "wall/passing peak",
+            Self::ReturningOverPassing => "returning/passing peak",
+        }
+    }
+
+    /// Whether it is a time in s; else it is a ratio.
+    #[must_use]
+    pub const fn is_time(self) -> bool {
+        matches!(self, Self::Incident | Self::Reflected)
+    }
+
+    pub(crate) const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// What was measured at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DataRow {
+    /// Line of the file, from 1.
+    pub line: u64,
+    /// Speed of the striker in m/s; its sigma may be 0.
+    pub speed_m_s: Estimate,
+    /// Measured values in the order of [`Observable::ALL`].
+    pub values: [Option<Estimate>; 4],
+}
+
+impl DataRow {
+    /// The measured value of an observable.
+    #[must_use]
+    pub fn value(&self, of: Observable) -> Option<Estimate> {
+        self.values[of.index()]
+    }
+
+    /// The observables that were measured.
+    pub fn observables(&self) -> impl Iterator<Item = Observable> + '_ {
+        let measured = |of: &Observable| self.value(*of).is_some();
+        Observable::ALL.into_iter().filter(measured)
+    }
+}
+
+/// A curve: rows in order of speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Data {
+    /// Where it comes from, as messages name it.
+    pub file: String,
+    /// The case of a table of several; empty where there is none.
+    pub case: String,
+    /// Rows in order of speed.
+    pub rows: Vec<DataRow>,
+}
+
+impl Data {
+    /// Speeds in m/s.
+    #[must_use]
+    pub fn speeds_m_s(&self) -> Vec<f64> {
+        self.rows.iter().map(|row| row.speed_m_s.value).collect()
+    }
+
+    /// How many numbers were measured beside speeds.
+    #[must_use]
+    pub fn value_count(&self) -> usize {
+        self.rows.iter().map(|row| row.observables().count()).sum()
+    }
+
+    /// Whether some row has an observable.
+    #[must_use]
+    pub fn has(&self, of: Observable) -> bool {
+        self.rows.iter().any(|row| row.value(of).is_some())
+    }
+
+    /// These data with some observables alone; rows that have none of them go.
+    #[must_use]
+    pub fn only(&self, wanted: &[Observable]) -> Self {
+        let mut data = self.clone();
+        for row in &mut data.rows {
+            for of in Observable::ALL {
+                if !wanted.contains(&of) {
+                    row.values[of.index()] = None;
+                }
+            }
+        }
+        data.rows.retain(|row| row.observables().next().is_some());
+        data
+    }
+}

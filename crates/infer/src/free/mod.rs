@@ -1,0 +1,267 @@
+//! Numbers of an experiment that a fit may change.
+//!
+//! `eta`, `wet.K`, `materials.steel.young_modulus`: a short name or a path of
+//! the experiment file. After a colon stands how it depends on the speed v of
+//! the striker: `K:power` for K₀ (v/(1 m/s))^k, as the paper gives the numbers
+//! of its oils; `K:each` for one value at every speed of the data; nothing for
+//! one value at all speeds.
+
+mod name;
+mod start;
+
+use crate::Parameter;
+use hertzchain_experiment::{Experiment, PathError};
+pub use name::SHORT_NAMES;
+use name::Target;
+
+/// How a number depends on the speed of the striker.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// Not at all.
+    #[default]
+    Constant,
+    /// As a power law: two parameters.
+    PowerLaw,
+    /// As the data tell: one parameter a speed.
+    EachSpeed,
+}
+
+/// Why a number can't be free.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FreeError {
+    /// The path leads nowhere, or to several numbers.
+    #[error("{name}: {error}")]
+    Path {
+        /// As asked.
+        name: String,
+        /// Why.
+        error: PathError,
+    },
+    /// A short name that several numbers have.
+    #[error("{name} can be any of: {}", .candidates.join(", "))]
+    Ambiguous {
+        /// As asked.
+        name: String,
+        /// Names that are clear.
+        candidates: Vec<String>,
+    },
+    /// A short name that no number of this experiment has.
+    #[error("{name}: this experiment has no {what}")]
+    Missing {
+        /// As asked.
+        name: String,
+        /// What the name stands for.
+        what: String,
+    },
+    /// After the colon stands something else.
+    #[error("{name}: `{form}` is no way to depend on speed; expected `power` or `each`")]
+    Form {
+        /// As asked.
+        name: String,
+        /// What stands there.
+        form: String,
+    },
+    /// A number that has to be whole.
+    #[error("{name} counts something and can't vary continuously")]
+    Count {
+        /// As asked.
+        name: String,
+    },
+    /// One number, twice free.
+    #[error("{name} and {other} are the same number")]
+    Twice {
+        /// As asked.
+        name: String,
+        /// As asked before.
+        other: String,
+    },
+    /// Nothing tells where a fit should start.
+    #[error(
+        "{name} is not given in the experiment and has no usual value; give one by --start {name}=VALUE"
+    )]
+    NoStart {
+        /// As asked.
+        name: String,
+    },
+}
+
+/// A number of an experiment that a fit may change.
+#[derive(Clone, Debug)]
+pub struct FreeNumber {
+    name: String,
+    target: Target,
+    form: Form,
+    unit: String,
+    /// Value at the start, or prefactor and exponent.
+    start: (f64, f64),
+    bounds: (f64, f64),
+}
+
+impl FreeNumber {
+    /// The number of this name, as described [above](self).
+    ///
+    /// `start` is where a fit begins if the experiment gives no value.
+    ///
+    /// # Errors
+    /// See [`FreeError`].
+    pub fn find(
+        experiment: &Experiment,
+        asked: &str,
+        start: Option<f64>,
+    ) -> Result<Self, FreeError> {
+        let (name, form) = match asked.trim().split_once(':') {
+            None => (asked.trim(), Form::Constant),
+            Some((name, "power")) => (name, Form::PowerLaw),
+            Some((name, "each")) => (name, Form::EachSpeed),
+            Some((name, form)) => {
+                let (name, form) = (name.to_owned(), form.to_owned());
+                return Err(FreeError::Form { name, form });
+            }
+        };
+        let found = name::find(experiment, name)?;
+        let no_start = || FreeError::NoStart {
+            name: name.to_owned(),
+        };
+        let start = start::of(experiment, &found, start).ok_or_else(no_start)?;
+        // A law of speed in the file stays one, unless each speed is asked for.
+        let law = matches!(found.target, Target::Scaled { .. }) && form == Form::Constant;
+        Ok(Self {
+            name: name.to_owned(),
+            form: if law { Form::PowerLaw } else { form },
+            bounds: start::bounds(&found),
+            unit: found.unit,
+            target: found.target,
+            start,
+        })
+    }
+
+    /// The name as asked, without its form.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How it depends on speed.
+    #[must_use]
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
+    /// Its parameters over data at these speeds in m/s, each called after it.
+    #[must_use]
+    pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
+        let (value, exponent) = self.start;
+        let (lower, upper) = self.bounds;
+        let one =
+            |name: &str, start: f64| Parameter::new(name, &self.unit, start).within(lower, upper);
+        match self.form {
+            Form::Constant => vec![one(&self.name, value)],
+            Form::PowerLaw => {
+                let exponent = Parameter::new(&format!("{}.exponent", self.name), "", exponent);
+                let exponent = Parameter {
+                    scale: start::EXPONENT_SCALE,
+                    ..exponent.within(-start::MOST_EXPONENT, start::MOST_EXPONENT)
+                };
+                vec![one(&format!("{}.prefactor", self.name), value), exponent]
+            }
+            Form::EachSpeed => {
+                let at = |speed: &f64| {
+                    one(
+                        &format!("{}@{speed}", self.name),
+                        value * speed.powf(exponent),
+                    )
+                };
+                speeds_m_s.iter().map(at).collect()
+            }
+        }
+    }
+
+    /// How many parameters it has over so many speeds.
+    #[must_use]
+    pub fn parameter_count(&self, speeds: usize) -> usize {
+        match self.form {
+            Form::Constant => 1,
+            Form::PowerLaw => 2,
+            Form::EachSpeed => speeds,
+        }
+    }
+
+    /// Its value at a speed in m/s, the data's `row`th, from its parameters.
+    fn value(&self, parameters: &[f64], row: usize, speed_m_s: f64) -> f64 {
+        match (self.form, parameters) {
+            (Form::PowerLaw, [prefactor, exponent]) => prefactor * speed_m_s.powf(*exponent),
+            (Form::EachSpeed, each) => each.get(row).copied().unwrap_or(f64::NAN),
+            (_, [value, ..]) => *value,
+            _ => f64::NAN,
+        }
+    }
+}
+
+/// All free numbers of a fit.
+#[derive(Clone, Debug)]
+pub struct FreeNumbers(Vec<FreeNumber>);
+
+/// What the parameters make of an experiment at one speed.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(crate) struct Settings {
+    /// Numbers of the file, by path.
+    pub(crate) numbers: Vec<(String, f64)>,
+    /// Sensitivity of the wall's sensor over that of the bead's.
+    pub(crate) wall_gain: f64,
+}
+
+impl FreeNumbers {
+    /// Free numbers, each once.
+    ///
+    /// # Errors
+    /// A number that is free twice.
+    pub fn new(numbers: Vec<FreeNumber>) -> Result<Self, FreeError> {
+        for (at, number) in numbers.iter().enumerate() {
+            let same = |other: &&FreeNumber| other.target == number.target;
+            if let Some(other) = numbers[..at].iter().find(same) {
+                return Err(FreeError::Twice {
+                    name: number.name.clone(),
+                    other: other.name.clone(),
+                });
+            }
+        }
+        Ok(Self(numbers))
+    }
+
+    /// The numbers, in the order in which their parameters stand.
+    #[must_use]
+    pub fn as_slice(&self) -> &[FreeNumber] {
+        &self.0
+    }
+
+    /// Parameters of all numbers over data at these speeds in m/s.
+    #[must_use]
+    pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
+        let all = self.0.iter();
+        all.flat_map(|number| number.parameters(speeds_m_s))
+            .collect()
+    }
+
+    /// What a point sets at a speed in m/s, of `speeds` the `row`th.
+    pub(crate) fn settings(
+        &self,
+        point: &[f64],
+        speeds: usize,
+        (row, speed_m_s): (usize, f64),
+    ) -> Settings {
+        let mut settings = Settings {
+            wall_gain: 1.0,
+            ..Settings::default()
+        };
+        let mut rest = point;
+        for number in &self.0 {
+            let count = number.parameter_count(speeds).min(rest.len());
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            let value = number.value(own, row, speed_m_s);
+            number.target.set(value, &mut settings);
+        }
+        settings
+    }
+}

@@ -1,0 +1,190 @@
+//! From a name to a place in the experiment.
+
+use super::{FreeError, Settings};
+use hertzchain_experiment::{Experiment, Place};
+
+/// Short names: what each stands for, and the end of its path.
+pub const SHORT_NAMES: [(&str, &str, &str); 7] = [
+    ("Y", "Young modulus", "young_modulus"),
+    ("nu", "Poisson ratio", "poisson_ratio"),
+    ("eta", "viscosity", "shear_viscosity"),
+    ("K", "Hertz stiffness", "elastic_hertz.stiffness"),
+    (
+        "A",
+        "relaxation time",
+        "damping_viscoelastic.relaxation_time",
+    ),
+    ("B", "cubic damping", "damping_cubic.coefficient"),
+    (
+        WALL_GAIN,
+        "sensitivity of the wall's sensor over that of the bead's",
+        "",
+    ),
+];
+
+/// A number of the instruments, not of the experiment.
+const WALL_GAIN: &str = "wall_gain";
+
+/// Where a free number goes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Target {
+    /// A number of the file.
+    Number(String),
+    /// A number that the file gives as a power law of speed.
+    Scaled { prefactor: String, exponent: String },
+    /// Sensitivity of the wall's sensor over that of the bead's.
+    WallGain,
+}
+
+impl Target {
+    /// Puts a value in its place.
+    pub(super) fn set(&self, value: f64, settings: &mut Settings) {
+        match self {
+            Self::Number(path) => settings.numbers.push((path.clone(), value)),
+            Self::Scaled {
+                prefactor,
+                exponent,
+            } => {
+                settings.numbers.push((prefactor.clone(), value));
+                settings.numbers.push((exponent.clone(), 0.0));
+            }
+            Self::WallGain => settings.wall_gain = value,
+        }
+    }
+}
+
+/// A place that was found.
+pub(super) struct Found {
+    pub(super) target: Target,
+    pub(super) unit: String,
+    /// Value, or prefactor and exponent, where the file gives them.
+    pub(super) given: Option<(f64, f64)>,
+}
+
+/// The number of a short name, a path or an end of one.
+pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeError> {
+    if name == WALL_GAIN {
+        return Ok(Found {
+            target: Target::WallGain,
+            unit: String::new(),
+            given: Some((1.0, 0.0)),
+        });
+    }
+    let (owner, last) = match name.rsplit_once('.') {
+        None => (None, name),
+        Some((owner, last)) => (Some(owner), last),
+    };
+    let short = SHORT_NAMES.iter().find(|(short, _, _)| *short == last);
+    match short {
+        Some((short, what, end)) => of_short(experiment, name, owner, (short, what, end)),
+        None => {
+            let place = experiment.place(name).map_err(|error| FreeError::Path {
+                name: name.to_owned(),
+                error,
+            })?;
+            of_place(name, place)
+        }
+    }
+}
+
+fn of_place(name: &str, place: Place) -> Result<Found, FreeError> {
+    match place.is_count {
+        true => Err(FreeError::Count {
+            name: name.to_owned(),
+        }),
+        false => Ok(Found {
+            given: place.value.map(|value| (value, 0.0)),
+            unit: plain(place.unit),
+            target: Target::Number(place.path),
+        }),
+    }
+}
+
+/// No unit is no text here, not "1".
+fn plain(unit: String) -> String {
+    if unit == "1" { String::new() } else { unit }
+}
+
+/// The number that a short name means, of an owner or of the only one.
+fn of_short(
+    experiment: &Experiment,
+    name: &str,
+    owner: Option<&str>,
+    (short, what, end): (&str, &str, &str),
+) -> Result<Found, FreeError> {
+    let places = experiment.places();
+    let ends = [format!(".{end}"), format!(".{end}.prefactor")];
+    let own = |place: &&Place| {
+        let path = place.path.as_str();
+        let contact = path.starts_with("contacts[") || path.starts_with("materials.");
+        contact && ends.iter().any(|end| path.ends_with(end.as_str()))
+    };
+    let owners = owner.map(|owner| owner_paths(experiment, owner));
+    let of_owner = |place: &&Place| match &owners {
+        None => true,
+        Some(owners) => owners.iter().any(|owner| place.path.starts_with(owner)),
+    };
+    let fitting: Vec<&Place> = places.iter().filter(own).filter(of_owner).collect();
+    let given = fitting.iter().filter(|place| place.value.is_some());
+    let given: Vec<&Place> = given.copied().collect();
+    let place = match (&given[..], &fitting[..]) {
+        ([only], _) | ([], [only]) => *only,
+        ([], []) => {
+            let (name, what) = (name.to_owned(), what.to_owned());
+            return Err(FreeError::Missing { name, what });
+        }
+        ([], several) | (several, _) => {
+            let clear = |place: &&Place| clear_name(&place.path, short);
+            return Err(FreeError::Ambiguous {
+                name: name.to_owned(),
+                candidates: several.iter().map(clear).collect(),
+            });
+        }
+    };
+    match place.path.strip_suffix(".prefactor") {
+        None => of_place(name, place.clone()),
+        Some(stem) => {
+            let exponent = format!("{stem}.exponent");
+            let own = places.iter().find(|other| other.path == exponent);
+            let own = own.and_then(|place| place.value).unwrap_or(0.0);
+            Ok(Found {
+                target: Target::Scaled {
+                    prefactor: place.path.clone(),
+                    exponent,
+                },
+                unit: plain(place.unit.clone()),
+                given: place.value.map(|value| (value, own)),
+            })
+        }
+    }
+}
+
+/// Beginnings of the paths of an owner: a material, a section by its index, or
+/// the wet or dry section with its effective material.
+fn owner_paths(experiment: &Experiment, owner: &str) -> Vec<String> {
+    let wet = match owner {
+        "wet" => true,
+        "dry" => false,
+        _ if owner.starts_with("contacts[") || owner.starts_with("materials.") => {
+            return vec![format!("{owner}.")];
+        }
+        _ => return vec![format!("materials.{owner}.")],
+    };
+    let sections = experiment.sections().iter().enumerate();
+    let sections = sections.filter(|(_, section)| section.wet == wet);
+    let paths = sections.flat_map(|(at, section)| {
+        let material = experiment.effective_material(section);
+        let material = material.map(|name| format!("materials.{name}."));
+        std::iter::once(format!("contacts[{at}].")).chain(material)
+    });
+    paths.collect()
+}
+
+/// A short name that leads to this path alone.
+fn clear_name(path: &str, short: &str) -> String {
+    let owner = path.split('.').next().unwrap_or_default();
+    match owner {
+        "materials" => format!("{}.{short}", path.split('.').nth(1).unwrap_or_default()),
+        _ => format!("{owner}.{short}"),
+    }
+}

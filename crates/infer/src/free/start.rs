@@ -1,0 +1,68 @@
+//! Where a free number starts and what it may be.
+
+use super::name::{Found, Target};
+use hertzchain_chain::{Chain, Material, Pair};
+use hertzchain_experiment::Experiment;
+
+/// A change of an exponent that matters.
+pub(super) const EXPONENT_SCALE: f64 = 0.1;
+
+/// No property of a contact depends on speed more strongly.
+pub(super) const MOST_EXPONENT: f64 = 5.0;
+
+/// Poisson ratios of the paper's oils go beyond 1/2; the laws end below 1.
+const MOST_POISSON_RATIO: f64 = 0.999;
+
+/// The value to start from: asked for, given in the file, or what the file's
+/// materials make of it.
+pub(super) fn of(experiment: &Experiment, found: &Found, asked: Option<f64>) -> Option<(f64, f64)> {
+    let given = found
+        .given
+        .or_else(|| Some((derived(experiment, found)?, 0.0)));
+    match asked {
+        Some(value) => Some((value, given.map_or(0.0, |(_, exponent)| exponent))),
+        None => given,
+    }
+}
+
+/// Stiffness and relaxation time of a section as they follow from materials, at
+/// the experiment's own speed.
+fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
+    let Target::Number(path) = &found.target else {
+        return None;
+    };
+    let (chain, _) = experiment.chain(None).ok()?;
+    let index = path.strip_prefix("contacts[")?.split(']').next()?;
+    let pair = pair(&chain, index.parse().ok()?)?;
+    let law = path.rsplit('.').nth(1)?;
+    match path.rsplit('.').next()? {
+        "stiffness" if law.starts_with("elastic_hertz") => Some(pair.hertz_stiffness()),
+        "relaxation_time" => Some(pair.mean_relaxation_time_s(Material::relaxation_time_s)),
+        _ => None,
+    }
+    .filter(|value| value.is_finite() && *value > 0.0)
+}
+
+/// The bodies of a section's first contact between beads, which stands for all.
+fn pair(chain: &Chain, section: usize) -> Option<Pair> {
+    let contacts = &chain.sections.get(section)?.contacts;
+    let inside = (*contacts.start()).max(1).min(*contacts.end());
+    chain.pair(inside)
+}
+
+/// What a number may be, as far as its name tells.
+pub(super) fn bounds(found: &Found) -> (f64, f64) {
+    let path = match &found.target {
+        Target::Number(path) => path.as_str(),
+        Target::Scaled { prefactor, .. } => prefactor.trim_end_matches(".prefactor"),
+        Target::WallGain => return (f64::MIN_POSITIVE, f64::INFINITY),
+    };
+    match path.rsplit('.').next().unwrap_or_default() {
+        "poisson_ratio" => (0.0, MOST_POISSON_RATIO),
+        "exponent" | "incline" => (-MOST_EXPONENT, MOST_EXPONENT),
+        "prefactor" | "young_modulus" | "stiffness" | "mass" | "radius" | "density" => {
+            (f64::MIN_POSITIVE, f64::INFINITY)
+        }
+        _ => (0.0, f64::INFINITY),
+    }
+}

@@ -1,0 +1,130 @@
+//! How well a fit describes its data.
+
+use crate::{Fit, Parameter};
+use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+
+/// How well a fit describes its data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goodness {
+    /// Chi-square of data and priors together; `None` if there are no more of
+    /// them than parameters.
+    pub chi_square: Option<ChiSquare>,
+    /// √(χ²/degrees of freedom): what all σ would have to be multiplied by.
+    pub birge_ratio: Option<f64>,
+    /// Runs of equal sign in the order of the data.
+    pub runs: Option<Runs>,
+    /// Residual farthest from 0: its number and value.
+    pub farthest: Option<(usize, f64)>,
+}
+
+impl Goodness {
+    /// Of a fit. A parameter held by a bound does not count as fitted.
+    #[must_use]
+    pub fn new(parameters: &[Parameter], fit: &Fit) -> Self {
+        let priors = parameters.iter().zip(&fit.point);
+        let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
+        let rows: Vec<Estimate> = (fit.residuals.iter().copied().chain(priors))
+            .map(|value| Estimate { value, sigma: 1.0 })
+            .collect();
+        let fitted = parameters.len() - fit.binding.len();
+        let chi_square = chi_square(&rows, &vec![0.0; rows.len()], fitted);
+        let ratio = |found: ChiSquare| (found.value / found.freedom as f64).sqrt();
+        let numbered = fit.residuals.iter().copied().enumerate();
+        Self {
+            birge_ratio: chi_square.map(ratio),
+            chi_square,
+            runs: runs(&fit.residuals),
+            farthest: numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+        }
+    }
+}
+
+/// Runs of equal sign in a row of residuals: too few mean that the curve's
+/// shape is wrong, though each point may be near it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Runs {
+    /// Number of runs.
+    pub count: usize,
+    /// Number expected of chance.
+    pub expected: f64,
+    /// How often chance alone gives as few or fewer.
+    pub probability_fewer: f64,
+    /// How often chance alone gives as many or more.
+    pub probability_more: f64,
+}
+
+/// Runs test of Wald and Wolfowitz [WaldWolfowitz1940], exact: of all orders of
+/// these signs, which share has as few runs, or as many. Zeros are left out.
+/// `None` if all signs are equal.
+///
+/// Residuals of a fit are not quite independent: with few points to a parameter
+/// the probabilities are rough.
+#[must_use]
+pub fn runs(residuals: &[f64]) -> Option<Runs> {
+    let signs: Vec<bool> = (residuals.iter().filter(|r| **r != 0.0))
+        .map(|r| *r > 0.0)
+        .collect();
+    let above = signs.iter().filter(|s| **s).count();
+    let below = signs.len() - above;
+    if above == 0 || below == 0 {
+        return None;
+    }
+    let count = 1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let share = |range: std::ops::RangeInclusive<usize>| -> f64 {
+        range.map(|runs| run_probability(runs, above, below)).sum()
+    };
+    Some(Runs {
+        count,
+        expected: 1.0 + 2.0 * above as f64 * below as f64 / signs.len() as f64,
+        probability_fewer: share(2..=count).min(1.0),
+        probability_more: share(count..=signs.len()).min(1.0),
+    })
+}
+
+/// Share of the orders of two kinds of signs that have so many runs.
+fn run_probability(runs: usize, above: usize, below: usize) -> f64 {
+    let ways = |a: usize, b: usize| {
+        (ln_binomial(above - 1, a) + ln_binomial(below - 1, b) - ln_binomial(above + below, above))
+            .exp()
+    };
+    let half = runs / 2;
+    if runs.is_multiple_of(2) {
+        2.0 * ways(half - 1, half - 1)
+    } else {
+        ways(half, half - 1) + ways(half - 1, half)
+    }
+}
+
+/// ln of n over k; −∞ where there is no way to choose.
+fn ln_binomial(n: usize, k: usize) -> f64 {
+    if k > n {
+        return f64::NEG_INFINITY;
+    }
+    let k = k.min(n - k);
+    (0..k).map(|i| ((n - i) as f64 / (i + 1) as f64).ln()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_all_orders_are_counted_rightly() {
+        // Three above, two below, ten orders by hand:
+        // 2 runs: AAABB BBAAA; 5: ABABA; 3: ABBAA AABBA BAAAB; 4: the other four.
+        let shares = [2, 3, 4, 5].map(|runs| run_probability(runs, 3, 2));
+        let by_hand = [0.2, 0.3, 0.4, 0.1];
+        // Rounding.
+        assert!(
+            shares
+                .iter()
+                .zip(by_hand)
+                .all(|(a, b)| (a - b).abs() < 1e-15)
+        );
+        let found = runs(&[1.0, 2.0, 0.0, 1.0, -1.0, -3.0]).unwrap();
+        assert_eq!(found.count, 2);
+        assert!((found.probability_fewer - 0.2).abs() < 1e-15);
+        assert!((found.expected - 3.4).abs() < 1e-15);
+        assert_eq!(runs(&[1.0, 2.0]), None);
+    }
+}

@@ -1,0 +1,393 @@
+//! One way down to a minimum, as questions and answers.
+
+use super::merit::{Linear, Merit, Valued};
+use super::slopes::{Stencil, slopes};
+use crate::linear::{Svd, dot, norm, svd};
+use crate::{ModelError, Parameter, Residuals};
+
+/// A Levenberg–Marquardt descent [More1978] that asks for residuals instead of
+/// computing them, so that many descents share one call of the model.
+///
+/// Columns are scaled to unit length; a step solves (JᵀJ + λ) s = −g by singular
+/// values, once for all λ tried. Parameters at a bound that the gradient pushes
+/// outward are held; steps beyond a bound end at it.
+pub(crate) struct Descent<'a> {
+    merit: Merit<'a>,
+    free: Vec<usize>,
+    limits: Limits,
+    point: Vec<f64>,
+    at: Option<Valued>,
+    /// Steps of differences, one for each parameter of the problem.
+    steps: Vec<f64>,
+    damping: f64,
+    stage: Stage,
+    iterations: usize,
+    /// Iterations in a row that hardly gained anything.
+    idle: usize,
+}
+
+/// When a descent ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// Expected fall of the cost at which the minimum counts as reached.
+    pub tolerance: f64,
+    /// Most iterations.
+    pub iterations: usize,
+}
+
+/// Why a descent ended.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Ending {
+    /// The cost would fall by less than the tolerance.
+    Minimum,
+    /// No step lowers the cost any more, though `expected_fall`, small against
+    /// one, was left: the model is no smoother than that.
+    Floor {
+        /// Expected fall of χ²/2.
+        expected_fall: f64,
+    },
+    /// No step lowers the cost, though it should fall by a good deal.
+    Stuck {
+        /// Expected fall of χ²/2.
+        expected_fall: f64,
+    },
+    /// The iterations allowed ran out.
+    Iterations {
+        /// Expected fall of χ²/2.
+        expected_fall: f64,
+    },
+    /// The model has no residuals here or beside here.
+    ModelFails(ModelError),
+}
+
+impl Ending {
+    /// Whether the point reached is a minimum, as far as the model is smooth.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        matches!(self, Self::Minimum | Self::Floor { .. })
+    }
+}
+
+impl std::fmt::Display for Ending {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Minimum => write!(f, "converged"),
+            Self::Floor { expected_fall } => write!(
+                f,
+                "converged as far as the model is smooth (chi-square could fall by {:.1e})",
+                2.0 * expected_fall
+            ),
+            Self::Stuck { expected_fall } => write!(
+                f,
+                "stuck: chi-square should fall by {:.1e} but no step lowers it; the model may be discontinuous, or computed too coarsely",
+                2.0 * expected_fall
+            ),
+            Self::Iterations { expected_fall } => write!(
+                f,
+                "not converged: chi-square was still to fall by {:.1e} when the iterations allowed were used up",
+                2.0 * expected_fall
+            ),
+            Self::ModelFails(error) => write!(f, "not converged: the model fails: {error}"),
+        }
+    }
+}
+
+enum Stage {
+    /// Residuals at the first point and its neighbours.
+    Start(Vec<Stencil>),
+    /// Residuals at the neighbours of a point.
+    Slopes(Vec<Stencil>),
+    /// Residuals at the ends of steps with several λ.
+    Trials(Trials),
+    Done(Ending),
+}
+
+struct Trials {
+    linear: Linear,
+    svd: Svd,
+    /// Free parameters that are not held at a bound, as places among the free.
+    loose: Vec<usize>,
+    scales: Vec<f64>,
+    expected_fall: f64,
+    dampings: [f64; 4],
+    points: Vec<Vec<f64>>,
+}
+
+/// First step of differences, in units of a parameter's scale.
+const FIRST_STEP: f64 = 1e-3;
+/// Later steps aim at this change of the residuals' length: large against the
+/// model's own noise, small against the curvature over one standard error.
+const AIM: f64 = 0.3;
+/// Where steps stay, in units of a parameter's scale.
+const STEPS: [f64; 2] = [1e-6, 1e-2];
+/// Singular values below this share of the largest have no part in the
+/// expected fall: differences do not resolve them.
+const RESOLVED: f64 = 1e-5;
+const LARGEST_DAMPING: f64 = 1e10;
+const LEAST_DAMPING: f64 = 1e-12;
+/// A fall of χ²/2 that no conclusion depends on.
+const SMALL_FALL: f64 = 1e-3;
+/// Iterations that gain less than a thousandth of what was expected, after
+/// which the model's noise is taken to be reached.
+const IDLE: usize = 3;
+
+impl<'a> Descent<'a> {
+    /// A descent from `point` over the parameters `free`.
+    pub fn new(merit: Merit<'a>, point: Vec<f64>, free: Vec<usize>, limits: Limits) -> Self {
+        let parameters = merit.problem.parameters();
+        let steps: Vec<f64> = parameters.iter().map(|p| FIRST_STEP * p.scale).collect();
+        let mut descent = Self {
+            merit,
+            free,
+            limits,
+            point,
+            at: None,
+            steps,
+            damping: 1e-3,
+            stage: Stage::Done(Ending::Minimum),
+            iterations: 0,
+            idle: 0,
+        };
+        descent.stage = Stage::Start(descent.stencils());
+        descent
+    }
+
+    /// The same with steps of differences that are known to suit.
+    pub fn with_steps(mut self, steps: &[f64]) -> Self {
+        self.steps = steps.to_vec();
+        self.stage = Stage::Start(self.stencils());
+        self
+    }
+
+    fn parameters(&self) -> &'a [Parameter] {
+        self.merit.problem.parameters()
+    }
+
+    fn stencils(&self) -> Vec<Stencil> {
+        let stencil = |k: &usize| {
+            let k = *k;
+            Stencil::new(k, &self.parameters()[k], self.point[k], self.steps[k])
+        };
+        self.free.iter().map(stencil).collect()
+    }
+
+    /// Points whose residuals are wanted next; none when the descent has ended.
+    pub fn ask(&self) -> Vec<Vec<f64>> {
+        let neighbours = |stencils: &[Stencil]| {
+            let points = stencils.iter().flat_map(|s| s.points(&self.point));
+            points.collect::<Vec<_>>()
+        };
+        match &self.stage {
+            Stage::Start(stencils) => {
+                let mut points = vec![self.point.clone()];
+                points.extend(neighbours(stencils));
+                points
+            }
+            Stage::Slopes(stencils) => neighbours(stencils),
+            Stage::Trials(trials) => trials.points.clone(),
+            Stage::Done(_) => Vec::new(),
+        }
+    }
+
+    /// Takes the residuals at the points asked for.
+    pub fn tell(&mut self, found: &[Result<Residuals, ModelError>]) {
+        let stage = std::mem::replace(&mut self.stage, Stage::Done(Ending::Minimum));
+        self.stage = match stage {
+            Stage::Start(stencils) => self.started(&stencils, found),
+            Stage::Slopes(stencils) => self.aim(&stencils, found),
+            Stage::Trials(trials) => self.tried(trials, found),
+            Stage::Done(ending) => Stage::Done(ending),
+        };
+    }
+
+    fn started(&mut self, stencils: &[Stencil], found: &[Result<Residuals, ModelError>]) -> Stage {
+        let Some((first, rest)) = found.split_first() else {
+            return Stage::Done(Ending::ModelFails(ModelError::default()));
+        };
+        match self.merit.value(&self.point, first) {
+            Ok(at) => self.at = Some(at),
+            Err(error) => return Stage::Done(Ending::ModelFails(error)),
+        }
+        self.aim(stencils, rest)
+    }
+
+    /// From slopes to the next trials, or to the end.
+    fn aim(&mut self, stencils: &[Stencil], found: &[Result<Residuals, ModelError>]) -> Stage {
+        let Some(at) = &self.at else {
+            return Stage::Done(Ending::ModelFails(ModelError::default()));
+        };
+        let slopes = match slopes(&self.merit, (&self.point, at), stencils, found) {
+            Ok(slopes) => slopes,
+            Err(error) => return Stage::Done(Ending::ModelFails(error)),
+        };
+        let linear = self.merit.linear(at, &slopes);
+        self.choose_steps(&linear);
+        let trials = self.trials(linear);
+        if trials.expected_fall < self.limits.tolerance {
+            return Stage::Done(Ending::Minimum);
+        }
+        let expected_fall = trials.expected_fall;
+        if self.iterations >= self.limits.iterations {
+            return Stage::Done(Ending::Iterations { expected_fall });
+        }
+        if self.idle >= IDLE {
+            return Stage::Done(resting(expected_fall));
+        }
+        self.iterations += 1;
+        Stage::Trials(trials)
+    }
+
+    fn choose_steps(&mut self, linear: &Linear) {
+        let parameters = self.parameters();
+        for (k, column) in self.free.iter().zip(&linear.columns) {
+            let scale = parameters[*k].scale;
+            let aimed = AIM / norm(column);
+            self.steps[*k] = aimed.clamp(STEPS[0] * scale, STEPS[1] * scale);
+        }
+    }
+
+    fn trials(&self, linear: Linear) -> Trials {
+        let held = |place: usize| {
+            let (k, slope) = (self.free[place], linear.gradient[place]);
+            let parameter = &self.parameters()[k];
+            (self.point[k] <= parameter.lower && slope > 0.0)
+                || (self.point[k] >= parameter.upper && slope < 0.0)
+        };
+        let loose: Vec<usize> = (0..self.free.len()).filter(|p| !held(*p)).collect();
+        let length = |place: &usize| norm(&linear.columns[*place]);
+        let unit = |length: f64| if length > 0.0 { length } else { 1.0 };
+        let scales: Vec<f64> = loose.iter().map(|p| unit(length(p))).collect();
+        let scaled: Vec<Vec<f64>> = (loose.iter().zip(&scales))
+            .map(|(place, scale)| linear.columns[*place].iter().map(|x| x / scale).collect())
+            .collect();
+        let mut trials = Trials {
+            linear,
+            svd: svd(&scaled),
+            loose,
+            scales,
+            expected_fall: 0.0,
+            dampings: [0.0; 4],
+            points: Vec::new(),
+        };
+        trials.expected_fall = trials.fall();
+        self.spread(&mut trials, self.damping);
+        trials
+    }
+
+    /// Ends of steps for dampings around a middle one.
+    fn spread(&self, trials: &mut Trials, damping: f64) {
+        trials.dampings = [0.1, 1.0, 10.0, 100.0].map(|factor| factor * damping);
+        trials.points = (trials.dampings.iter())
+            .map(|damping| self.clipped(trials, &trials.step(*damping)))
+            .collect();
+    }
+
+    fn clipped(&self, trials: &Trials, step: &[f64]) -> Vec<f64> {
+        let mut point = self.point.clone();
+        for (place, step) in trials.loose.iter().zip(step) {
+            let k = self.free[*place];
+            let parameter = &self.parameters()[k];
+            point[k] = (point[k] + step).clamp(parameter.lower, parameter.upper);
+        }
+        point
+    }
+
+    fn tried(&mut self, mut trials: Trials, found: &[Result<Residuals, ModelError>]) -> Stage {
+        let valued = trials.points.iter().zip(found).enumerate();
+        let best = valued
+            .filter_map(|(i, (point, found))| Some((i, self.merit.value(point, found).ok()?)))
+            .min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        let before = self.at.as_ref().map_or(f64::INFINITY, |at| at.cost);
+        match best {
+            Some((i, valued)) if valued.cost < before => {
+                let gained = before - valued.cost;
+                let idle = gained < 1e-3 * trials.expected_fall.min(1.0);
+                self.idle = if idle { self.idle + 1 } else { 0 };
+                self.damping = (0.3 * trials.dampings[i]).max(LEAST_DAMPING);
+                self.point.clone_from(&trials.points[i]);
+                self.at = Some(valued);
+                Stage::Slopes(self.stencils())
+            }
+            _ if trials.dampings[3] < LARGEST_DAMPING => {
+                self.damping = 1e3 * trials.dampings[3];
+                self.spread(&mut trials, self.damping);
+                Stage::Trials(trials)
+            }
+            _ => Stage::Done(resting(trials.expected_fall)),
+        }
+    }
+
+    /// Where the descent stands, and why it ended.
+    pub fn finish(self) -> Reached {
+        let ending = match self.stage {
+            Stage::Done(ending) => ending,
+            _ => Ending::ModelFails(ModelError("the descent was left early".into())),
+        };
+        Reached {
+            point: self.point,
+            at: self.at,
+            steps: self.steps,
+            iterations: self.iterations,
+            ending,
+        }
+    }
+}
+
+fn resting(expected_fall: f64) -> Ending {
+    if expected_fall < SMALL_FALL {
+        Ending::Floor { expected_fall }
+    } else {
+        Ending::Stuck { expected_fall }
+    }
+}
+
+/// Where a descent came to.
+#[derive(Clone, Debug)]
+pub(crate) struct Reached {
+    pub point: Vec<f64>,
+    /// Residuals there; `None` if the model failed at the first point.
+    pub at: Option<Valued>,
+    pub steps: Vec<f64>,
+    pub iterations: usize,
+    pub ending: Ending,
+}
+
+impl Reached {
+    pub fn cost(&self) -> f64 {
+        self.at.as_ref().map_or(f64::INFINITY, |at| at.cost)
+    }
+}
+
+impl Trials {
+    /// Components of the scaled gradient along the right singular vectors.
+    fn along(&self) -> Vec<f64> {
+        let gradient: Vec<f64> = (self.loose.iter().zip(&self.scales))
+            .map(|(place, scale)| self.linear.gradient[*place] / scale)
+            .collect();
+        self.svd.right.iter().map(|v| dot(v, &gradient)).collect()
+    }
+
+    /// ½ gᵀ (JᵀJ)⁻¹ g over the directions that differences resolve.
+    fn fall(&self) -> f64 {
+        let least = RESOLVED * self.svd.values.first().copied().unwrap_or(0.0);
+        let parts = self.along().into_iter().zip(&self.svd.values);
+        parts
+            .filter(|(_, value)| **value > least)
+            .map(|(along, value)| 0.5 * (along / value).powi(2))
+            .sum()
+    }
+
+    /// −(JᵀJ + λ)⁻¹ g, in the parameters' units.
+    fn step(&self, damping: f64) -> Vec<f64> {
+        let weights: Vec<f64> = (self.along().iter().zip(&self.svd.values))
+            .map(|(along, value)| -along / (value * value + damping))
+            .collect();
+        let scaled = crate::linear::combine(&self.svd.right, &weights);
+        scaled
+            .iter()
+            .zip(&self.scales)
+            .map(|(s, d)| s / d)
+            .collect()
+    }
+}

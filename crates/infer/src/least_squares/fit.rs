@@ -1,0 +1,278 @@
+//! A whole fit: from starts to the optimum and what is known there.
+
+use super::descent::{Descent, Ending, Limits, Reached};
+use super::drive::drive;
+use super::jacobian::{Jacobian, jacobian};
+use super::merit::Merit;
+use super::starts::starts;
+use super::{FitError, Loss};
+use crate::linear::norm;
+use crate::{Parameter, Prior, Problem};
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitting {
+    /// What a residual costs.
+    pub loss: Loss,
+    /// Number of starts: the first where the parameters start, others spread
+    /// over what priors and bounds allow.
+    pub starts: usize,
+    /// Seed of these others.
+    pub seed: u64,
+    /// Fall of χ²/2 still to be expected at which the minimum counts as reached.
+    pub tolerance: f64,
+    /// Most iterations of a start.
+    pub iterations: usize,
+}
+
+impl Default for Fitting {
+    fn default() -> Self {
+        Self {
+            loss: Loss::Squares,
+            starts: 1,
+            seed: 0,
+            tolerance: 1e-9,
+            iterations: 200,
+        }
+    }
+}
+
+impl Fitting {
+    fn check(&self) -> Result<(), FitError> {
+        let wrong = |name, value, expected| {
+            Err(FitError::Option {
+                name,
+                value,
+                expected,
+            })
+        };
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if self.starts == 0 {
+            return wrong("number of starts", 0.0, "at least 1");
+        }
+        if !positive(self.tolerance) {
+            return wrong("tolerance", self.tolerance, "a positive number");
+        }
+        if !positive(self.loss.scale()) {
+            let scale = self.loss.scale();
+            return wrong("scale of the loss", scale, "a positive number of σ");
+        }
+        Ok(())
+    }
+
+    pub(crate) fn limits(&self) -> Limits {
+        Limits {
+            tolerance: self.tolerance,
+            iterations: self.iterations,
+        }
+    }
+}
+
+/// The best fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The parameters' values, in their units.
+    pub point: Vec<f64>,
+    /// ½ Σ ρ(r²) + Σ ln σ + ½ Σ (prior residual)²: minus the logarithm of
+    /// likelihood and priors, up to a constant.
+    pub cost: f64,
+    /// Standardised residuals of the data.
+    pub residuals: Vec<f64>,
+    /// Σ ln σ of the data; 0 if no σ depends on the parameters.
+    pub ln_sigmas: f64,
+    /// Derivatives at the optimum.
+    pub jacobian: Jacobian,
+    /// Parameters that ended at a bound against which the data push.
+    pub binding: Vec<Binding>,
+    /// Why the best start's descent ended.
+    pub ending: Ending,
+    /// Where each start came to, in order.
+    pub starts: Vec<Started>,
+    /// How often the model was computed.
+    pub evaluations: usize,
+    /// What a residual cost.
+    pub loss: Loss,
+}
+
+/// A parameter at a bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Binding {
+    /// Which parameter.
+    pub parameter: usize,
+    /// The bound, in its unit.
+    pub bound: f64,
+    /// Fall of the cost for each unit of the parameter beyond the bound.
+    pub push: f64,
+}
+
+/// What one start led to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Started {
+    /// Where it started.
+    pub start: Vec<f64>,
+    /// Where it came to.
+    pub point: Vec<f64>,
+    /// The cost there; infinite if the model fails at the start.
+    pub cost: f64,
+    /// Why it ended.
+    pub ending: Ending,
+    /// Iterations it took.
+    pub iterations: usize,
+}
+
+/// Difference of costs below which two starts are taken to have found the same minimum.
+const SAME_COST: f64 = 0.01;
+
+impl Fit {
+    /// Σ r² of the data.
+    #[must_use]
+    pub fn chi_square(&self) -> f64 {
+        crate::linear::dot(&self.residuals, &self.residuals)
+    }
+
+    /// How many of the starts came to this minimum: within 0.01 of its cost.
+    #[must_use]
+    pub fn agreeing_starts(&self) -> usize {
+        let agrees = |s: &&Started| s.cost <= self.cost + SAME_COST;
+        self.starts.iter().filter(agrees).count()
+    }
+
+    /// Whether a parameter is held by a bound.
+    #[must_use]
+    pub fn is_bound(&self, parameter: usize) -> bool {
+        self.binding.iter().any(|b| b.parameter == parameter)
+    }
+}
+
+/// Fits a problem.
+///
+/// # Errors
+/// A parameter that cannot be free, fewer numbers than parameters, a model that
+/// fails at the first start, a parameter that changes nothing. A fit that did
+/// not converge is no error: see [`Fit::ending`].
+pub fn fit(problem: &dyn Problem, how: &Fitting) -> Result<Fit, FitError> {
+    how.check()?;
+    check(problem)?;
+    let merit = Merit::new(problem, how.loss);
+    let all: Vec<usize> = (0..problem.parameters().len()).collect();
+    let starts = starts(problem.parameters(), how.starts, how.seed);
+    let descents = (starts.iter())
+        .map(|start| Descent::new(merit.clone(), start.clone(), all.clone(), how.limits()))
+        .collect();
+    let driven = drive(problem, descents);
+    if let (Some(first), true) = (driven.reached.first(), how.starts == 1) {
+        started(first)?;
+    }
+    let best = (driven.reached.iter()).min_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let best = best.ok_or(FitError::NothingFree)?;
+    started(best)?;
+    let mut fit = at_optimum(&merit, best)?;
+    fit.evaluations += driven.evaluations;
+    fit.starts = (starts.into_iter().zip(&driven.reached))
+        .map(|(start, reached)| told(start, reached))
+        .collect();
+    Ok(fit)
+}
+
+/// The fit at a point where nothing is left to be done, without descending.
+fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
+    let problem = merit.problem;
+    let Some(at) = &best.at else {
+        return Err(FitError::NothingFree);
+    };
+    let here = (best.point.as_slice(), at);
+    let (jacobian, slopes) =
+        jacobian(merit, here, &best.steps).map_err(|source| FitError::BesideOptimum {
+            point: best.point.clone(),
+            source,
+        })?;
+    changes_something(problem.parameters(), &best.point, &jacobian)?;
+    let gradient = merit.linear(at, &slopes).gradient;
+    Ok(Fit {
+        point: best.point.clone(),
+        cost: at.cost,
+        residuals: at.rows[..problem.residual_count()].to_vec(),
+        ln_sigmas: at.ln_sigmas.iter().sum(),
+        binding: binding(problem.parameters(), &best.point, &gradient),
+        evaluations: 4 * best.point.len(),
+        jacobian,
+        ending: best.ending.clone(),
+        starts: Vec::new(),
+        loss: merit.loss,
+    })
+}
+
+fn started(reached: &Reached) -> Result<(), FitError> {
+    match (&reached.at, &reached.ending) {
+        (None, Ending::ModelFails(error)) => Err(FitError::Start(error.clone())),
+        _ => Ok(()),
+    }
+}
+
+fn told(start: Vec<f64>, reached: &Reached) -> Started {
+    Started {
+        start,
+        point: reached.point.clone(),
+        cost: reached.cost(),
+        ending: reached.ending.clone(),
+        iterations: reached.iterations,
+    }
+}
+
+/// Checks parameters and their number.
+pub(crate) fn check(problem: &dyn Problem) -> Result<(), FitError> {
+    let parameters = problem.parameters();
+    if parameters.is_empty() {
+        return Err(FitError::NothingFree);
+    }
+    for (k, parameter) in parameters.iter().enumerate() {
+        parameter.check()?;
+        if parameters[..k].iter().any(|p| p.name == parameter.name) {
+            let name = parameter.name.clone();
+            return Err(FitError::Twice { name });
+        }
+    }
+    let priors = parameters.iter().filter(|p| p.prior != Prior::Flat).count();
+    let (data, parameters) = (problem.residual_count(), parameters.len());
+    if data == 0 || data + priors < parameters {
+        return Err(FitError::TooFew {
+            data,
+            priors,
+            parameters,
+        });
+    }
+    Ok(())
+}
+
+/// Change of all residuals together, in σ, that a change by a parameter's whole
+/// scale must exceed to count as one.
+const NO_CHANGE: f64 = 1e-6;
+
+fn changes_something(
+    parameters: &[Parameter],
+    point: &[f64],
+    jacobian: &Jacobian,
+) -> Result<(), FitError> {
+    for (k, parameter) in parameters.iter().enumerate() {
+        let data = &jacobian.columns[k][..jacobian.data_rows];
+        if norm(data) * parameter.scale < NO_CHANGE {
+            let (name, value) = (parameter.name.clone(), point[k]);
+            return Err(FitError::ChangesNothing { name, value });
+        }
+    }
+    Ok(())
+}
+
+fn binding(parameters: &[Parameter], point: &[f64], gradient: &[f64]) -> Vec<Binding> {
+    let held = |k: usize| {
+        let (parameter, push) = (&parameters[k], -gradient[k]);
+        let outward = (point[k] <= parameter.lower && push < 0.0)
+            || (point[k] >= parameter.upper && push > 0.0);
+        outward.then_some(Binding {
+            parameter: k,
+            bound: point[k],
+            push: push.abs(),
+        })
+    };
+    (0..point.len()).filter_map(held).collect()
+}

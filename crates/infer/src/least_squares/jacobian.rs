@@ -1,0 +1,86 @@
+//! Derivatives at the optimum, checked.
+
+use super::merit::{Merit, Valued};
+use super::slopes::{Slopes, Stencil, slopes};
+use crate::linear::norm;
+use crate::{ModelError, Problem};
+
+/// Derivatives of the residuals at a point, by central differences with two
+/// step sizes and Richardson's extrapolation from both.
+///
+/// Rows are the data's residuals and then those of the priors; robust losses do
+/// not enter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jacobian {
+    /// One column a parameter: ∂r/∂θ, in 1/(unit of θ).
+    pub columns: Vec<Vec<f64>>,
+    /// How many of the rows, from the first, are data.
+    pub data_rows: usize,
+    /// Shorter of both steps of each parameter, in its unit.
+    pub steps: Vec<f64>,
+    /// Difference between both step sizes' columns as a share of the column's
+    /// length. A smooth model makes it small; the extrapolated column is
+    /// usually some ten times better.
+    pub disagreement: Vec<f64>,
+}
+
+impl Jacobian {
+    /// Largest disagreement of any parameter.
+    #[must_use]
+    pub fn worst_disagreement(&self) -> f64 {
+        self.disagreement.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Derivatives by steps and by doubled steps, in one call of the model.
+pub(crate) fn jacobian(
+    merit: &Merit<'_>,
+    (point, at): (&[f64], &Valued),
+    steps: &[f64],
+) -> Result<(Jacobian, Slopes), ModelError> {
+    let problem: &dyn Problem = merit.problem;
+    let stencils = |factor: f64| -> Vec<Stencil> {
+        let all = problem.parameters().iter().enumerate();
+        all.map(|(k, p)| Stencil::new(k, p, point[k], factor * steps[k]))
+            .collect()
+    };
+    let [near, far] = [stencils(1.0), stencils(2.0)];
+    let points: Vec<Vec<f64>> = (near.iter().chain(&far))
+        .flat_map(|stencil| stencil.points(point))
+        .collect();
+    let found = problem.residuals(&points);
+    if found.len() != points.len() {
+        return Err(ModelError(
+            "the model returned fewer results than points".into(),
+        ));
+    }
+    let (first, second) = found.split_at(2 * near.len());
+    let close = slopes(merit, (point, at), &near, first)?;
+    let wide = slopes(merit, (point, at), &far, second)?;
+    let pairs = || close.columns.iter().zip(&wide.columns);
+    let jacobian = Jacobian {
+        columns: pairs().map(|(near, far)| extrapolated(near, far)).collect(),
+        data_rows: problem.residual_count(),
+        steps: steps.to_vec(),
+        disagreement: pairs().map(|(near, far)| disagreement(near, far)).collect(),
+    };
+    let slopes = Slopes {
+        columns: jacobian.columns.clone(),
+        ln_sigma: extrapolated(&close.ln_sigma, &wide.ln_sigma),
+    };
+    Ok((jacobian, slopes))
+}
+
+/// (4 D(h) − D(2h))/3: the error of order h² cancels.
+fn extrapolated(near: &[f64], far: &[f64]) -> Vec<f64> {
+    let pairs = near.iter().zip(far);
+    pairs.map(|(near, far)| near + (near - far) / 3.0).collect()
+}
+
+fn disagreement(near: &[f64], far: &[f64]) -> f64 {
+    let difference: Vec<f64> = near.iter().zip(far).map(|(a, b)| a - b).collect();
+    match norm(near) {
+        0.0 => 0.0,
+        length => norm(&difference) / length,
+    }
+}

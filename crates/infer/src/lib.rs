@@ -1,0 +1,43 @@
+//! From measurements to parameters: fits, uncertainty, identifiability, design.
+//!
+//! The numerics know nothing of chains: they see a [`Problem`], whose residuals
+//! are computed for many points at once. [`CurveProblem`] is the one of this
+//! program: times of flight of an experiment.
+
+mod chance;
+mod compare;
+mod covariance;
+mod curve;
+mod data;
+mod design;
+mod free;
+mod goodness;
+mod identify;
+mod least_squares;
+mod linear;
+mod parameter;
+mod problem;
+mod profile;
+mod sampler;
+
+pub use compare::{
+    CompareError, Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate,
+};
+pub use covariance::Covariance;
+pub use curve::{
+    CurveError, CurveProblem, FittedCurve, Joint, Model, Part, Predicted, Speeds, Supply,
+    Surrogate, SurrogateError,
+};
+pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection};
+pub use design::{Candidate, Design, DesignError, Expected, design};
+pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
+pub use goodness::{Goodness, Runs, runs};
+pub use identify::{Confusion, Identifiability, UNDETERMINED};
+pub use least_squares::{Binding, Ending, Fit, FitError, Fitting, Jacobian, Loss, Started, fit};
+pub use parameter::{Parameter, ParameterError, Prior};
+pub use problem::{ModelError, Problem, Residuals};
+pub use profile::{End, Interval, Profile, ProfileError, Profiling, RISE_OF_95_PERCENT, profile};
+pub use sampler::{
+    Autocorrelation, Chain, Diagnosis, Posterior, Requirements, Sampling, SamplingError, Shortfall,
+    Unconverged, autocorrelation_time, split_r_hat,
+};

@@ -1,0 +1,121 @@
+//! Tables of measured curves: what is read and what is refused, with its place.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use hertzchain_infer::{Data, Defaults, Observable, Selection};
+
+const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
+
+fn parse(text: &str) -> Result<Data, String> {
+    let data = Data::parse("a.csv", text, &Selection::default());
+    data.map_err(|error| error.to_string())
+}
+
+fn refused(rows: &str) -> String {
+    parse(&format!("{HEAD}{rows}")).unwrap_err()
+}
+
+#[test]
+fn rows_come_in_order_of_speed_with_the_line_they_stood_in() {
+    let data = parse(&format!(
+        "# made\n{HEAD}1.0,0.001,6e-4,1e-7\n0.5,0.001,7e-4,1e-7\n"
+    ))
+    .unwrap();
+    let lines: Vec<u64> = data.rows.iter().map(|row| row.line).collect();
+    assert_eq!((lines, data.speeds_m_s()), (vec![4, 3], vec![0.5, 1.0]));
+    let incident = data.rows[0].value(Observable::Incident).unwrap();
+    assert_eq!((incident.value, incident.sigma), (7e-4, 1e-7));
+    assert_eq!(data.rows[0].speed_m_s.sigma, 0.001);
+}
+
+#[test]
+fn decimal_commas_and_empty_cells_are_read() {
+    let head = HEAD.replace(',', ";");
+    let data = parse(&format!("{head}0,5;0;7e-4;1e-7\n0,7;0;;\n")).unwrap();
+    assert_eq!(data.rows.len(), 1);
+    assert_eq!(data.rows[0].speed_m_s.value, 0.5);
+}
+
+#[test]
+fn mistakes_name_their_row_and_column() {
+    for (rows, words) in [
+        (
+            "0.5,0,7e-4,1e-7\n0.5,0,7e-4,1e-7\n",
+            "line 3, speed_m_s: the speed 0.5 m/s stands in line 2 too",
+        ),
+        ("-0.5,0,7e-4,1e-7\n", "line 2, speed_m_s: -0.5 is no speed"),
+        ("500,0,7e-4,1e-7\n", "looks like mm/s"),
+        (
+            "0.5,0,7e-4,0\n",
+            "line 2, tof_incident_s_error: 0 is no uncertainty",
+        ),
+        ("0.5,0,7e-4,-1e-7\n", "-0.0000001 is no uncertainty"),
+        ("0.5,0,7e-4,\n", "no uncertainty of this incident ToF"),
+        (
+            "0.5,0,700,1\n",
+            "line 2, tof_incident_s: 700 s is no incident ToF; it looks like microseconds",
+        ),
+        ("0.5,0,0.7,1e-3\n", "it looks like milliseconds"),
+        (
+            "0.5,0,7e-4,0.5\n",
+            "the uncertainty 0.5 s is larger than the value",
+        ),
+        ("0.5,0,NaN,1e-7\n", "NaN is no incident ToF"),
+        ("0.5,0,quick,1e-7\n", "`quick` is no number"),
+        (",0,7e-4,1e-7\n", "no speed"),
+        ("0.5,0.6,7e-4,1e-7\n", "is not below the speed"),
+        ("0.5,0\n", "a.csv"),
+        ("0.5,0,,\n", "no row has a time of flight"),
+    ] {
+        let error = refused(rows);
+        assert!(error.contains(words), "{rows}: {error}");
+    }
+}
+
+#[test]
+fn a_missing_column_is_named_with_what_stands_in_its_place() {
+    let error = parse("speed,tof_incident_us,tof_incident_us_error\n0.5,700,1\n").unwrap_err();
+    assert!(error.contains("no column `speed_m_s`"), "{error}");
+    let error = parse("speed_m_s,tof_us\n0.5,700\n").unwrap_err();
+    assert!(error.contains("`tof_us` is not read"), "{error}");
+    let error = parse("speed_m_s,tof_incident_s\n0.5,7e-4\n").unwrap_err();
+    assert!(
+        error.contains("tof_incident_s_error") && error.contains("--tof-error"),
+        "{error}"
+    );
+    let selection = Selection {
+        defaults: Defaults {
+            time_s: Some(1e-7),
+            ..Defaults::default()
+        },
+        ..Selection::default()
+    };
+    let text = "speed_m_s,tof_incident_s\n0.5,7e-4\n";
+    let data = Data::parse("a.csv", text, &selection);
+    assert_eq!(data.unwrap().rows[0].values[0].unwrap().sigma, 1e-7);
+}
+
+#[test]
+fn one_of_several_cases_must_be_chosen() {
+    let text = "case,speed_m_s,tof_incident_s,tof_incident_s_error\ndry,0.5,7e-4,1e-7\npump,0.5,6.9e-4,1e-7\n";
+    let of = |case: Option<&str>| {
+        let case = case.map(str::to_owned);
+        let selection = Selection {
+            case,
+            ..Selection::default()
+        };
+        Data::parse("a.csv", text, &selection)
+    };
+    let error = of(None).unwrap_err().to_string();
+    assert!(
+        error.contains("--case") && error.contains("dry, pump"),
+        "{error}"
+    );
+    assert!(
+        of(Some("gear"))
+            .unwrap_err()
+            .to_string()
+            .contains("no case `gear`")
+    );
+    let pump = of(Some("pump")).unwrap();
+    assert_eq!((pump.case.as_str(), pump.rows.len()), ("pump", 1));
+}

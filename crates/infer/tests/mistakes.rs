@@ -1,0 +1,202 @@
+//! Every mistake has a message that names what to change.
+
+mod toys;
+
+use hertzchain_infer::{
+    Fit, FitError, Fitting, ModelError, Parameter, ParameterError, Prior, Problem, Residuals, fit,
+};
+use toys::{Curve, spaced, straight};
+
+type Line = Curve<fn(&[f64], f64) -> f64>;
+
+fn line(parameters: Vec<Parameter>, points: usize) -> Line {
+    let x = spaced(0.0, 1.0, points.max(2))[..points].to_vec();
+    Curve::drawn(parameters, &x, 0.1, &[1.0, 2.0], 5, straight)
+}
+
+fn two() -> Vec<Parameter> {
+    vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)]
+}
+
+fn refused(problem: &dyn Problem) -> FitError {
+    fit(problem, &Fitting::default())
+        .map(|found: Fit| found.point)
+        .unwrap_err()
+}
+
+#[test]
+fn fewer_points_than_parameters_are_refused() {
+    let error = refused(&line(two(), 1));
+    assert_eq!(
+        error,
+        FitError::TooFew {
+            data: 1,
+            priors: 0,
+            parameters: 2
+        }
+    );
+    assert!(error.to_string().contains("measure more, or free fewer"));
+    // As many are enough; a prior counts.
+    assert!(fit(&line(two(), 2), &Fitting::default()).is_ok());
+    let mut known = two();
+    known[1].prior = Prior::Normal { mean: 1.0, sd: 0.5 };
+    assert!(fit(&line(known, 1), &Fitting::default()).is_err_and(|e| {
+        // One point at x = 0 says nothing of the slope.
+        matches!(e, FitError::ChangesNothing { name, .. } if name == "b")
+    }));
+}
+
+#[test]
+fn parameters_that_change_nothing_are_named() {
+    let mut free = two();
+    free.push(Parameter::new("nu", "", 0.3));
+    let error = refused(&line(free, 5));
+    assert!(
+        error.to_string().starts_with("nu changes no residual"),
+        "{error}"
+    );
+    assert_eq!(refused(&line(Vec::new(), 5)), FitError::NothingFree);
+    let twice = vec![Parameter::new("a", "", 1.0), Parameter::new("a", "", 1.0)];
+    assert_eq!(
+        refused(&line(twice, 5)),
+        FitError::Twice { name: "a".into() }
+    );
+}
+
+#[test]
+fn starts_bounds_scales_and_priors_must_agree() {
+    type Change = fn(&mut Parameter);
+    type Kind = fn(&ParameterError) -> bool;
+    let cases: [(Change, Kind); 7] = [
+        (
+            |p| p.lower = 2.0,
+            |e| matches!(e, ParameterError::Start { .. }),
+        ),
+        (
+            |p| p.start = f64::NAN,
+            |e| matches!(e, ParameterError::Start { .. }),
+        ),
+        (
+            |p| p.upper = f64::NAN,
+            |e| matches!(e, ParameterError::Bounds { .. }),
+        ),
+        (
+            |p| (p.lower, p.upper) = (3.0, 1.0),
+            |e| matches!(e, ParameterError::Bounds { .. }),
+        ),
+        (
+            |p| p.scale = 0.0,
+            |e| matches!(e, ParameterError::Scale { .. }),
+        ),
+        (
+            |p| {
+                p.prior = Prior::Normal {
+                    mean: 0.0,
+                    sd: -1.0,
+                }
+            },
+            |e| matches!(e, ParameterError::Prior { .. }),
+        ),
+        (
+            |p| {
+                p.prior = Prior::LogNormal {
+                    median: 100.0,
+                    ln_sd: 0.1,
+                }
+            },
+            |e| matches!(e, ParameterError::PriorExcludesStart { deviation, .. } if *deviation > 40.0),
+        ),
+    ];
+    for (i, (change, kind)) in cases.into_iter().enumerate() {
+        let mut free = two();
+        change(&mut free[0]);
+        match refused(&line(free, 5)) {
+            FitError::Parameter(error) => assert!(kind(&error), "{i}: {error}"),
+            other => panic!("{i}: {other}"),
+        }
+    }
+}
+
+#[test]
+fn residuals_that_are_no_numbers_name_their_row() {
+    let mut data = line(two(), 5);
+    data.sigma[3] = 0.0;
+    let error = refused(&data).to_string();
+    assert!(
+        error.contains("residual 4") && error.contains("uncertainty"),
+        "{error}"
+    );
+    data.sigma[3] = 0.1;
+    data.y[2] = f64::NAN;
+    assert!(refused(&data).to_string().contains("residual 3"));
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let data = line(two(), 5);
+    let wrong = [
+        Fitting {
+            starts: 0,
+            ..Fitting::default()
+        },
+        Fitting {
+            tolerance: 0.0,
+            ..Fitting::default()
+        },
+        Fitting {
+            loss: hertzchain_infer::Loss::Huber { scale: f64::NAN },
+            ..Fitting::default()
+        },
+    ];
+    for how in wrong {
+        assert!(matches!(fit(&data, &how), Err(FitError::Option { .. })));
+    }
+    let hasty = Fitting {
+        iterations: 0,
+        ..Fitting::default()
+    };
+    let found = fit(&data, &hasty).unwrap();
+    assert!(!found.ending.converged());
+    assert!(
+        found.ending.to_string().contains("iterations"),
+        "{}",
+        found.ending
+    );
+}
+
+/// A line whose model fails for some points, or returns too little.
+struct Failing<F>(Line, F);
+
+impl<F: Fn(&[f64]) -> Option<Result<Residuals, ModelError>> + Sync> Problem for Failing<F> {
+    fn parameters(&self) -> &[Parameter] {
+        self.0.parameters()
+    }
+    fn residual_count(&self) -> usize {
+        self.0.residual_count()
+    }
+    fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
+        let sound = self.0.residuals(points);
+        let all = points.iter().zip(sound);
+        all.map(|(point, found)| (self.1)(point).unwrap_or(found))
+            .collect()
+    }
+}
+
+#[test]
+fn a_model_that_fails_somewhere_is_walked_around_and_one_that_fails_at_the_start_is_told() {
+    let crushed = || Err(ModelError("the bead is crushed".into()));
+    // Fails above b = 2.2; the optimum is near 2.
+    let edge = Failing(line(two(), 9), |p: &[f64]| (p[1] > 2.2).then(crushed));
+    let found = fit(&edge, &Fitting::default()).unwrap();
+    assert!(found.ending.converged(), "{}", found.ending);
+    let nowhere = Failing(line(two(), 9), |_: &[f64]| Some(crushed()));
+    assert!(
+        refused(&nowhere)
+            .to_string()
+            .contains("the bead is crushed")
+    );
+    let short = Failing(line(two(), 9), |_: &[f64]| {
+        Some(Ok(Residuals::new(vec![1.0])))
+    });
+    assert!(refused(&short).to_string().contains("returned 1 residuals"));
+}
