@@ -4,6 +4,7 @@ use crate::Shot;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A table of shots: which file, at which speed.
@@ -95,21 +96,22 @@ impl ShotList {
             .comment(Some(b'#'))
             .trim(Trim::All)
             .flexible(true)
-            .from_reader(text.as_bytes());
+            .from_reader(text.as_bytes().chain(b"\n".as_slice()));
         let malformed = |error: csv::Error| ListError::Malformed {
             detail: error.to_string(),
         };
-        let columns = Columns::of(reader.headers().map_err(malformed)?, delimiter.is_some())?;
-        let rows = reader.records().map(|row| {
-            let row = row.map_err(malformed)?;
-            // Fields without text are a line that a spreadsheet left empty.
-            match row.iter().all(str::is_empty) {
-                true => Ok(None),
-                false => columns.entry(&row).map(Some),
+        let titles = reader.headers().map_err(malformed)?.clone();
+        let columns = Columns::of(&titles, delimiter.is_some())?;
+        let mut entries = Vec::new();
+        let mut row = StringRecord::new();
+        while reader.read_record(&mut row).map_err(malformed)? {
+            // Where a record begins is told before empty lines are passed over.
+            let line = reader.position().line() - 1;
+            // A spreadsheet leaves lines of nothing but delimiters.
+            if !row.iter().all(str::is_empty) {
+                entries.push(columns.entry(&row, line)?);
             }
-        });
-        let entries: Result<Vec<Option<Entry>>, ListError> = rows.collect();
-        let entries: Vec<Entry> = entries?.into_iter().flatten().collect();
+        }
         let mut by_name: HashMap<OsString, Vec<usize>> = HashMap::new();
         for (index, entry) in entries.iter().enumerate() {
             let name = Path::new(&entry.file).file_name().unwrap_or_default();
@@ -224,8 +226,7 @@ impl Columns {
         })
     }
 
-    fn entry(&self, row: &StringRecord) -> Result<Entry, ListError> {
-        let line = row.position().map_or(0, csv::Position::line);
+    fn entry(&self, row: &StringRecord, line: u64) -> Result<Entry, ListError> {
         let field = |column: Option<usize>| {
             let text = row.get(column?);
             text.filter(|text| !text.is_empty())

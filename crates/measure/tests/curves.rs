@@ -231,7 +231,7 @@ fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
             assert!((incident_s - 700e-6).abs() < 1e-6, "{incident_s}");
         }
         assert!(
-            found.shots[2].source.contains("shot 3 at 0.1004 s"),
+            found.shots[2].source.contains("shot 3 at 0.1005 s"),
             "{}",
             found.shots[2].source
         );
