@@ -279,4 +279,8 @@ pub struct Reproduce {
     /// two cores, and tells before it begins
     #[arg(long)]
     pub readings: bool,
+    /// Also hold what the paper says of its rig, of taps, gaps and rebounds, against virtual
+    /// rigs; a few minutes on two cores
+    #[arg(long)]
+    pub rig: bool,
 }

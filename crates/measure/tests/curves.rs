@@ -1,7 +1,7 @@
 //! Records into curves: what counts, what is left out, and in which order.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use hertzchain_measure::records::{SeriesInfo, SeriesWriter, ShotRow};
+use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
 };
@@ -36,6 +36,7 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
 fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
     let path = folder.join(format!("{case}-{speed_m_s}.h5"));
     let info = SeriesInfo {
+        channels: Channels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.0,
@@ -245,6 +246,7 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
     let folder = folder("pieces");
     let path = folder.join("long.h5");
     let info = SeriesInfo {
+        channels: Channels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.01,

@@ -29,4 +29,4 @@ pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
 pub use record::{Channel, Record, Samples};
-pub use series::{SeriesInfo, SeriesWriter, ShotRow, truth};
+pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, verify};

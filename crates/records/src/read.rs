@@ -5,7 +5,7 @@ use crate::error::RecordError;
 use crate::format::Format;
 use crate::options::{Parts, ReadOptions};
 use crate::record::Record;
-use crate::{check, csv, hdf5, numpy, tdms, wav};
+use crate::{check, csv, hdf5, numpy, series, tdms, wav};
 use std::path::Path;
 
 /// What a format's reader gives: records until nothing sensible is left.
@@ -54,6 +54,9 @@ fn two_channels(record: &Record) -> Option<String> {
         return None;
     };
     let (sensor, wall) = (&sensor.name, &wall.name);
+    if series::SEPARATE == [sensor.as_str(), wall.as_str()] {
+        return None;
+    }
     Some(format!(
         "{sensor:?} was taken for the sensor bead's channel, {wall:?} for the wall's; if it is \
          the other way round: --channel {wall:?} --channel {sensor:?}, if one sums both sensors: \

@@ -5,7 +5,7 @@ mod common;
 
 use common::{folder, kept};
 use hertzchain_records::{
-    ReadOptions, Record, RecordError, SeriesInfo, SeriesWriter, ShotRow, read,
+    Channels, ReadOptions, Record, RecordError, SeriesInfo, SeriesWriter, ShotRow, read,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -190,6 +190,7 @@ fn series() -> Vec<u8> {
 fn written() -> Vec<u8> {
     let path = folder("fuzz-series").join("series.h5");
     let info = SeriesInfo {
+        channels: Channels::Summed,
         interval_s: 1e-6,
         volts_per_count: 1e-3,
         offset_v: 0.0,

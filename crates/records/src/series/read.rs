@@ -18,19 +18,28 @@ pub(crate) fn is_ours(open: &H5File) -> bool {
 /// Opens a series of ours.
 pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, RecordError> {
     let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", damaged(&error));
-    chosen(file, &[layout::SAMPLES.to_owned()], options)?;
-    let samples = open.dataset(layout::SAMPLES).map_err(foreign)?;
-    let number = |name: &str| attribute_number(&samples, name).map_err(foreign);
+    let channels = channels(open).map_err(foreign)?;
+    let names: Vec<String> = channels
+        .iter()
+        .map(|(name, _)| (*name).to_owned())
+        .collect();
+    let samples = &channels[0].1;
+    let number = |name: &str| attribute_number(samples, name).map_err(foreign);
     let shape = samples.shape();
     let &[shots, length] = shape.as_slice() else {
         let detail = format!("samples have the axes {shape:?}, not shots and samples");
         return Err(RecordError::malformed(file, "a series", detail));
     };
+    if let Some((name, other)) = channels.iter().find(|(_, other)| other.shape() != shape) {
+        let detail = format!("`{name}` has the axes {:?}, not {shape:?}", other.shape());
+        return Err(RecordError::malformed(file, "a series", detail));
+    }
     if shots == 0 || length == 0 {
         return Err(RecordError::Empty {
             source_name: name(file),
         });
     }
+    let wanted = chosen(file, &names, options)?;
     let shelf = Shelf {
         file: file.to_owned(),
         interval_s: interval_s(file, Some(number(layout::INTERVAL)?), options)?,
@@ -43,7 +52,8 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
         numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
         speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
         programmed: column(open, layout::PROGRAMMED, shots).map_err(foreign)?,
-        samples,
+        channels,
+        wanted,
         length,
     };
     Ok(Box::new((0..shots).map(move |row| shelf.record(row))))
@@ -61,7 +71,9 @@ struct Shelf {
     numbers: Vec<i64>,
     speeds: Vec<f64>,
     programmed: Vec<f64>,
-    samples: H5Dataset,
+    channels: Vec<(&'static str, H5Dataset)>,
+    /// Which of them, in which order.
+    wanted: Vec<usize>,
     length: usize,
 }
 
@@ -70,20 +82,15 @@ impl Shelf {
         let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
         let told_shot = shot.map_or(row.to_string(), |shot| shot.to_string());
         let source = format!("{}, shot {told_shot}", name(&self.file));
-        let counts = self
-            .samples
-            .read_slice::<i16>(&[row, 0], &[1, self.length])
-            .map_err(|error| RecordError::truncated(source.clone(), damaged(&error)))?;
+        let channels: Result<Vec<Channel>, Hdf5Error> = self
+            .wanted
+            .iter()
+            .filter_map(|at| self.channels.get(*at))
+            .map(|(name, samples)| self.channel(name, samples, row))
+            .collect();
+        let channels =
+            channels.map_err(|error| RecordError::truncated(source.clone(), damaged(&error)))?;
         let speed = self.speeds.get(row).copied();
-        let samples = Samples::Counts {
-            counts,
-            volts_per_count: self.volts_per_count,
-            offset_v: self.offset_v,
-        };
-        let channel = Channel {
-            name: layout::SAMPLES.to_owned(),
-            samples,
-        };
         Ok(Record {
             shot,
             programmed_speed_m_s: self.programmed.get(row).copied(),
@@ -91,12 +98,38 @@ impl Shelf {
             speed_error_m_s: self.speed_error_m_s,
             case: self.case.clone(),
             pretrigger: Some(self.pretrigger),
-            ..Record::new(source, &self.file, self.interval_s, vec![channel])
+            ..Record::new(source, &self.file, self.interval_s, channels)
+        })
+    }
+
+    fn channel(&self, name: &str, samples: &H5Dataset, row: usize) -> Result<Channel, Hdf5Error> {
+        Ok(Channel {
+            name: name.to_owned(),
+            samples: Samples::Counts {
+                counts: samples.read_slice::<i16>(&[row, 0], &[1, self.length])?,
+                volts_per_count: self.volts_per_count,
+                offset_v: self.offset_v,
+            },
         })
     }
 }
 
-fn column<T: rust_hdf5::H5Type>(
+/// The channels of a file, with their names: one, or one a sensor.
+pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, Hdf5Error> {
+    let named = |name: &'static str| Ok((name, open.dataset(name)?));
+    let there = open.root_group().dataset_names()?;
+    let separate = layout::SEPARATE
+        .iter()
+        .all(|name| there.iter().any(|n| n == name));
+    let names = if separate {
+        layout::SEPARATE
+    } else {
+        layout::SUMMED
+    };
+    names.iter().copied().map(named).collect()
+}
+
+pub(super) fn column<T: rust_hdf5::H5Type>(
     open: &H5File,
     name: &str,
     count: usize,
@@ -111,7 +144,7 @@ fn column<T: rust_hdf5::H5Type>(
     }
 }
 
-fn attribute_text(open: &H5File, name: &str) -> Option<String> {
+pub(super) fn attribute_text(open: &H5File, name: &str) -> Option<String> {
     open.attr_string(name).ok()
 }
 
