@@ -68,6 +68,10 @@ fn number(file: &Path, spec: WavSpec) -> Result<Number, RecordError> {
 
 fn refused(file: &Path, error: hound::Error) -> RecordError {
     match error {
+        // What the library says where a header ends before its end.
+        hound::Error::IoError(cause) if cause.kind() == std::io::ErrorKind::Other => {
+            RecordError::truncated(name(file), "its header is not whole")
+        }
         hound::Error::IoError(cause) => RecordError::reading(file, cause),
         error => RecordError::malformed(file, "WAV", error),
     }

@@ -85,6 +85,10 @@ fn each_failing_is_one_clear_report() {
         assert!(told.contains(expected), "{name}: {told}");
         assert!(told.contains(name), "{name}: {told}");
     }
+    let header = folder.join("header.wav");
+    fs::write(&header, &fs::read(kept("both.wav")).unwrap()[..20]).unwrap();
+    let told = only_error(&header);
+    assert!(told.contains("its header is not whole"), "{told}");
     let missing = only_error(&folder.join("missing.csv"));
     assert!(missing.contains("cannot be read"), "{missing}");
     let renamed = folder.join("renamed.csv");
