@@ -52,6 +52,10 @@ pub enum Verb {
     Measure(measure::Measure),
     /// Fit contact parameters to times of flight, with errors one can trust
     Fit(infer::Fit),
+    /// Rank what to measure next so that parameters tighten most
+    Design(infer::Design),
+    /// Tell the oil on a row's contacts from times of flight, wet and dry
+    Gauge(infer::Gauge),
     /// Check an experiment file and print what was understood; run nothing
     Check(Check),
     /// Print what theory says of a chain's waves
