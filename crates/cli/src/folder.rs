@@ -59,6 +59,11 @@ impl Folder {
         self.write(&format!("{name}.png"), &png)
     }
 
+    /// Everything written.
+    pub fn into_written(self) -> Vec<PathBuf> {
+        self.written
+    }
+
     /// What was written, one path a line.
     pub fn list(&self) -> String {
         let lines = self

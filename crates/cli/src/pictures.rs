@@ -1,6 +1,7 @@
 //! Figures of a shot and of a sweep.
 
 mod energy;
+pub mod rig;
 
 pub use energy::energy;
 

@@ -79,7 +79,7 @@ pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use schema::schema;
 pub use spec::{
-    Actuator, Amplifier, Campaign, Laying, Liquid, LowPass, Method, Photogate, Recorder, Rig,
-    RigPart, RigPartKind, SectionSpec, Solver, Trigger,
+    Actuator, Amplifier, Campaign, Channels, Laying, Liquid, LowPass, Method, Photogate, Recorder,
+    Rig, RigPart, RigPartKind, SectionSpec, Solver, Trigger,
 };
 pub use value::Units;

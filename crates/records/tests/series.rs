@@ -5,13 +5,15 @@ mod common;
 
 use common::{folder, python};
 use hertzchain_records::{
-    ReadOptions, Record, RecordError, Samples, SeriesInfo, SeriesWriter, ShotRow, read, truth,
+    Channels, ReadOptions, Record, RecordError, Samples, SeriesInfo, SeriesWriter, ShotRow, read,
+    truth,
 };
 use std::fs;
 use std::path::Path;
 
 fn info(samples_per_shot: usize) -> SeriesInfo {
     SeriesInfo {
+        channels: Channels::Summed,
         interval_s: 1e-6,
         volts_per_count: 10.0 / 32_768.0,
         offset_v: 0.25,

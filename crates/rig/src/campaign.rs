@@ -32,13 +32,14 @@ pub struct Done {
 }
 
 /// Runs the series of a part that a folder does not have yet, and calls
-/// `watch` after every shot.
+/// `watch` after every shot. Those that it has are opened and compared with what
+/// this campaign would write.
 ///
 /// Files depend on neither the number of threads nor the order of series; a
 /// run that is broken off and begun again ends with the same bytes.
 ///
 /// # Errors
-/// A folder that can't be used, a shot that can't be computed, a recording
+/// A folder that can't be used, a file in it that is not this campaign's, a shot that can't be computed, a recording
 /// that can't be written: finished files stay as they are.
 pub fn campaign(
     plan: &Plan,
@@ -52,14 +53,14 @@ pub fn campaign(
         .filter(|(at, _)| shard.holds(*at))
         .map(|(_, series)| series)
         .collect();
-    let due: Vec<&Series> = part
-        .iter()
-        .copied()
-        .filter(|series| !folder.has(series))
-        .collect();
+    let (done, due): (Vec<&Series>, Vec<&Series>) =
+        part.iter().copied().partition(|series| folder.has(series));
     let fired = AtomicU64::new(0);
     let shots = plan.shots(due.len());
     let inputs = format!("{:016x}", fingerprint(plan));
+    for series in &done {
+        recording::verify(plan, series, &folder.file(series), &inputs)?;
+    }
     watch(Progress { fired: 0, shots });
     due.par_iter().with_max_len(1).try_for_each(|series| {
         let seen = || {
@@ -70,7 +71,7 @@ pub fn campaign(
     })?;
     let size = |series: &&Series| folder.file(series).metadata().map_or(0, |data| data.len());
     Ok(Done {
-        kept: part.len() - due.len(),
+        kept: done.len(),
         run: due.len(),
         shots,
         bytes: part.iter().map(size).sum(),

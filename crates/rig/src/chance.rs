@@ -15,6 +15,8 @@ pub struct Chance(ChaCha8Rng);
 pub enum Purpose {
     /// Laying the chain before a series.
     Laying,
+    /// Draws of series in the claims' error bars.
+    Resampling,
     /// Taps and striker of a shot, by its number from 0.
     Shot(u32),
     /// Noise of a shot's record.
@@ -25,10 +27,11 @@ pub enum Purpose {
 pub const MOST_SHOTS: usize = 1 << 30;
 
 impl Purpose {
-    /// Number of the stream within a series: 0 the laying, then two a shot.
+    /// Number of the stream within a series: two of its own, then two a shot.
     fn stream(self) -> u64 {
         match self {
             Self::Laying => 0,
+            Self::Resampling => 1,
             Self::Shot(shot) => 2 * u64::from(shot) + 2,
             Self::Noise(shot) => 2 * u64::from(shot) + 3,
         }

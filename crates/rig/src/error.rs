@@ -5,7 +5,7 @@ use crate::striker::OutOfRange;
 use hertzchain_chain::ChainError;
 use hertzchain_chain::settle::SettleError;
 use hertzchain_chain::wave::SolveError;
-use hertzchain_experiment::Mistakes;
+use hertzchain_experiment::{Mistakes, PathError};
 use hertzchain_records::RecordError;
 use std::io;
 use std::path::Path;
@@ -27,6 +27,9 @@ pub enum RigError {
     /// The experiment has mistakes at one of the speeds.
     #[error(transparent)]
     Mistakes(#[from] Box<Mistakes>),
+    /// A number that an experiment does not take.
+    #[error(transparent)]
+    Number(#[from] PathError),
     /// A part of the campaign that does not exist.
     #[error(transparent)]
     Shard(#[from] ShardError),
@@ -43,6 +46,9 @@ pub enum RigError {
     /// A recording that can't be written.
     #[error("{0}; `campaign` with the same folder goes on from there")]
     Record(#[from] RecordError),
+    /// A file with the name of a recording that is another's, or damaged.
+    #[error("{0}; move it away, and `campaign` makes it again")]
+    NotOurs(RecordError),
     /// A folder that can't be used.
     #[error("cannot write into {path}: {error}")]
     Folder {

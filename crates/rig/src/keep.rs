@@ -6,12 +6,20 @@
 
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
+use hertzchain_study::reproduce::commit;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Another version may make other bits.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// Name of the file that tells which campaign it is.
 const TOLD_IN: &str = "campaign.toml";
+
+/// What a folder with another file of that name holds.
+const ANOTHER: &str =
+    "another campaign, or this one by another build of the program, as its campaign.toml tells";
 
 /// A folder for the recordings of one campaign.
 #[derive(Clone, Debug)]
@@ -19,7 +27,8 @@ pub struct Folder {
     path: PathBuf,
 }
 
-/// A fingerprint of all that recordings follow from: 64 bits of FNV-1a.
+/// A fingerprint of all that recordings follow from, the program's version and
+/// commit included: 64 bits of FNV-1a.
 #[must_use]
 pub fn fingerprint(plan: &Plan) -> u64 {
     let experiment = &plan.experiment;
@@ -27,8 +36,9 @@ pub fn fingerprint(plan: &Plan) -> u64 {
     // does not matter.
     let numbers = experiment.numbers();
     let inputs = format!(
-        "{} {} {numbers:?} {:?} {}",
-        env!("CARGO_PKG_VERSION"),
+        "{} {:?} {} {numbers:?} {:?} {}",
+        VERSION,
+        commit(),
         plan.seed,
         experiment.reading(),
         experiment.text()
@@ -53,7 +63,7 @@ impl Folder {
         let told_in = path.join(TOLD_IN);
         match fs::read_to_string(&told_in) {
             Ok(found) if found == told => return Ok(folder),
-            Ok(_) => return Err(folder.holds("another campaign, as its campaign.toml tells")),
+            Ok(_) => return Err(folder.holds(ANOTHER)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(refused(error)),
         }
@@ -94,9 +104,11 @@ impl Folder {
 /// What tells a campaign: the experiment with a fingerprint above it.
 fn told(plan: &Plan) -> String {
     format!(
-        "# A campaign with seed {}, inputs {:016x}. The recordings beside this file are its own.\n{}",
+        "# A campaign with seed {}, inputs {:016x}, by hertzchain {VERSION}{}. The recordings beside this file \
+         are its own.\n{}",
         plan.seed,
         fingerprint(plan),
+        commit().map_or(String::new(), |commit| format!(" ({commit})")),
         plan.experiment.text()
     )
 }

@@ -4,7 +4,7 @@ use crate::amplifier::Amplifier;
 use crate::chance::Chance;
 use crate::converter::Converter;
 use crate::tape::Tape;
-use hertzchain_experiment::{Amplifier as AmplifierNumbers, Recorder, Trigger};
+use hertzchain_experiment::{Amplifier as AmplifierNumbers, Channels, Recorder, Trigger};
 
 /// Forces are taped this many times as densely as they are sampled, so that
 /// straight lines between them are as good as the pulse.
@@ -28,7 +28,7 @@ pub struct Window {
 /// What the recorder has stored of a shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Readings of the converter.
+    /// Readings of the converter, channel after channel.
     pub samples: Vec<i16>,
     /// Time in s from the first sample to the striker's touch.
     pub touch_s: f64,
@@ -72,32 +72,45 @@ impl Window {
         recorder: &Recorder,
         noise: &mut Chance,
     ) -> Record {
-        let mut volts = self.amplified(tape, amplifier);
-        if amplifier.noise_v > 0.0 {
+        let forces_n = tape.into_forces_n();
+        let volts = |shares: &[f64; 2]| {
+            let mut volts = self.amplified(&forces_n, *shares, amplifier);
+            if amplifier.noise_v > 0.0 {
+                let noisy = volts.iter_mut();
+                noisy.for_each(|v| *v += amplifier.noise_v * noise.normal());
+            }
             volts
-                .iter_mut()
-                .for_each(|v| *v += amplifier.noise_v * noise.normal());
-        }
-        let first = match recorder.trigger {
-            Trigger::Photogate => 0,
-            Trigger::Level(level_v) => self.passed(&volts, level_v - recorder.offset_v),
+        };
+        let channels: Vec<Vec<f64>> = shares(recorder.channels).iter().map(volts).collect();
+        let first = match (recorder.trigger, channels.first()) {
+            (Trigger::Level(level_v), Some(volts)) => {
+                self.passed(volts, level_v - recorder.offset_v)
+            }
+            _ => 0,
         };
         let converter = Converter::new(recorder);
-        let stored = volts.iter().skip(first).take(self.samples);
+        let stored = channels
+            .iter()
+            .flat_map(|volts| volts.iter().skip(first).take(self.samples));
         Record {
             samples: stored.map(|v| converter.reading(*v)).collect(),
             touch_s: -(self.start_s + first as f64 * self.interval_s),
         }
     }
 
-    /// The amplifier's voltage at every sample.
-    fn amplified(&self, tape: Tape, amplifier: &AmplifierNumbers) -> Vec<f64> {
+    /// The amplifier's voltage at every sample of a channel that has these shares
+    /// of the sensor bead and of the wall.
+    fn amplified(
+        &self,
+        forces_n: &[[f64; 2]],
+        [sensor, wall]: [f64; 2],
+        amplifier: &AmplifierNumbers,
+    ) -> Vec<f64> {
         let mut amplifier = Amplifier::new(amplifier, self.interval_s / DENSER as f64);
-        let forces_n = tape.into_forces_n();
         let mut volts = Vec::with_capacity(forces_n.len() / DENSER);
         for denser in forces_n.chunks_exact(DENSER) {
             for (at, [sensor_n, wall_n]) in denser.iter().enumerate() {
-                let now = amplifier.next(*sensor_n, *wall_n);
+                let now = amplifier.next(sensor * sensor_n, wall * wall_n);
                 if at == 0 {
                     volts.push(now);
                 }
@@ -117,5 +130,13 @@ impl Window {
             below = *v < level_v;
         }
         0
+    }
+}
+
+/// Shares of the sensor bead and of the wall in each channel.
+fn shares(channels: Channels) -> &'static [[f64; 2]] {
+    match channels {
+        Channels::Summed => &[[1.0, 1.0]],
+        Channels::Separate => &[[1.0, 0.0], [0.0, 1.0]],
     }
 }

@@ -4,8 +4,8 @@ use crate::converter::Converter;
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
 use crate::series::{Fired, run};
-use hertzchain_experiment::Recorder;
-use hertzchain_records::{SeriesInfo, SeriesWriter, ShotRow};
+use hertzchain_experiment as experiment;
+use hertzchain_records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use std::path::Path;
 
 /// True values of a shot, by name; the endings are the units.
@@ -38,11 +38,30 @@ pub(crate) fn write(
     Ok(())
 }
 
+/// Whether a finished file is the recording of a series.
+///
+/// # Errors
+/// What it is or has instead.
+pub(crate) fn verify(
+    plan: &Plan,
+    series: &Series,
+    path: &Path,
+    inputs: &str,
+) -> Result<(), RigError> {
+    let shots = plan.experiment.campaign().shots;
+    let info = info(plan, series, inputs);
+    hertzchain_records::verify(path, &info, shots, series.programmed_m_s).map_err(RigError::NotOurs)
+}
+
 fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
     let campaign = plan.experiment.campaign();
-    let recorder: &Recorder = &campaign.recorder;
+    let recorder = &campaign.recorder;
     let text = |name: &str, value: f64| (name.to_owned(), value.to_string());
     SeriesInfo {
+        channels: match recorder.channels {
+            experiment::Channels::Summed => Channels::Summed,
+            experiment::Channels::Separate => Channels::Separate,
+        },
         interval_s: recorder.sampling_hz.recip(),
         volts_per_count: Converter::new(recorder).volts_per_count(),
         offset_v: 0.0,

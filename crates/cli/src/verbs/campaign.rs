@@ -83,7 +83,8 @@ impl Shown {
 /// What was done, and how fast.
 fn summary(plan: &Plan, done: &Done, elapsed: Duration, arguments: &Arguments) -> String {
     let campaign = plan.experiment.campaign();
-    let samples = done.shots as f64 * campaign.recorder.samples() as f64;
+    let recorder = &campaign.recorder;
+    let samples = done.shots as f64 * (recorder.samples() * recorder.channels.count()) as f64;
     let took_s = elapsed.as_secs_f64();
     let kept = match done.kept {
         0 => String::new(),

@@ -1,11 +1,10 @@
 //! Keys of `[campaign]`: what a rig does of itself, shot after shot, and the
 //! numbers of its parts.
 
-use super::tables::{LIQUID, SECTION, number_of, positive, text};
+use super::tables::{LIQUID, SECTION, not_negative, number_of, part, positive, text};
 use super::{Fields, Key, Kind, Limits, Need, ranges};
-use crate::spec::{ORDERS, TRIGGERS};
+use crate::spec::{CHANNELS, ORDERS, TRIGGERS};
 
-const NOT_NEGATIVE: Limits = Limits::NOT_NEGATIVE;
 const SPREAD: Limits = Limits::new(0.0, 0.1, true, "from 0 to 0.1");
 
 const fn quantity(
@@ -17,8 +16,8 @@ const fn quantity(
     Key::new(name, Kind::Quantity(unit, limits), about)
 }
 
-const fn part(name: &'static str, fields: &'static Fields, about: &'static str) -> Key {
-    Key::new(name, Kind::Table(fields), about)
+const fn choice(name: &'static str, options: &'static [&'static str], about: &'static str) -> Key {
+    Key::new(name, Kind::Choice(options), about)
 }
 
 static CASE: Fields = Fields {
@@ -30,9 +29,9 @@ static CASE: Fields = Fields {
             Kind::Tables(&SECTION),
             "sections of contacts in place of the file's own",
         ),
-        Key::new(
+        part(
             "liquid",
-            Kind::Table(&LIQUID),
+            &LIQUID,
             "liquid in place of the file's own, for reports",
         ),
     ],
@@ -41,10 +40,9 @@ static CASE: Fields = Fields {
 static LAYING: Fields = Fields {
     title: "[campaign.laying]",
     keys: &[
-        quantity(
+        not_negative(
             "gap_scatter",
             "m",
-            NOT_NEGATIVE,
             "mean of the random gaps of a chain as it is laid; default 5 um",
         ),
         quantity(
@@ -64,18 +62,16 @@ static ACTUATOR: Fields = Fields {
             "m/s",
             "step of the speeds that can be programmed; default 0.15 mm/s",
         ),
-        quantity(
+        not_negative(
             "spread",
             "m/s",
-            NOT_NEGATIVE,
             "standard deviation of the speed from shot to shot; default 3 mm/s",
         ),
         positive("least_speed", "m/s", "slowest shot; default 0.05 m/s"),
         positive("most_speed", "m/s", "fastest shot; default 2.5 m/s"),
-        quantity(
+        not_negative(
             "placing",
             "m",
-            NOT_NEGATIVE,
             "standard deviation of the place to which the striker is brought back; default 20 um",
         ),
     ],
@@ -84,10 +80,9 @@ static ACTUATOR: Fields = Fields {
 static PHOTOGATE: Fields = Fields {
     title: "[campaign.photogate]",
     keys: &[
-        quantity(
+        not_negative(
             "error",
             "m/s",
-            NOT_NEGATIVE,
             "standard deviation of a measured speed; default 0.5 mm/s",
         ),
         positive(
@@ -117,9 +112,9 @@ static AMPLIFIER: Fields = Fields {
             "Hz",
             "frequency above which the response falls; default 180 kHz",
         ),
-        Key::new(
+        choice(
             "order",
-            Kind::Choice(ORDERS),
+            ORDERS,
             "order of the low-pass, the second a Butterworth; default second",
         ),
         positive(
@@ -127,10 +122,9 @@ static AMPLIFIER: Fields = Fields {
             "Hz",
             "frequency below which the response falls; default 0.5 Hz",
         ),
-        quantity(
+        not_negative(
             "noise",
             "V",
-            NOT_NEGATIVE,
             "standard deviation of each sample's noise; default 1.5 mV",
         ),
     ],
@@ -153,15 +147,14 @@ static RECORDER: Fields = Fields {
             "voltage of no signal; default 0",
         ),
         positive("record", "s", "length of a record; default 0.1 s"),
-        quantity(
+        not_negative(
             "before",
             "s",
-            NOT_NEGATIVE,
             "part of a record before the trigger; default 2 ms",
         ),
-        Key::new(
+        choice(
             "trigger",
-            Kind::Choice(TRIGGERS),
+            TRIGGERS,
             "what starts a record; default photogate",
         ),
         quantity(
@@ -169,6 +162,11 @@ static RECORDER: Fields = Fields {
             "V",
             Limits::ANY,
             "voltage that triggers, with trigger = \"level\"; default 20 mV",
+        ),
+        choice(
+            "channels",
+            CHANNELS,
+            "both sensors summed in one channel or each in a separate one; default summed",
         ),
     ],
 };

@@ -1,8 +1,8 @@
 //! Keys of `[rig]`: what stands around the chain, in words, for drawings and
 //! reports. Nothing is computed from them.
 
-use super::tables::{number_of, positive, text};
-use super::{Fields, Key, Kind};
+use super::tables::{number_of, part, positive, text};
+use super::{Fields, Key};
 
 /// Keys that every part of the apparatus may have.
 const NAME: Key = text("name", "what drawings and reports call it");
@@ -73,7 +73,3 @@ pub(crate) static RIG: Fields = Fields {
         part("bar", &BAR, "a separate mass against noise"),
     ],
 };
-
-const fn part(name: &'static str, fields: &'static Fields, about: &'static str) -> Key {
-    Key::new(name, Kind::Table(fields), about)
-}

@@ -49,6 +49,11 @@ pub(super) const fn text(name: &'static str, about: &'static str) -> Key {
     Key::new(name, Kind::Text, about)
 }
 
+/// A table within a table.
+pub(super) const fn part(name: &'static str, fields: &'static Fields, about: &'static str) -> Key {
+    Key::new(name, Kind::Table(fields), about)
+}
+
 pub(super) const MATERIAL_NAME: Key = text("material", "name of a material");
 
 const POISSON: Limits = Limits::new(-1.0, 1.0, false, "between -1 and 1");
@@ -273,11 +278,7 @@ pub(crate) static ROOT: Fields = Fields {
             Kind::Named(&MATERIAL),
             "what bodies are made of",
         ),
-        Key::new(
-            "striker",
-            Kind::Table(&STRIKER),
-            "the ball that hits the chain",
-        ),
+        part("striker", &STRIKER, "the ball that hits the chain"),
         Key::new(
             "driven",
             Kind::Variants(&DRIVEN),
@@ -296,43 +297,27 @@ pub(crate) static ROOT: Fields = Fields {
             "what bead N leans on; default half-bead",
         ),
         Key::new("near_end", Kind::Variants(&NEAR_END), "what pushes bead 1"),
-        Key::new("track", Kind::Table(&TRACK), "incline and gravity"),
-        Key::new(
-            "suspension",
-            Kind::Table(&SUSPENSION),
-            "threads of a cradle",
-        ),
+        part("track", &TRACK, "incline and gravity"),
+        part("suspension", &SUSPENSION, "threads of a cradle"),
         Key::new("gaps", Kind::Tables(&GAP), "gaps before the shot"),
         Key::new(
             "initial",
             Kind::Tables(&INITIAL),
             "deviations of beads from rest",
         ),
-        Key::new(
-            "sensors",
-            Kind::Table(&SENSORS),
-            "where the chain is watched",
-        ),
-        Key::new("solver", Kind::Table(&SOLVER), "how the motion is computed"),
-        Key::new(
-            "liquid",
-            Kind::Table(&LIQUID),
-            "the liquid of wet contacts, for reports",
-        ),
-        Key::new(
+        part("sensors", &SENSORS, "where the chain is watched"),
+        part("solver", &SOLVER, "how the motion is computed"),
+        part("liquid", &LIQUID, "the liquid of wet contacts, for reports"),
+        part(
             "rig",
-            Kind::Table(&RIG),
+            &RIG,
             "what stands around the chain, for drawings and reports; computes nothing",
         ),
-        Key::new(
+        part(
             "campaign",
-            Kind::Table(&CAMPAIGN),
+            &CAMPAIGN,
             "what a rig does of itself, shot after shot, and the numbers of its parts",
         ),
-        Key::new(
-            "reading",
-            Kind::Table(&READING),
-            "choices that the paper leaves open",
-        ),
+        part("reading", &READING, "choices that the paper leaves open"),
     ],
 };

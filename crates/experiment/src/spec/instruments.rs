@@ -85,14 +85,39 @@ pub struct Recorder {
     pub before_s: f64,
     /// What starts a record.
     pub trigger: Trigger,
+    /// In which channels both sensors are.
+    pub channels: Channels,
 }
+
+/// In which channels of a recorder both sensors are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// Added up in one, as in the paper.
+    Summed,
+    /// One each.
+    Separate,
+}
+
+impl Channels {
+    /// How many there are.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Summed => 1,
+            Self::Separate => 2,
+        }
+    }
+}
+
+/// Names of channels in a file.
+pub const CHANNELS: &[&str] = &["summed", "separate"];
 
 /// What starts a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trigger {
     /// The striker in the photogate.
     Photogate,
-    /// The channel, when it passes a level in V upward.
+    /// The channel, or the sensor bead's, when it passes a level in V upward.
     Level(f64),
 }
 
@@ -178,6 +203,10 @@ impl Recorder {
             trigger: match level {
                 true => Trigger::Level(quantity(table, "level", 0.02)?),
                 false => Trigger::Photogate,
+            },
+            channels: match table.and_then(|table| table.text("channels")) {
+                Some("separate") => Channels::Separate,
+                _ => Channels::Summed,
             },
         };
         match table {

@@ -5,8 +5,10 @@ pub(super) const FORMAT: (&str, &str) = ("format", "hertzchain series");
 /// Version of this layout.
 pub(super) const VERSION: (&str, i64) = ("format_version", 1);
 
-/// Readings of the converter, shots × samples.
-pub(super) const SAMPLES: &str = "samples";
+/// Readings of the converter, shots × samples: of both sensors in one channel, or
+/// of one each.
+pub(super) const SUMMED: &[&str] = &["samples"];
+pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 /// Numbers of the shots; the scale of the first axis.
 pub(super) const SHOT: &str = "shot";
 /// The second axis, which has no numbers of its own.

@@ -3,8 +3,11 @@
 mod layout;
 mod read;
 mod truth;
+mod verify;
 mod write;
 
-pub(crate) use read::open;
+pub(crate) use layout::SEPARATE;
+pub(crate) use read::{attribute_number, is_ours, open};
 pub use truth::truth;
-pub use write::{SeriesInfo, SeriesWriter, ShotRow};
+pub use verify::verify;
+pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};

@@ -3,47 +3,57 @@
 use super::layout;
 use crate::channels::{chosen, interval_s};
 use crate::error::{RecordError, name};
+use crate::hdf5::damaged;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::{Channel, Record, Samples};
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::path::{Path, PathBuf};
 
+/// Whether an open file is a series of ours.
+pub(crate) fn is_ours(open: &H5File) -> bool {
+    attribute_text(open, layout::FORMAT.0).as_deref() == Some(layout::FORMAT.1)
+}
+
 /// Opens a series of ours.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
-    let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", told(&error));
-    let open = H5File::open(file).map_err(foreign)?;
-    let kind = attribute_text(&open, layout::FORMAT.0);
-    if kind.as_deref() != Some(layout::FORMAT.1) {
-        let detail = "it is HDF5, but no series of a virtual campaign; export its samples as NPY";
-        return Err(RecordError::malformed(file, "a series", detail));
-    }
-    chosen(file, &[layout::SAMPLES.to_owned()], options)?;
-    let samples = open.dataset(layout::SAMPLES).map_err(foreign)?;
-    let number = |name: &str| attribute_number(&samples, name).map_err(foreign);
+pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", damaged(&error));
+    let channels = channels(open).map_err(foreign)?;
+    let names: Vec<String> = channels
+        .iter()
+        .map(|(name, _)| (*name).to_owned())
+        .collect();
+    let samples = &channels[0].1;
+    let number = |name: &str| attribute_number(samples, name).map_err(foreign);
     let shape = samples.shape();
     let &[shots, length] = shape.as_slice() else {
         let detail = format!("samples have the axes {shape:?}, not shots and samples");
         return Err(RecordError::malformed(file, "a series", detail));
     };
+    if let Some((name, other)) = channels.iter().find(|(_, other)| other.shape() != shape) {
+        let detail = format!("`{name}` has the axes {:?}, not {shape:?}", other.shape());
+        return Err(RecordError::malformed(file, "a series", detail));
+    }
     if shots == 0 || length == 0 {
         return Err(RecordError::Empty {
             source_name: name(file),
         });
     }
+    let wanted = chosen(file, &names, options)?;
     let shelf = Shelf {
         file: file.to_owned(),
         interval_s: interval_s(file, Some(number(layout::INTERVAL)?), options)?,
         volts_per_count: number(layout::VOLTS_PER_COUNT)?,
         offset_v: number(layout::OFFSET)?,
         pretrigger: number(layout::PRETRIGGER)? as usize,
-        case: attribute_text(&open, layout::CASE),
-        speed_error_m_s: attribute_text(&open, layout::SPEED_ERROR)
+        case: attribute_text(open, layout::CASE),
+        speed_error_m_s: attribute_text(open, layout::SPEED_ERROR)
             .and_then(|text| text.trim().parse().ok()),
-        numbers: column(&open, layout::SHOT, shots).map_err(foreign)?,
-        speeds: column(&open, layout::MEASURED, shots).map_err(foreign)?,
-        programmed: column(&open, layout::PROGRAMMED, shots).map_err(foreign)?,
-        samples,
+        numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
+        speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
+        programmed: column(open, layout::PROGRAMMED, shots).map_err(foreign)?,
+        channels,
+        wanted,
         length,
     };
     Ok(Box::new((0..shots).map(move |row| shelf.record(row))))
@@ -61,7 +71,9 @@ struct Shelf {
     numbers: Vec<i64>,
     speeds: Vec<f64>,
     programmed: Vec<f64>,
-    samples: H5Dataset,
+    channels: Vec<(&'static str, H5Dataset)>,
+    /// Which of them, in which order.
+    wanted: Vec<usize>,
     length: usize,
 }
 
@@ -70,34 +82,54 @@ impl Shelf {
         let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
         let told_shot = shot.map_or(row.to_string(), |shot| shot.to_string());
         let source = format!("{}, shot {told_shot}", name(&self.file));
-        let counts = self
-            .samples
-            .read_slice::<i16>(&[row, 0], &[1, self.length])
-            .map_err(|error| RecordError::truncated(source.clone(), told(&error)))?;
+        let channels: Result<Vec<Channel>, Hdf5Error> = self
+            .wanted
+            .iter()
+            .filter_map(|at| self.channels.get(*at))
+            .map(|(name, samples)| self.channel(name, samples, row))
+            .collect();
+        let channels =
+            channels.map_err(|error| RecordError::truncated(source.clone(), damaged(&error)))?;
         let speed = self.speeds.get(row).copied();
         Ok(Record {
-            source,
-            file: self.file.clone(),
             shot,
-            interval_s: self.interval_s,
-            channels: vec![Channel {
-                name: layout::SAMPLES.to_owned(),
-                samples: Samples::Counts {
-                    counts,
-                    volts_per_count: self.volts_per_count,
-                    offset_v: self.offset_v,
-                },
-            }],
             programmed_speed_m_s: self.programmed.get(row).copied(),
             speed_m_s: speed.filter(|speed| speed.is_finite()),
             speed_error_m_s: self.speed_error_m_s,
             case: self.case.clone(),
             pretrigger: Some(self.pretrigger),
+            ..Record::new(source, &self.file, self.interval_s, channels)
+        })
+    }
+
+    fn channel(&self, name: &str, samples: &H5Dataset, row: usize) -> Result<Channel, Hdf5Error> {
+        Ok(Channel {
+            name: name.to_owned(),
+            samples: Samples::Counts {
+                counts: samples.read_slice::<i16>(&[row, 0], &[1, self.length])?,
+                volts_per_count: self.volts_per_count,
+                offset_v: self.offset_v,
+            },
         })
     }
 }
 
-fn column<T: rust_hdf5::H5Type>(
+/// The channels of a file, with their names: one, or one a sensor.
+pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, Hdf5Error> {
+    let named = |name: &'static str| Ok((name, open.dataset(name)?));
+    let there = open.root_group().dataset_names()?;
+    let separate = layout::SEPARATE
+        .iter()
+        .all(|name| there.iter().any(|n| n == name));
+    let names = if separate {
+        layout::SEPARATE
+    } else {
+        layout::SUMMED
+    };
+    names.iter().copied().map(named).collect()
+}
+
+pub(super) fn column<T: rust_hdf5::H5Type>(
     open: &H5File,
     name: &str,
     count: usize,
@@ -112,11 +144,11 @@ fn column<T: rust_hdf5::H5Type>(
     }
 }
 
-fn attribute_text(open: &H5File, name: &str) -> Option<String> {
+pub(super) fn attribute_text(open: &H5File, name: &str) -> Option<String> {
     open.attr_string(name).ok()
 }
 
-fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
+pub(crate) fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
     let missing = || Hdf5Error::NotFound(name.to_owned());
     let attribute = of.attr(name)?;
     let floats = attribute.read_numeric_as::<f64>();
@@ -126,9 +158,4 @@ fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
         Err(_) => whole()?.first().map(|whole| *whole as f64),
     };
     value.ok_or_else(missing)
-}
-
-/// What the library says, after the likeliest reason.
-fn told(error: &Hdf5Error) -> String {
-    format!("cut short or damaged ({error})")
 }

@@ -16,9 +16,30 @@ const NO_SPACE: i32 = 28;
 /// Most samples in a chunk: chunks are read whole.
 const MOST_IN_CHUNK: usize = 1 << 19;
 
+/// In which channels both sensors of a shot are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// Added up in one.
+    Summed,
+    /// The bead's sensor in one, the wall's in another.
+    Separate,
+}
+
+impl Channels {
+    /// Names of the channels in a file.
+    pub(super) fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Summed => layout::SUMMED,
+            Self::Separate => layout::SEPARATE,
+        }
+    }
+}
+
 /// What all shots of a series share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesInfo {
+    /// In which channels its samples are.
+    pub channels: Channels,
     /// Time between samples in s.
     pub interval_s: f64,
     /// Size of the converter's step in V.
@@ -27,7 +48,7 @@ pub struct SeriesInfo {
     pub offset_v: f64,
     /// Samples before the trigger.
     pub pretrigger: usize,
-    /// Samples of every shot.
+    /// Samples of every shot in each channel.
     pub samples_per_shot: usize,
     /// Number of the series in its campaign.
     pub series: u64,
@@ -51,7 +72,7 @@ pub struct ShotRow<'a> {
     pub programmed_speed_m_s: f64,
     /// Speed that the photogate measured, in m/s.
     pub measured_speed_m_s: f64,
-    /// Readings of the converter.
+    /// Readings of the converter, channel after channel.
     pub samples: &'a [i16],
     /// What only a simulation knows; the same names, whose endings are the units,
     /// for every shot of a series.
@@ -75,7 +96,7 @@ pub struct SeriesWriter {
 /// The growing file.
 struct Open {
     file: H5File,
-    samples: H5Dataset,
+    channels: Vec<H5Dataset>,
 }
 
 /// What is small and written last, a column each.
@@ -129,8 +150,10 @@ impl SeriesWriter {
         self.fits(row)?;
         let at = self.table.shots.len();
         let open = self.open.as_ref().ok_or_else(|| self.lost())?;
-        let written = append(&open.samples, at, row.samples);
-        written.map_err(|error| unwritable(&self.path, &error))?;
+        for (channel, samples) in open.channels.iter().zip(self.cut(row.samples)) {
+            let written = append(channel, at, samples);
+            written.map_err(|error| unwritable(&self.path, &error))?;
+        }
         self.table.push(row);
         Ok(())
     }
@@ -147,8 +170,8 @@ impl SeriesWriter {
         }
         let open = self.open.take().ok_or_else(|| self.lost())?;
         let written = self.table.write(&open).and_then(|()| {
-            let Open { file, samples } = open;
-            drop(samples);
+            let Open { file, channels } = open;
+            drop(channels);
             file.close()
         });
         let failed = |error: &dyn std::error::Error| RecordError::Unwritable {
@@ -163,18 +186,22 @@ impl SeriesWriter {
         Ok(self.path.clone())
     }
 
+    /// The samples of each channel.
+    fn cut<'a>(&self, samples: &'a [i16]) -> std::slice::ChunksExact<'a, i16> {
+        samples.chunks_exact(self.samples_per_shot)
+    }
+
     fn fits(&self, row: &ShotRow<'_>) -> Result<(), RecordError> {
         let misfit = |detail: String| RecordError::Misfit {
             file: name(&self.path),
             shot: row.shot,
             detail,
         };
-        if row.samples.len() != self.samples_per_shot {
-            return Err(misfit(format!(
-                "{} samples in place of {}",
-                row.samples.len(),
-                self.samples_per_shot
-            )));
+        let channels = self.open.as_ref().map_or(1, |open| open.channels.len());
+        let all = channels * self.samples_per_shot;
+        if row.samples.len() != all {
+            let found = row.samples.len();
+            return Err(misfit(format!("{found} samples in place of {all}")));
         }
         if i64::try_from(row.shot).is_err() {
             return Err(misfit("its number is beyond all bounds".to_owned()));
@@ -223,7 +250,7 @@ impl Table {
     }
 
     fn write(&self, open: &Open) -> Result<(), Hdf5Error> {
-        let Open { file, samples } = open;
+        let Open { file, channels } = open;
         let count = self.shots.len();
         let shots = file
             .new_dataset::<i64>()
@@ -232,9 +259,12 @@ impl Table {
         shots.write_raw(&self.shots)?;
         describe(&shots, "number of the shot", "1")?;
         shots.set_scale(Some(layout::SHOT))?;
-        samples.attach_scale(0, &shots)?;
-        let axis = sample_axis(file, samples)?;
-        samples.attach_scale(1, &axis)?;
+        let length = channels.first().and_then(|c| c.shape().get(1).copied());
+        let axis = sample_axis(file, length.unwrap_or(1))?;
+        for channel in channels {
+            channel.attach_scale(0, &shots)?;
+            channel.attach_scale(1, &axis)?;
+        }
         let root = file.root_group();
         for (name, what, values) in [
             (
@@ -256,8 +286,7 @@ impl Table {
 }
 
 /// The second axis as netCDF has dimensions without values.
-fn sample_axis(file: &H5File, samples: &H5Dataset) -> Result<H5Dataset, Hdf5Error> {
-    let count = samples.shape().get(1).copied().unwrap_or(1);
+fn sample_axis(file: &H5File, count: usize) -> Result<H5Dataset, Hdf5Error> {
     let axis = file
         .new_dataset::<f32>()
         .shape([count])
@@ -325,16 +354,31 @@ fn remove(part: &Path) {
 fn start(part: &Path, info: &SeriesInfo) -> Result<Open, Hdf5Error> {
     let file = H5File::create(part)?;
     attributes(&file, info)?;
+    let names = info.channels.names().iter();
+    let channels: Result<Vec<H5Dataset>, Hdf5Error> =
+        names.map(|name| channel(&file, name, info)).collect();
+    Ok(Open {
+        channels: channels?,
+        file,
+    })
+}
+
+/// An empty channel.
+fn channel(file: &H5File, name: &str, info: &SeriesInfo) -> Result<H5Dataset, Hdf5Error> {
     let samples = file
         .new_dataset::<i16>()
         .shape([0, info.samples_per_shot])
         .chunk(&[1, info.samples_per_shot.min(MOST_IN_CHUNK)])
         .max_shape(&[None, Some(info.samples_per_shot)])
         .shuffle_deflate(DEFLATE)
-        .create(layout::SAMPLES)?;
-    describe(&samples, "voltage of the summed sensors", "V")?;
+        .create(name)?;
+    let what = match info.channels {
+        Channels::Summed => "voltage of the summed sensors".to_owned(),
+        Channels::Separate => format!("voltage of the {name}"),
+    };
+    describe(&samples, &what, "V")?;
     sampling(&samples, info)?;
-    Ok(Open { file, samples })
+    Ok(samples)
 }
 
 /// How samples were taken, with the sampling interval; what xarray and every

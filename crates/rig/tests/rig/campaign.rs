@@ -108,6 +108,57 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     );
 }
 
+/// A file of that name that is not what this campaign would make of it.
+fn refused(name: &str, plan: &Plan, spoil: impl Fn(&Scratch, &Path)) -> String {
+    let out = Scratch::new(name);
+    campaign(plan, &out.0, Shard::WHOLE, &quiet).unwrap();
+    spoil(&out, &out.0.join(format!("{}.h5", plan.series[1].name)));
+    let before = out.recordings();
+    let error = campaign(plan, &out.0, Shard::WHOLE, &quiet).unwrap_err();
+    assert!(matches!(error, RigError::NotOurs(_)), "{error}");
+    // Nothing is taken away from the user.
+    assert!(out.recordings() == before);
+    error.to_string()
+}
+
+#[test]
+fn a_finished_file_is_not_believed_by_its_name() {
+    let plan = plan(&[]);
+    let name = |at: usize| format!("{}.h5", plan.series[at].name);
+    let copy = |at: usize| {
+        let name = name(at);
+        move |out: &Scratch, path: &Path| {
+            std::fs::copy(out.0.join(&name), path).unwrap();
+        }
+    };
+    let speed = refused("copied", &plan, copy(2));
+    assert!(speed.contains("another programmed speed"), "{speed}");
+    let case = refused("copied", &plan, copy(4));
+    assert!(case.contains("its `case` is another"), "{case}");
+    assert!(case.contains("move it away"), "{case}");
+    let seed = refused("copied", &plan, |_, path| {
+        let elsewhere = Scratch::new("elsewhere");
+        let other = Plan::new(&experiment(&[]), Some(8)).unwrap();
+        campaign(&other, &elsewhere.0, Shard::WHOLE, &quiet).unwrap();
+        std::fs::copy(elsewhere.0.join(name(1)), path).unwrap();
+    });
+    assert!(seed.contains("its `inputs` is another"), "{seed}");
+}
+
+#[test]
+fn a_finished_file_that_is_cut_short_or_no_recording_is_told() {
+    let plan = plan(&[]);
+    for keep in [0, 100, 5_000, 40_000] {
+        let cut = refused("cut", &plan, |_, path| {
+            let bytes = std::fs::read(path).unwrap();
+            assert!(bytes.len() > keep);
+            std::fs::write(path, &bytes[..keep]).unwrap();
+        });
+        assert!(cut.contains("damaged"), "{keep}: {cut}");
+    }
+    refused("cut", &plan, |_, path| std::fs::write(path, TEXT).unwrap());
+}
+
 #[test]
 fn recordings_of_two_campaigns_do_not_mix() {
     let out = Scratch::new("mixed");

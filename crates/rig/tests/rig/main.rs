@@ -7,6 +7,7 @@
 
 mod amplifier;
 mod campaign;
+mod claims;
 mod instruments;
 mod record;
 mod series;

@@ -97,3 +97,48 @@ fn series_and_shots_differ_and_a_seed_repeats_them() {
     assert!(one[0].record != one[1].record);
     assert!(one[0].speed_m_s != shots(&plan, 4)[0].speed_m_s);
 }
+
+/// Keys of `[campaign.recorder]` beside those of the small campaign.
+fn recorder(keys: &str) -> Plan {
+    let keys = format!("before = \"1 ms\"\n{keys}");
+    let silent = "[campaign.amplifier]\nnoise = \"0 V\"\n\n[campaign.recorder]";
+    plan(&[
+        ("before = \"1 ms\"", &keys),
+        ("[campaign.recorder]", silent),
+    ])
+}
+
+#[test]
+fn a_level_in_the_file_starts_records_where_the_channel_passes_it() {
+    // 50 mV of 10 V over 15 bits.
+    let level = (0.05 / 10.0 * 32768.0) as i16;
+    for series in [0, 2, 5] {
+        for fired in shots(&recorder("trigger = \"level\"\nlevel = \"50 mV\""), series) {
+            let record = &fired.record;
+            // 1 ms at 500 kHz lies before the trigger.
+            assert!(record.samples[..500].iter().all(|sample| *sample <= level));
+            assert!(record.samples[500] >= level);
+            // The pulse takes a while from the touch to the sensor bead.
+            assert!(record.touch_s < 1e-3 - 20e-6, "{}", record.touch_s);
+        }
+    }
+}
+
+#[test]
+fn separate_channels_add_up_to_the_summed_one() {
+    let (summed, separate) = (recorder(""), recorder("channels = \"separate\""));
+    for (one, two) in shots(&summed, 1).iter().zip(shots(&separate, 1)) {
+        let (sensor, wall) = two.record.samples.split_at(one.record.samples.len());
+        assert_eq!(sensor.len(), wall.len());
+        let channels = sensor.iter().zip(wall);
+        for (sum, (sensor, wall)) in one.record.samples.iter().zip(channels) {
+            // Each of the three is rounded to half a count.
+            assert!((sum - sensor - wall).abs() <= 1, "{sum} {sensor} {wall}");
+        }
+        let peak = |samples: &[i16]| {
+            let all = samples.iter().enumerate();
+            all.max_by_key(|(_, sample)| **sample).unwrap().0
+        };
+        assert!(peak(sensor) < peak(wall));
+    }
+}

@@ -3,78 +3,7 @@
 use hertzchain_experiment::Experiment;
 use hertzchain_rig::{Fired, Plan, run};
 
-pub const TEXT: &str = r#"
-title = "A small campaign"
-
-[materials.steel]
-young_modulus = "213 GPa"
-poisson_ratio = 0.3
-shear_viscosity = "3.2e4 Pa s"
-
-[materials.oil]
-young_modulus = "200 GPa"
-poisson_ratio = { prefactor = 0.36, exponent = -0.165 }
-shear_viscosity = { prefactor = "66177.1 Pa s", exponent = -0.206 }
-
-[striker]
-speed = "0.5 m/s"
-
-[[beads]]
-count = 12
-radius = "6.35 mm"
-mass = "8.54 g"
-material = "steel"
-
-[[contacts]]
-laws = ["elastic_hertz", "damping_viscoelastic"]
-
-[near_end]
-push = "spring"
-force = "0.24 N"
-stiffness = "100 N/m"
-
-[track]
-incline = "0.2 deg"
-friction = 0.05
-
-[far_end]
-kind = "stop"
-mass = "4.5 kg"
-
-[sensors]
-bead = 4
-
-[campaign]
-seed = 7
-speeds = ["0.1 m/s", "0.3 m/s", "0.9 m/s"]
-shots = 3
-taps = 2
-
-[campaign.laying]
-gap_scatter = "5 um"
-radius_spread = 0
-
-[campaign.recorder]
-sampling = "500 kHz"
-record = "20 ms"
-before = "1 ms"
-
-[[campaign.cases]]
-name = "dry"
-
-[[campaign.cases]]
-name = "wet"
-
-[[campaign.cases.contacts]]
-to = 3
-laws = ["elastic_hertz", "damping_viscoelastic"]
-
-[[campaign.cases.contacts]]
-from = 4
-laws = ["elastic_hertz", "damping_viscoelastic"]
-material = "oil"
-wet = true
-"#;
+pub const TEXT: &str = include_str!("../small.toml");
 
 /// The campaign with parts of its text replaced.
 pub fn experiment(changes: &[(&str, &str)]) -> Experiment {

@@ -1,6 +1,6 @@
 //! The paper's claims: rows of a data file.
 
-use super::predicates::{self, Predicate};
+use super::predicates;
 use super::{Evidence, Finding};
 use serde::Deserialize;
 
@@ -85,21 +85,27 @@ pub enum ClaimError {
     Twice(String),
 }
 
-/// A claim and the code that decides it.
+/// Decides a claim on numbers.
+pub type Predicate<E> = fn(&Claim, &E) -> Finding;
+
+/// A claim and the code that decides it on numbers of a kind: those of single
+/// shots, if nothing else is said.
 #[derive(Clone, Debug)]
-pub struct Judge {
+pub struct Judge<E = Evidence> {
     /// The row.
     pub claim: Claim,
-    predicate: Predicate,
+    predicate: Predicate<E>,
+}
+
+impl<E> Judge<E> {
+    /// Decides the claim on numbers.
+    #[must_use]
+    pub fn decide(&self, evidence: &E) -> Finding {
+        (self.predicate)(&self.claim, evidence)
+    }
 }
 
 impl Judge {
-    /// Decides the claim on numbers.
-    #[must_use]
-    pub fn decide(&self, evidence: &Evidence) -> Finding {
-        (self.predicate)(&self.claim, evidence)
-    }
-
     /// Whether the claim is about what a shot of a case leaves behind when the
     /// pulses have passed: the striker or the gaps.
     #[must_use]
@@ -123,21 +129,24 @@ static PAPER: &str = include_str!("../../data/claims.toml");
 /// # Errors
 /// When the data file is damaged, which a test rules out.
 pub fn claims() -> Result<Vec<Judge>, ClaimError> {
-    read(PAPER)
+    read(PAPER, predicates::find)
 }
 
-/// Claims from the text of a data file.
+/// Claims from the text of a data file, with predicates found by their names.
 ///
 /// # Errors
 /// A text that is no list of claims, an unknown predicate, a name used twice.
-pub fn read(text: &str) -> Result<Vec<Judge>, ClaimError> {
+pub fn read<E>(
+    text: &str,
+    find: impl Fn(&str) -> Option<Predicate<E>>,
+) -> Result<Vec<Judge<E>>, ClaimError> {
     let file: File = toml::from_str(text)?;
-    let mut judges: Vec<Judge> = Vec::with_capacity(file.claim.len());
+    let mut judges: Vec<Judge<E>> = Vec::with_capacity(file.claim.len());
     for claim in file.claim {
         if judges.iter().any(|judge| judge.claim.id == claim.id) {
             return Err(ClaimError::Twice(claim.id));
         }
-        match predicates::find(&claim.predicate) {
+        match find(&claim.predicate) {
             Some(predicate) => judges.push(Judge { claim, predicate }),
             None => {
                 return Err(ClaimError::Predicate {

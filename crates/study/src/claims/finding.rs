@@ -200,6 +200,58 @@ impl std::fmt::Display for Tally {
     }
 }
 
+/// The number whose margin is smallest, kept with its accuracy and place.
+#[derive(Debug)]
+pub struct Worst {
+    margin: f64,
+    value: f64,
+    accuracy: f64,
+    place: String,
+}
+
+impl Worst {
+    /// None seen yet.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            margin: f64::INFINITY,
+            value: f64::NAN,
+            accuracy: f64::NAN,
+            place: String::new(),
+        }
+    }
+
+    /// Keeps this one if its margin is the smallest so far.
+    pub fn see(&mut self, margin: f64, value: f64, accuracy: f64, place: impl FnOnce() -> String) {
+        if margin < self.margin || margin.is_nan() {
+            *self = Self {
+                margin,
+                value,
+                accuracy,
+                place: place(),
+            };
+        }
+    }
+
+    /// The finding with the tally's verdict.
+    #[must_use]
+    pub fn finding(self, tally: Tally) -> Finding {
+        let detail = match self.place.is_empty() {
+            true => format!("{tally} comparisons met"),
+            false => format!("{tally} comparisons met; nearest or worst: {}", self.place),
+        };
+        Finding {
+            verdict: tally.verdict(),
+            leaning: tally.leaning(),
+            value: self.value,
+            accuracy: self.accuracy,
+            expected: None,
+            detail,
+            nearest_change: None,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,12 +4,11 @@ use super::{Claim, Finding, IN_PART, Judged, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// All that was found about every claim, as JSON. Numbers that do not exist
-/// are `null`.
+/// All that was found about every claim, as a list in JSON. Numbers that do not
+/// exist are `null`.
 #[must_use]
-pub fn claims_json(judged: &[Judged], reading: &str) -> Value {
-    let rows: Vec<Value> = judged.iter().map(row).collect();
-    json!({ "reading": reading, "claims": rows })
+pub fn claims_json(judged: &[Judged]) -> Value {
+    judged.iter().map(row).collect()
 }
 
 fn row(judged: &Judged) -> Value {
@@ -74,26 +73,28 @@ fn number(value: f64) -> Value {
     }
 }
 
-/// The same as a page for people.
+/// The same as a page for people, below a head of its own.
 #[must_use]
-pub fn claims_markdown(judged: &[Judged], reading: &str) -> String {
-    let mut page = String::from("# What the paper says, and what its model shows\n\n");
-    let _ = writeln!(page, "Read as: {reading}.\n\n{}\n", verdicts_text());
-    if judged.iter().any(|judged| judged.rounded.is_some()) {
+pub fn claims_markdown(judged: &[Judged], head: &str) -> String {
+    let mut page = format!("{head}\n\n{}\n\n", verdicts_text());
+    let drawn = judged.iter().any(|judged| judged.rounded.is_some());
+    let mut header = vec!["claim", "verdict", "computed", "needed"];
+    if drawn {
         page.push_str(ROUNDING);
+        header.push("rounding allows");
     }
     let _ = writeln!(page, "{}\n", totals(judged));
-    page.push_str(
-        "| claim | verdict | computed | needed | rounding allows |\n|---|---|---|---|---|\n",
-    );
+    let _ = writeln!(page, "| {} |", header.join(" | "));
+    let _ = writeln!(page, "|{}", "---|".repeat(header.len()));
     for judged in judged {
+        let rounding = drawn.then(|| rounded_text(judged).unwrap_or_default());
         let row = [
             judged.claim.statement.clone(),
             judged.verdict.name().to_owned(),
             computed_text(judged),
             needed(judged),
-            rounded_text(judged).unwrap_or_default(),
         ];
+        let row: Vec<String> = row.into_iter().chain(rounding).collect();
         let _ = writeln!(page, "| {} |", row.join(" | "));
     }
     page.push_str("\n## One by one\n");
@@ -237,14 +238,16 @@ fn accuracy_shown(finding: &Finding) -> Option<f64> {
     (accuracy.is_finite() && accuracy > ROUNDED * finding.value.abs()).then_some(accuracy)
 }
 
-/// A value with as many digits as its accuracy allows, at most eight.
+/// A value to the place of its accuracy's first digit, at most eight digits.
 fn value_text(value: f64, accuracy: Option<f64>) -> String {
     match accuracy {
         _ if !value.is_finite() => "none".to_owned(),
         None => digits(value),
         Some(accuracy) => {
-            let shown = (value.abs() / accuracy).log10().ceil().clamp(1.0, 7.0) as usize;
-            format!("{} ± {accuracy:.0e}", significant(value, shown))
+            let place = |number: f64| number.abs().log10().floor();
+            let shown = (place(value) - place(accuracy) + 1.0).clamp(1.0, 8.0) as usize;
+            let (value, accuracy) = (significant(value, shown), significant(accuracy, 1));
+            format!("{value} ± {accuracy}")
         }
     }
 }

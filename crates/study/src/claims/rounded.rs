@@ -1,6 +1,6 @@
 //! Verdicts under the rounding of the printed constants.
 
-use super::{Claim, Evidence, Finding, Judge, Verdict};
+use super::{Claim, Finding, Judge, Verdict};
 
 /// What became of a claim when the printed constants were drawn anew within
 /// half a unit of their last digit.
@@ -70,7 +70,7 @@ impl Judged {
 
 /// Decides all claims on the constants as printed.
 #[must_use]
-pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
+pub fn judge_all<E>(judges: &[Judge<E>], printed: &E) -> Vec<Judged> {
     judge_all_rounded(judges, printed, &[])
 }
 
@@ -78,12 +78,12 @@ pub fn judge_all(judges: &[Judge], printed: &Evidence) -> Vec<Judged> {
 /// their rounding do: a claim of which one draw lies on another side than the
 /// printed constants is not decidable.
 #[must_use]
-pub fn judge_all_rounded(judges: &[Judge], printed: &Evidence, draws: &[Evidence]) -> Vec<Judged> {
+pub fn judge_all_rounded<E>(judges: &[Judge<E>], printed: &E, draws: &[E]) -> Vec<Judged> {
     let all = judges.iter().map(|judge| decide(judge, printed, draws));
     all.collect()
 }
 
-fn decide(judge: &Judge, printed: &Evidence, draws: &[Evidence]) -> Judged {
+fn decide<E>(judge: &Judge<E>, printed: &E, draws: &[E]) -> Judged {
     let finding = judge.decide(printed);
     let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
     let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));

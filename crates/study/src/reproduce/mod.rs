@@ -22,7 +22,7 @@ pub use films::{FILM_SHOTS, Film, SIGNAL_SHOTS, SignalShot, films, signals};
 pub use gather::{Change, Effort, Gathering, gather, gather_remembering};
 pub use memory::Memory;
 pub use progress::{Progress, Silent};
-pub use provenance::Provenance;
+pub use provenance::{Provenance, commit};
 pub use reproduction::{Options, Reproduction, reproduce};
 pub use speeds::SPEEDS_M_S;
 pub use tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};

@@ -15,6 +15,7 @@ use crate::readings::{
 };
 use crate::{Plan, shoot};
 use hertzchain_experiment::Reading;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -196,8 +197,11 @@ impl Reproduction {
                 power_law_residuals_csv(&self.evidence),
             ),
             ("oils.csv", oils_csv(&self.cases)?),
-            ("claims.json", json(&claims_json(&self.judged, &reading))),
-            ("claims.md", claims_markdown(&self.judged, &reading)),
+            (
+                "claims.json",
+                json(&json!({ "reading": reading, "claims": claims_json(&self.judged) })),
+            ),
+            ("claims.md", claims_markdown(&self.judged, &head(&reading))),
         ];
         if let Some(scan) = &self.scan {
             files.push(("readings.csv", scan_csv(scan)));
@@ -233,6 +237,11 @@ impl Reproduction {
         write_atomically(&path, json(&self.provenance.json(&names)).as_bytes())?;
         Ok(path)
     }
+}
+
+/// The head of the page of claims.
+fn head(reading: &str) -> String {
+    format!("# What the paper says, and what its model shows\n\nRead as: {reading}.")
 }
 
 /// JSON as a file.

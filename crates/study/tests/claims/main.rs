@@ -14,7 +14,7 @@ use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_study::claims::{
     Claim, Evidence, Finding, Judge, Judged, Needs, Verdict, claims, claims_markdown, judge_all,
-    judge_all_rounded, read,
+    judge_all_rounded, predicate, read,
 };
 
 fn judge(id: &str) -> Judge {
@@ -321,6 +321,6 @@ fn a_claim_file_with_an_unknown_predicate_is_refused() {
         value = "v"
         reason = "r"
     "#;
-    let error = read(text).unwrap_err().to_string();
+    let error = read(text, predicate).unwrap_err().to_string();
     assert!(error.contains("guess"), "{error}");
 }

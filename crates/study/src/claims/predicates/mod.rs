@@ -11,12 +11,10 @@ mod ratios;
 mod striker;
 mod trends;
 
-use super::{Branch, Claim, Curve, Evidence, Finding, Point, Verdict};
+use super::claim::Predicate;
+use super::{Branch, Claim, Curve, Evidence, Finding, Point, Verdict, Worst};
 
-/// Decides a claim.
-pub(super) type Predicate = fn(&Claim, &Evidence) -> Finding;
-
-static PREDICATES: &[(&str, Predicate)] = &[
+static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("pulses-separate", passages::pulses_separate),
     ("return-takes-longer", passages::return_takes_longer),
     ("return-is-split", passages::return_is_split),
@@ -56,8 +54,9 @@ static PREDICATES: &[(&str, Predicate)] = &[
 /// Predicates on what a shot leaves behind when the pulses have passed.
 pub(super) static OF_THE_END: [&str; 2] = ["gaps-open", "no-rebound"];
 
-/// A predicate by its name.
-pub(super) fn find(name: &str) -> Option<Predicate> {
+/// A predicate on single shots by its name.
+#[must_use]
+pub fn find(name: &str) -> Option<Predicate<Evidence>> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
     row.map(|(_, predicate)| *predicate)
 }
@@ -98,53 +97,4 @@ fn branches(claim: &Claim) -> Vec<Branch> {
 fn within<'a>(claim: &Claim, curve: &'a Curve) -> Vec<&'a Point> {
     let inside = |p: &&Point| (claim.from_m_s..=claim.to_m_s).contains(&p.speed_m_s);
     curve.points.iter().filter(inside).collect()
-}
-
-/// The number whose margin is smallest, kept with its accuracy and place.
-#[derive(Debug)]
-struct Worst {
-    margin: f64,
-    value: f64,
-    accuracy: f64,
-    place: String,
-}
-
-impl Worst {
-    fn none() -> Self {
-        Self {
-            margin: f64::INFINITY,
-            value: f64::NAN,
-            accuracy: f64::NAN,
-            place: String::new(),
-        }
-    }
-
-    /// Keeps this one if its margin is the smallest so far.
-    fn see(&mut self, margin: f64, value: f64, accuracy: f64, place: impl FnOnce() -> String) {
-        if margin < self.margin || margin.is_nan() {
-            *self = Self {
-                margin,
-                value,
-                accuracy,
-                place: place(),
-            };
-        }
-    }
-
-    /// The finding with the tally's verdict.
-    fn finding(self, tally: super::Tally) -> Finding {
-        let detail = match self.place.is_empty() {
-            true => format!("{tally} comparisons met"),
-            false => format!("{tally} comparisons met; nearest or worst: {}", self.place),
-        };
-        Finding {
-            verdict: tally.verdict(),
-            leaning: tally.leaning(),
-            value: self.value,
-            accuracy: self.accuracy,
-            expected: None,
-            detail,
-            nearest_change: None,
-        }
-    }
 }

@@ -1,5 +1,7 @@
 //! `hertzchain reproduce`: everything in the paper.
 
+mod rig;
+
 use crate::arguments::Reproduce;
 use crate::failure::Failure;
 use crate::folder::Folder;
@@ -26,7 +28,6 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
     };
     let bar = Bar::new();
     let computed = reproduce(&options, &bar);
-    bar.0.finish_and_clear();
     let computed = computed.map_err(|error| failure(&error))?;
     let tables = computed.write_tables(folder);
     let mut written = tables.map_err(|error| failure(&error))?;
@@ -35,9 +36,16 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
         error => Failure::Ours(error.to_string()),
     })?;
     written.extend(pictures);
+    let rig = arguments.rig.then(|| rig::run(folder, &bar)).transpose()?;
+    bar.0.finish_and_clear();
+    let mut text = summary(&computed, folder);
+    if let Some(rig) = rig {
+        text.push_str(&rig.summary);
+        written.extend(rig.written);
+    }
     let ended = computed.write_provenance(folder, &written);
     ended.map_err(|error| failure(&error))?;
-    print(&summary(&computed, folder))
+    print(&text)
 }
 
 /// The paper's chains come with the program: nothing here is the user's fault.

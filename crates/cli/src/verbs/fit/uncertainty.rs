@@ -1,0 +1,56 @@
+//! Figures of uncertainty: profiles, samples, and what the data determine.
+
+use super::Fitted;
+use hertzchain_figures::Figure;
+use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
+use hertzchain_infer::{Parameter, Posterior, Problem, Profile, RISE_OF_95_PERCENT};
+
+/// Parameters as axes say them.
+fn labels(fitted: &Fitted) -> Vec<String> {
+    let label = |parameter: &Parameter| match parameter.unit.as_str() {
+        "" => parameter.name.clone(),
+        unit => format!("{} ({unit})", parameter.name),
+    };
+    fitted.problem.parameters().iter().map(label).collect()
+}
+
+/// Rise of chi-square along each parameter, beside the parabola that the
+/// covariance stands for.
+pub fn profiles(fitted: &Fitted, profiles: &[Profile]) -> Figure {
+    let labels = labels(fitted);
+    let curves: Vec<ProfileCurve> = (profiles.iter())
+        .map(|profile| ProfileCurve {
+            label: &labels[profile.parameter],
+            values: &profile.values,
+            rise: &profile.rise,
+            best: fitted.fit.point[profile.parameter],
+            standard_error: Some(fitted.covariance.sd[profile.parameter]),
+            levels: &[(1.0, "68 %"), (RISE_OF_95_PERCENT, "95 %")],
+        })
+        .collect();
+    profile_figure(&curves)
+}
+
+/// The posterior of each parameter and pair, beside the covariance's.
+pub fn corner(fitted: &Fitted, posterior: &Posterior) -> Figure {
+    Corner {
+        labels: &labels(fitted),
+        samples: &posterior.samples,
+        marks: &fitted.fit.point,
+        covariance: &fitted.covariance.matrix,
+    }
+    .figure()
+}
+
+/// Singular values of the Jacobian, each parameter in units of its scale.
+pub fn singular_values(fitted: &Fitted) -> Figure {
+    let found = &fitted.identifiability;
+    let names = fitted.problem.parameters().iter().map(|p| p.name.clone());
+    SingularValues {
+        names: &names.collect::<Vec<String>>(),
+        values: &found.singular_values,
+        directions: &found.directions,
+        floor: found.floor,
+    }
+    .figure()
+}

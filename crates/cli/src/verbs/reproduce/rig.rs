@@ -1,0 +1,43 @@
+//! `hertzchain reproduce --rig`: what the paper says of its rig.
+
+use super::{Bar, verdicts};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::pictures::rig as pictures;
+use hertzchain_experiment::preset;
+use hertzchain_rig::claims::{Design, RigClaims, observe, series_csv};
+use std::path::{Path, PathBuf};
+
+/// What was found and written.
+pub struct Found {
+    /// For people.
+    pub summary: String,
+    /// The files.
+    pub written: Vec<PathBuf>,
+}
+
+/// Runs the campaigns and writes verdicts, table and pictures.
+pub fn run(folder: &Path, bar: &Bar) -> Result<Found, Failure> {
+    let ours = |error: &dyn std::error::Error| Failure::Ours(error.to_string());
+    let paper = preset("paper").map_err(|error| ours(&error))?;
+    let design = Design::about(paper);
+    let evidence = observe(&design, bar).map_err(|error| ours(&error))?;
+    let claims = RigClaims::judge(&design, &evidence).map_err(|error| ours(&error))?;
+    let mut into = Folder::open(folder)?;
+    let json = format!("{:#}\n", claims.json());
+    into.write("rig-claims.json", json.as_bytes())?;
+    into.write("rig-claims.md", claims.markdown().as_bytes())?;
+    into.write("rig-series.csv", series_csv(&evidence).as_bytes())?;
+    for (name, figure) in pictures::figures(&evidence, &claims) {
+        into.figure(name, &figure)?;
+    }
+    Ok(Found {
+        summary: format!(
+            "\nOn {} virtual rigs:\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
+            evidence.rigs.len(),
+            verdicts(&claims.judged),
+            folder.join("rig-claims.md").display(),
+        ),
+        written: into.into_written(),
+    })
+}
