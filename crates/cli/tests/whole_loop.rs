@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 #[path = "../examples/whole_loop/judged.rs"]
+#[allow(dead_code, reason = "the example tells more")]
 mod judged;
 
 use hertzchain_signal::{Estimate, chi_square};
