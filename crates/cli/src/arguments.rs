@@ -52,6 +52,10 @@ pub enum Verb {
     Measure(measure::Measure),
     /// Fit contact parameters to times of flight, with errors one can trust
     Fit(infer::Fit),
+    /// Rank what to measure next so that parameters tighten most
+    Design(infer::Design),
+    /// Tell the oil on a row's contacts from times of flight, wet and dry
+    Gauge(infer::Gauge),
     /// Check an experiment file and print what was understood; run nothing
     Check(Check),
     /// Print what theory says of a chain's waves
@@ -184,6 +188,16 @@ pub struct Shot {
     pub animate: bool,
 }
 
+/// Judges by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Judges {
+    /// Two more shots each, with longer steps
+    Each,
+    /// Forty speeds, computed much more tightly, choose the cheapest steps for all: several times as fast on
+    /// dry rows; on wet ones a few in a thousand may miss the accuracy
+    Pilots,
+}
+
 /// Arguments of `sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
@@ -211,6 +225,9 @@ pub struct Sweep {
     /// Follow the striker until it is away for good and give its velocity; takes the slower loop
     #[arg(long)]
     pub rebound: bool,
+    /// Who tells how right times of flight are
+    #[arg(long, value_enum, value_name = "WHO", default_value = "each")]
+    pub judges: Judges,
     /// Threads; all cores when absent
     #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,

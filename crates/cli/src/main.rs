@@ -40,6 +40,8 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
         Verb::Measure(arguments) => verbs::measure::run(&arguments),
         Verb::Fit(arguments) => verbs::fit::run(&arguments),
+        Verb::Design(arguments) => verbs::design::run(&arguments),
+        Verb::Gauge(arguments) => verbs::gauge::run(&arguments),
         Verb::Check(arguments) => verbs::check::run(&arguments),
         Verb::Theory(arguments) => verbs::theory::run(&arguments),
         Verb::Laws(arguments) => verbs::laws::run(&arguments),

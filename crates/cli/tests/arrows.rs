@@ -16,10 +16,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
-    (
-        "infer",
-        &["chain", "experiment", "study", "signal", "measure"],
-    ),
+    ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
         "cli",

@@ -11,6 +11,7 @@ mod curve;
 mod data;
 mod design;
 mod free;
+pub mod gauge;
 mod goodness;
 mod identify;
 mod least_squares;
@@ -25,8 +26,8 @@ pub use compare::{
 };
 pub use covariance::Covariance;
 pub use curve::{
-    CurveError, CurveProblem, FittedCurve, Joint, Model, Part, Predicted, Speeds, Supply,
-    Surrogate, SurrogateError,
+    CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Model, Part, Predicted, Speeds,
+    Supply, Surrogate, SurrogateError, Way, WayError, usual_ways,
 };
 pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection};
 pub use design::{Candidate, Design, DesignError, Expected, design};

@@ -1,4 +1,9 @@
 //! Every mistake has a message that names what to change.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 mod toys;
 

@@ -1,4 +1,9 @@
 //! Curved problems: where covariance and profile part, and what intervals are worth.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
 
 mod toys;
 

@@ -103,6 +103,19 @@ pub struct Fit {
     /// How uncertainty is told, beside the covariance
     #[arg(long, value_enum, value_name = "NAME", default_value = "covariance")]
     pub method: Method,
+    /// Compare with another model of the same data: a preset or file and what is free in it; may be
+    /// given several times
+    #[arg(long, value_name = "MODEL=NAMES", value_parser = against)]
+    pub against: Vec<Against>,
+    /// Most steps of a posterior's walkers
+    #[arg(long, value_name = "COUNT", default_value = "20000")]
+    pub steps: u64,
+    /// Compute every curve of a posterior, instead of interpolating between some hundreds
+    #[arg(long)]
+    pub direct: bool,
+    /// Go on with the walkers of the last run into the same --out
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     /// Count outliers by their size, not its square
     #[arg(long)]
     pub robust: bool,
@@ -116,6 +129,94 @@ pub struct Fit {
     #[arg(long)]
     pub json: bool,
     /// Write fit.json, tables (CSV) and figures (SVG, PNG) into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `design`.
+#[derive(Debug, Args)]
+pub struct Design {
+    /// Table (CSV) of times of flight measured so far
+    #[arg(value_name = "DATA")]
+    pub data: PathBuf,
+    /// The curve.
+    #[command(flatten)]
+    pub measured: Measured,
+    /// The model.
+    #[command(flatten)]
+    pub modelled: Modelled,
+    /// What is free.
+    #[command(flatten)]
+    pub freed: Freed,
+    /// Parameters to tighten, as the fit names them; all when absent
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub target: Vec<String>,
+    /// Speeds that could be measured: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT; eight over
+    /// the range of the data when absent
+    #[arg(long, value_name = "SPEEDS")]
+    pub speeds: Option<String>,
+    /// Length of the proposed series
+    #[arg(long, value_name = "COUNT", default_value = "5")]
+    pub picks: usize,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write design.json and design.csv into this folder
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Arguments of `gauge`.
+#[derive(Debug, Args)]
+pub struct Gauge {
+    /// Table (CSV) of times of flight against speed of the wet chain
+    #[arg(value_name = "WET")]
+    pub wet: PathBuf,
+    /// The same of the dry chain
+    #[arg(long, value_name = "DRY")]
+    pub dry: PathBuf,
+    /// Case of the wet table, if it has several
+    #[arg(long, value_name = "CASE")]
+    pub wet_case: Option<String>,
+    /// Case of the dry table, if it has several
+    #[arg(long, value_name = "CASE")]
+    pub dry_case: Option<String>,
+    /// The curves.
+    #[command(flatten)]
+    pub measured: Measured,
+    /// Experiment file of the wet chain, a section of it with `wet = true`
+    #[arg(long, short, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+    /// Wet chain that comes with the program; its oil's own numbers play no part
+    #[arg(long, short, value_name = "NAME", default_value = "pump")]
+    pub preset: Option<String>,
+    /// Experiment file of the dry chain
+    #[arg(long, value_name = "FILE")]
+    pub dry_model: Option<PathBuf>,
+    /// Dry chain that comes with the program
+    #[arg(long, value_name = "NAME", default_value = "dry")]
+    pub dry_preset: Option<String>,
+    /// Free numbers of the dry contacts, by names that both models know
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "aisi316.eta,dry.B"
+    )]
+    pub dry_free: Vec<String>,
+    /// Table (CSV) of further oils, with the columns of the program's own
+    #[arg(long, value_name = "FILE")]
+    pub oils: Option<PathBuf>,
+    /// Relative accuracy of the model's times of flight
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy)]
+    pub accuracy: f64,
+    /// Threads; all cores when absent; results do not depend on it
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    pub threads: Option<usize>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write gauge.json, contacts.csv and a figure (SVG, PNG) into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -148,6 +249,46 @@ fn assignment(text: &str) -> Result<Assignment, String> {
     Ok(Assignment {
         name: name.trim().to_owned(),
         text: text.trim().to_owned(),
+    })
+}
+
+/// Another model and what is free in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Against {
+    /// File or preset.
+    pub model: String,
+    free: Vec<String>,
+}
+
+impl Against {
+    /// The same as options of a fit, computed as another.
+    pub fn options(&self, like: &Modelled) -> (Modelled, Freed) {
+        let file = Some(PathBuf::from(&self.model)).filter(|file| file.exists());
+        let modelled = Modelled {
+            preset: file.is_none().then(|| self.model.clone()),
+            model: file,
+            set: Vec::new(),
+            accuracy: like.accuracy,
+            threads: like.threads,
+        };
+        let freed = Freed {
+            free: self.free.clone(),
+            start: Vec::new(),
+            bounds: Vec::new(),
+            prior: Vec::new(),
+            scale: Vec::new(),
+        };
+        (modelled, freed)
+    }
+}
+
+fn against(text: &str) -> Result<Against, String> {
+    let (model, free) = text
+        .split_once('=')
+        .ok_or("expected MODEL=NAMES, such as hertz-viscoelastic=eta")?;
+    Ok(Against {
+        model: model.trim().to_owned(),
+        free: free.split(',').map(|name| name.trim().to_owned()).collect(),
     })
 }
 

@@ -22,10 +22,15 @@ pub fn user(error: impl std::fmt::Display) -> Failure {
 
 /// A measured curve with what is to be used of it.
 pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
+    data_of(file, measured, measured.case.clone())
+}
+
+/// The same of another case.
+pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
     let text = fs::read_to_string(file)
         .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
     let selection = Selection {
-        case: measured.case.clone(),
+        case,
         observables: measured.observables.iter().map(|what| of(*what)).collect(),
         defaults: Defaults {
             speed_m_s: measured.speed_error,
@@ -45,20 +50,34 @@ fn of(what: What) -> Observable {
     }
 }
 
-/// The model's experiment, with what is set and in its case.
-pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
+/// A model's experiment, in the case of this name if it has one.
+pub fn opened(
+    file: Option<&Path>,
+    preset: &Option<String>,
+    case: &str,
+) -> Result<Experiment, Failure> {
     let mut experiment = input::open(&Input {
-        file: modelled.model.clone(),
-        preset: modelled.preset.clone(),
+        file: file.map(Path::to_owned),
+        preset: preset.clone(),
     })?;
-    if let Some(case) = case.and_then(|case| experiment.case(case)) {
+    if let Some(case) = experiment.case(case) {
         experiment = case?;
     }
-    if experiment.units() == Units::Dimensionless {
-        return Err(Failure::User(
+    match experiment.units() {
+        Units::Si => Ok(experiment),
+        Units::Dimensionless => Err(Failure::User(
             "times of flight in s need a model in SI units; this one is dimensionless".to_owned(),
-        ));
+        )),
     }
+}
+
+/// The model's experiment, with what is set and in its case.
+pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
+    let mut experiment = opened(
+        modelled.model.as_deref(),
+        &modelled.preset,
+        case.unwrap_or_default(),
+    )?;
     for set in &modelled.set {
         let changed = experiment.set_text(&[(&set.name, &set.text)]);
         experiment = changed.map_err(|error| match error {

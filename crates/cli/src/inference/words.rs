@@ -31,6 +31,7 @@ pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
 /// A share in percent.
 pub fn percent(share: f64) -> String {
     match share {
+        0.0 => "0 %".to_owned(),
         share if share < 1e-4 => format!("{:.0e} %", 100.0 * share),
         share => format!("{} %", digits(100.0 * share, 2)),
     }

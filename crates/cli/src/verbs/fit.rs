@@ -1,8 +1,10 @@
 //! `hertzchain fit`: times of flight to parameters.
 
+mod more;
 mod pictures;
 mod report;
 mod results;
+mod uncertainty;
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
@@ -10,8 +12,10 @@ use crate::folder::Folder;
 use crate::inference::{self, user};
 use crate::print;
 use hertzchain_infer::{
-    Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Loss, Problem, Speeds, fit,
+    Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss, Problem,
+    Speeds, fit,
 };
+use more::{More, Rivals};
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
 const OUTLIER: f64 = 1.345;
@@ -30,6 +34,12 @@ pub struct Fitted {
     pub curve: FittedCurve,
     /// Largest relative error of the model's times of flight there.
     pub accuracy: f64,
+    /// What the data determine.
+    pub identifiability: Identifiability,
+    /// Uncertainty beyond the covariance.
+    pub more: More,
+    /// Other models of the same data.
+    pub rivals: Option<Rivals>,
 }
 
 /// Runs the verb.
@@ -64,7 +74,11 @@ fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failur
     let goodness = Goodness::new(problem.parameters(), &fit);
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
+    let label = |at: usize| problem.residual_label(at);
     Ok(Fitted {
+        identifiability: Identifiability::new(problem.parameters(), &fit, label),
+        more: more::more(&problem, &fit, &covariance, arguments)?,
+        rivals: more::rivals(&problem, &fit, arguments)?,
         goodness,
         curve: problem.fitted_curve(&fit, &covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
@@ -79,6 +93,25 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
     folder.write("fit.csv", results::rows_csv(fitted).as_bytes())?;
     folder.write("parameters.csv", results::parameters_csv(fitted).as_bytes())?;
     folder.figure("fit", &pictures::fit(fitted))?;
+    folder.figure("singular-values", &pictures::singular_values(fitted))?;
+    match &fitted.more {
+        More::Nothing => {}
+        More::Profiles(profiles) => {
+            folder.write(
+                "profiles.csv",
+                results::profiles_csv(fitted, profiles).as_bytes(),
+            )?;
+            folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
+        }
+        More::Sampled(sampled) => {
+            let chain = serde_json::to_vec(&sampled.chain);
+            let chain = chain.map_err(|error| Failure::Ours(error.to_string()))?;
+            folder.write(more::CHAIN, &chain)?;
+            if let Ok(posterior) = &sampled.posterior {
+                folder.figure("corner", &uncertainty::corner(fitted, posterior))?;
+            }
+        }
+    }
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }

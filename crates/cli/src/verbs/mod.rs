@@ -3,7 +3,9 @@
 pub mod campaign;
 pub mod check;
 pub mod completions;
+pub mod design;
 pub mod fit;
+pub mod gauge;
 pub mod laws;
 pub mod man;
 pub mod measure;

@@ -1,7 +1,9 @@
 //! Times of flight that an experiment predicts, for many sets of parameters at
 //! once, and their residuals to measured ones.
 
+mod advice;
 mod band;
+mod candidates;
 mod joint;
 mod model;
 mod problem;
@@ -10,6 +12,7 @@ mod surrogate;
 mod whiten;
 
 pub use band::FittedCurve;
+pub use candidates::{ExpectedErrors, Way, WayError, usual_ways};
 pub use joint::{Joint, Part, Supply};
 pub use model::{Model, Predicted, Speeds};
 pub use problem::{CurveError, CurveProblem};

@@ -6,7 +6,8 @@
 //! small part of a standard error. How small is measured, at points between.
 
 use super::model::Predicted;
-use super::problem::CurveProblem;
+use super::problem::{CurveError, CurveProblem};
+use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, Parameter};
 use std::f64::consts::PI;
@@ -40,8 +41,8 @@ pub enum SurrogateError {
 
 /// A problem whose curves are interpolated within a box and computed outside.
 #[derive(Clone, Debug)]
-pub struct Surrogate<'a> {
-    problem: &'a CurveProblem,
+pub struct Surrogate {
+    problem: CurveProblem,
     /// Middle and half width of each parameter's side.
     sides: Vec<(f64, f64)>,
     nodes: usize,
@@ -52,13 +53,13 @@ pub struct Surrogate<'a> {
     pub error: f64,
 }
 
-impl<'a> Surrogate<'a> {
+impl Surrogate {
     /// Around a fit.
     ///
     /// # Errors
     /// See [`SurrogateError`].
     pub fn new(
-        problem: &'a CurveProblem,
+        problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
     ) -> Result<Self, SurrogateError> {
@@ -71,7 +72,7 @@ impl<'a> Surrogate<'a> {
             .map(|(at, parameter)| side(parameter, fit.point[at], covariance.sd[at]))
             .collect::<Result<_, _>>()?;
         let mut surrogate = Self {
-            problem,
+            problem: problem.clone(),
             sides,
             nodes,
             table: Vec::new(),
@@ -87,6 +88,17 @@ impl<'a> Surrogate<'a> {
         }
         surrogate.error = surrogate.measured_error()?;
         Ok(surrogate)
+    }
+
+    /// The same curves against other measured values at the same speeds.
+    ///
+    /// # Errors
+    /// See [`CurveError`].
+    pub fn with_data(&self, data: Data) -> Result<Self, CurveError> {
+        Ok(Self {
+            problem: self.problem.with_data(data)?,
+            ..self.clone()
+        })
     }
 
     /// The place of a node in the box.
@@ -193,7 +205,7 @@ fn barycentric(x: f64, nodes: usize) -> Vec<f64> {
     terms.iter().map(|term| term / sum).collect()
 }
 
-impl Problem for Surrogate<'_> {
+impl Problem for Surrogate {
     fn parameters(&self) -> &[Parameter] {
         self.problem.parameters()
     }

@@ -177,6 +177,12 @@ impl FreeNumber {
         }
     }
 
+    /// The material and the key of a number of a material.
+    pub(crate) fn material_number(&self) -> Option<(&str, &str)> {
+        let path = self.target.path()?.strip_prefix("materials.")?;
+        path.rsplit_once('.')
+    }
+
     /// How many parameters it has over so many speeds.
     #[must_use]
     pub fn parameter_count(&self, speeds: usize) -> usize {

@@ -37,6 +37,15 @@ pub(super) enum Target {
 }
 
 impl Target {
+    /// The path of the number, or of the law whose prefactor it is.
+    pub(super) fn path(&self) -> Option<&str> {
+        match self {
+            Self::Number(path) => Some(path),
+            Self::Scaled { prefactor, .. } => prefactor.strip_suffix(".prefactor"),
+            Self::WallGain => None,
+        }
+    }
+
     /// Puts a value in its place.
     pub(super) fn set(&self, value: f64, settings: &mut Settings) {
         match self {

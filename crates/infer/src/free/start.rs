@@ -52,10 +52,8 @@ fn pair(chain: &Chain, section: usize) -> Option<Pair> {
 
 /// What a number may be, as far as its name tells.
 pub(super) fn bounds(found: &Found) -> (f64, f64) {
-    let path = match &found.target {
-        Target::Number(path) => path.as_str(),
-        Target::Scaled { prefactor, .. } => prefactor.trim_end_matches(".prefactor"),
-        Target::WallGain => return (f64::MIN_POSITIVE, f64::INFINITY),
+    let Some(path) = found.target.path() else {
+        return (f64::MIN_POSITIVE, f64::INFINITY);
     };
     match path.rsplit('.').next().unwrap_or_default() {
         "poisson_ratio" => (0.0, MOST_POISSON_RATIO),

@@ -99,7 +99,7 @@ enum Stage {
     /// Residuals at the neighbours of a point.
     Slopes(Vec<Stencil>),
     /// Residuals at the ends of steps with several λ.
-    Trials(Trials),
+    Trials(Box<Trials>),
     Done(Ending),
 }
 
@@ -235,7 +235,7 @@ impl<'a> Descent<'a> {
             return Stage::Done(resting(expected_fall));
         }
         self.iterations += 1;
-        Stage::Trials(trials)
+        Stage::Trials(Box::new(trials))
     }
 
     fn choose_steps(&mut self, linear: &Linear) {
@@ -293,7 +293,7 @@ impl<'a> Descent<'a> {
         point
     }
 
-    fn tried(&mut self, mut trials: Trials, found: &[Result<Residuals, ModelError>]) -> Stage {
+    fn tried(&mut self, mut trials: Box<Trials>, found: &[Result<Residuals, ModelError>]) -> Stage {
         let valued = trials.points.iter().zip(found).enumerate();
         let best = valued
             .filter_map(|(i, (point, found))| Some((i, self.merit.value(point, found).ok()?)))

@@ -33,14 +33,15 @@ pub enum Loss {
 pub(crate) struct Cost {
     /// ½ scale² ρ(z).
     pub value: f64,
-    /// Factor on a row of the Jacobian, √(ρ′ + 2 z ρ″).
+    /// Factor on a row of the Jacobian, √(ρ′ + 2 z ρ″), kept positive.
     pub slope_factor: f64,
-    /// Factor on a residual, ρ′/√(ρ′ + 2 z ρ″): the product of both rows is the gradient.
+    /// Factor on a residual, ρ′ over that factor: the product of both rows is the gradient.
     pub residual_factor: f64,
 }
 
-/// Least curvature left to a residual far out, so that it keeps pulling.
-const LEAST_CURVATURE: f64 = 1e-12;
+/// Least curvature of a residual far out, as a share of the weight ρ′: without
+/// any, a step from where all residuals are far out would have no length.
+const LEAST_CURVATURE: f64 = 0.1;
 
 impl Loss {
     pub(crate) fn scale(self) -> f64 {
@@ -74,7 +75,9 @@ impl Loss {
         let scale = self.scale();
         let z = (residual / scale).powi(2);
         let [rho, slope, curvature] = self.rho(z);
-        let kept = (slope + 2.0 * z * curvature).max(LEAST_CURVATURE).sqrt();
+        let kept = (slope + 2.0 * z * curvature)
+            .max(LEAST_CURVATURE * slope)
+            .sqrt();
         Cost {
             value: 0.5 * scale * scale * rho,
             slope_factor: kept,

@@ -1,10 +1,11 @@
 //! A fit for people.
 
 use super::Fitted;
+use super::more::{More, Rivals, Sampled};
 use crate::format::{self, digits};
 use crate::inference::words::{doubt, estimate, percent};
 use crate::print::heading;
-use hertzchain_infer::{Goodness, Observable, Problem};
+use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -28,6 +29,9 @@ pub fn text(fitted: &Fitted) -> String {
     text += &correlations(fitted);
     text += &goodness(&fitted.goodness, &fitted.problem);
     text += &accuracy(fitted);
+    text += &determined(fitted);
+    text += &more(fitted);
+    text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
     text += &doubt(&fitted.fit.ending).map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
     if fitted.fit.starts.len() > 1 {
         let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
@@ -38,7 +42,7 @@ pub fn text(fitted: &Fitted) -> String {
 
 fn values(fitted: &Fitted) -> String {
     let parameters = fitted.problem.parameters().iter().enumerate();
-    let row = |(at, parameter): (usize, &hertzchain_infer::Parameter)| {
+    let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fitted.fit.point[at], fitted.covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
     };
@@ -113,6 +117,155 @@ fn accuracy(fitted: &Fitted) -> String {
         true => format!("{told}: ask for more by --accuracy\n"),
         false => format!("{told}\n"),
     }
+}
+
+/// What the data determine and what not, and what would help.
+fn determined(fitted: &Fitted) -> String {
+    let found = &fitted.identifiability;
+    let (known, all) = (found.determined(), found.singular_values.len());
+    if known == all {
+        return match all {
+            1 => "The data determine it.\n".to_owned(),
+            _ => format!("The data determine all {all} combinations of the parameters.\n"),
+        };
+    }
+    let mut text =
+        format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
+    for confusion in &found.confused {
+        text += &format!("  Not determined: {}.\n", confusion.words);
+    }
+    for advice in fitted.problem.would_separate() {
+        text += &format!("  What would help: {advice}.\n");
+    }
+    text
+}
+
+/// Intervals of profiles or of a posterior.
+fn more(fitted: &Fitted) -> String {
+    match &fitted.more {
+        More::Nothing => String::new(),
+        More::Profiles(profiles) => intervals_of_profiles(fitted, profiles),
+        More::Sampled(sampled) => sampled_text(fitted, sampled),
+    }
+}
+
+fn intervals_of_profiles(fitted: &Fitted, profiles: &[Profile]) -> String {
+    let end = |end: End| match end {
+        End::At(value) => digits(value, 6),
+        End::Bound(value) => format!("{} (its bound)", digits(value, 4)),
+        End::Open(value) => format!("beyond {}", digits(value, 4)),
+        End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
+    };
+    let row = |profile: &Profile| {
+        let name = &fitted.problem.parameters()[profile.parameter].name;
+        let ends = profile
+            .intervals
+            .iter()
+            .map(|interval| format!("{} to {}", end(interval.lower), end(interval.upper)));
+        std::iter::once(name.clone())
+            .chain(ends)
+            .collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = profiles.iter().map(row).collect();
+    let head = ["by profile", "68 %", "95 %"].map(str::to_owned);
+    format!("\n{}", format::table(&head, &rows))
+}
+
+fn sampled_text(fitted: &Fitted, sampled: &Sampled) -> String {
+    let chain = &sampled.chain;
+    let how = match sampled.surrogate_error {
+        None => "every curve computed".to_owned(),
+        Some(error) => format!(
+            "curves interpolated, right to {} standard errors",
+            digits(error, 2)
+        ),
+    };
+    let mut text = format!(
+        "\nPosterior: {} walkers, {} steps, {} of proposals taken; {how}\n",
+        chain.walkers(),
+        chain.steps(),
+        percent(chain.acceptance())
+    );
+    let posterior = match &sampled.posterior {
+        Err(unconverged) => {
+            return text + &format!("No quantiles: {unconverged} (--steps, --resume).\n");
+        }
+        Ok(posterior) => posterior,
+    };
+    let interval = |at: usize, share: f64| {
+        let [lower, upper] = posterior.interval(at, share);
+        format!("{} to {}", digits(lower, 6), digits(upper, 6))
+    };
+    let row = |(at, parameter): (usize, &Parameter)| {
+        let found = &posterior.diagnoses[at];
+        vec![
+            parameter.name.clone(),
+            digits(posterior.quantile(at, 0.5), 6),
+            interval(at, 0.682_689_5),
+            interval(at, 0.95),
+            digits(found.time.time, 3),
+            format!("{:.3}", found.r_hat),
+            digits(found.effective, 3),
+        ]
+    };
+    let rows: Vec<Vec<String>> = fitted
+        .problem
+        .parameters()
+        .iter()
+        .enumerate()
+        .map(row)
+        .collect();
+    let head = [
+        "posterior",
+        "median",
+        "68 %",
+        "95 %",
+        "steps correlated",
+        "R-hat",
+        "effective samples",
+    ];
+    text += &format::table(&head.map(str::to_owned), &rows);
+    text
+}
+
+/// Models of the same data.
+fn rivals(rivals: &Rivals) -> String {
+    let lost = rivals.lost.iter().map(|lost| {
+        format!(
+            "{} is far from the data: chi-square {} where it ended ({})\n",
+            lost.name,
+            digits(lost.chi_square, 4),
+            lost.why
+        )
+    });
+    let lost: String = lost.collect();
+    let compared = rivals.comparison.as_ref();
+    compared.map_or(String::new(), |found| compared_text(rivals, found)) + &lost
+}
+
+fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
+    let row = |&at: &usize| {
+        let (rival, criteria) = (&rivals.all[at], &comparison.criteria[at]);
+        vec![
+            rival.name.clone(),
+            criteria.parameters.to_string(),
+            digits(rival.fit.chi_square(), 5),
+            digits(comparison.aicc_above_best[at], 4),
+            digits(criteria.bic, 6),
+            digits(rival.foretells.mean, 5),
+        ]
+    };
+    let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
+    let head = [
+        "model",
+        "free",
+        "chi-square",
+        "AICc above best",
+        "BIC",
+        "cross-validated error",
+    ];
+    let table = format::table(&head.map(str::to_owned), &rows);
+    format!("\n{table}{}\n", comparison.sentence)
 }
 
 /// What observables are called where space is short.

@@ -1,9 +1,10 @@
 //! A fit as JSON and tables, in SI.
 
 use super::Fitted;
+use super::more::{More, Rival, Rivals};
 use crate::arguments::infer::Fit as Arguments;
 use crate::table::cell;
-use hertzchain_infer::{Observable, Parameter, Prior, Problem};
+use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Problem, Profile};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
@@ -35,6 +36,18 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         })),
         "jacobian_disagreement": fit.jacobian.disagreement,
         "model_accuracy": fitted.accuracy,
+        "singular_values": fitted.identifiability.singular_values,
+        "singular_value_floor": fitted.identifiability.floor,
+        "not_determined": fitted.identifiability.confused.iter().map(|c| json!({
+            "words": c.words, "change": c.change,
+        })).collect::<Value>(),
+        "would_separate": match fitted.identifiability.confused.is_empty() {
+            true => Vec::new(),
+            false => fitted.problem.would_separate(),
+        },
+        "profiles": profiles(fitted),
+        "posterior": posterior(fitted),
+        "comparison": fitted.rivals.as_ref().map(comparison),
     })
 }
 
@@ -73,6 +86,107 @@ fn correlations(fitted: &Fitted) -> Value {
         .map(|i| row(i).collect::<Vec<_>>())
         .collect::<Vec<_>>()
         .into()
+}
+
+fn end(end: End) -> Value {
+    match end {
+        End::At(value) => json!(value),
+        End::Bound(value) => json!({ "bound": value }),
+        End::Open(value) => json!({ "beyond": value }),
+        End::ModelFails(value) => json!({ "model_fails_beyond": value }),
+    }
+}
+
+fn profiles(fitted: &Fitted) -> Value {
+    let More::Profiles(profiles) = &fitted.more else {
+        return Value::Null;
+    };
+    let one = |profile: &Profile| {
+        json!({
+            "name": fitted.problem.parameters()[profile.parameter].name,
+            "values": profile.values,
+            "chi_square_rise": profile.rise,
+            "intervals": profile.intervals.iter().map(|interval| json!({
+                "rise": interval.level, "lower": end(interval.lower), "upper": end(interval.upper),
+            })).collect::<Value>(),
+        })
+    };
+    profiles.iter().map(one).collect()
+}
+
+fn posterior(fitted: &Fitted) -> Value {
+    let More::Sampled(sampled) = &fitted.more else {
+        return Value::Null;
+    };
+    let mut all = json!({
+        "walkers": sampled.chain.walkers(),
+        "steps": sampled.chain.steps(),
+        "acceptance": sampled.chain.acceptance(),
+        "surrogate_error": sampled.surrogate_error,
+    });
+    match &sampled.posterior {
+        Err(unconverged) => all["unconverged"] = json!(unconverged.to_string()),
+        Ok(posterior) => {
+            let names = sampled.chain.names().iter().enumerate();
+            all["parameters"] = names
+                .map(|(at, name)| {
+                    let found = &posterior.diagnoses[at];
+                    json!({
+                        "name": name,
+                        "mean": posterior.mean[at],
+                        "sd": posterior.sd(at),
+                        "median": posterior.quantile(at, 0.5),
+                        "interval_68": posterior.interval(at, 0.682_689_5),
+                        "interval_95": posterior.interval(at, 0.95),
+                        "autocorrelation_time": found.time.time,
+                        "r_hat": found.r_hat,
+                        "effective_samples": found.effective,
+                    })
+                })
+                .collect();
+        }
+    }
+    all
+}
+
+fn comparison(rivals: &Rivals) -> Value {
+    json!({
+        "models": rivals.comparison.as_ref().map(|found| compared(rivals, found)),
+        "sentence": rivals.comparison.as_ref().map(|found| found.sentence.clone()),
+        "without_minimum": rivals.lost.iter().map(|lost| json!({
+            "model": lost.name, "chi_square": lost.chi_square, "why": lost.why,
+        })).collect::<Value>(),
+    })
+}
+
+fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let one = |(at, rival): (usize, &Rival)| {
+        let criteria = &comparison.criteria[at];
+        json!({
+            "model": rival.name,
+            "point": rival.fit.point,
+            "chi_square": rival.fit.chi_square(),
+            "aic": criteria.aic,
+            "aicc": finite(criteria.aicc),
+            "bic": criteria.bic,
+            "weight": comparison.weights[at],
+            "cross_validation": { "mean": rival.foretells.mean, "error": rival.foretells.error },
+        })
+    };
+    rivals.all.iter().enumerate().map(one).collect()
+}
+
+/// One line a value of a profile.
+pub fn profiles_csv(fitted: &Fitted, profiles: &[Profile]) -> String {
+    let mut text = "name,value,chi_square_rise\n".to_owned();
+    for profile in profiles {
+        let name = &fitted.problem.parameters()[profile.parameter].name;
+        for (value, rise) in profile.values.iter().zip(&profile.rise) {
+            text += &format!("{name},{},{}\n", cell(*value), cell(*rise));
+        }
+    }
+    text
 }
 
 /// One line a parameter.

@@ -1,0 +1,244 @@
+//! Uncertainty beyond the covariance, and other models of the same data.
+
+use super::Arguments;
+use crate::arguments::infer::{Against, Method};
+use crate::failure::Failure;
+use crate::inference::{self, user};
+use hertzchain_infer::{
+    Chain, Compared, Comparison, Covariance, CrossValidation, CurveProblem, Fit, Fitting, Folding,
+    Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
+    compare, cross_validate, fit, profile,
+};
+use std::fs;
+
+/// What a method tells beside the covariance.
+pub enum More {
+    /// Nothing.
+    Nothing,
+    /// Profiles of all parameters.
+    Profiles(Vec<Profile>),
+    /// A sampled posterior.
+    Sampled(Box<Sampled>),
+}
+
+/// A chain and what it says.
+pub struct Sampled {
+    /// The chain, to be continued.
+    pub chain: Chain,
+    /// Its posterior, if it has converged.
+    pub posterior: Result<Posterior, Unconverged>,
+    /// Largest error of interpolated curves in standard errors; `None` where
+    /// every curve was computed.
+    pub surrogate_error: Option<f64>,
+}
+
+/// As the method asks.
+pub fn more(
+    problem: &CurveProblem,
+    fit: &Fit,
+    covariance: &Covariance,
+    arguments: &Arguments,
+) -> Result<More, Failure> {
+    match arguments.method {
+        Method::Covariance => Ok(More::Nothing),
+        Method::Profile => {
+            let all: Vec<usize> = (0..fit.point.len()).collect();
+            let how = Profiling::default();
+            let found = profile(problem, fit, covariance, &all, &how).map_err(user)?;
+            Ok(More::Profiles(found))
+        }
+        Method::Posterior => sampled(problem, fit, covariance, arguments),
+    }
+}
+
+/// Steps before convergence is looked at for the first time.
+const FIRST_STEPS: u64 = 300;
+
+/// Interpolated curves may be off by so many standard errors.
+const SURROGATE_ERROR: f64 = 0.1;
+
+fn sampled(
+    problem: &CurveProblem,
+    fit: &Fit,
+    covariance: &Covariance,
+    arguments: &Arguments,
+) -> Result<More, Failure> {
+    let surrogate = match arguments.direct {
+        true => None,
+        false => Surrogate::new(problem, fit, covariance).ok(),
+    };
+    let surrogate = surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR);
+    let target: &dyn Problem = match &surrogate {
+        Some(surrogate) => surrogate,
+        None => problem,
+    };
+    let mut chain = started(target, (fit, covariance), arguments)?;
+    let asked = Requirements::default();
+    let posterior = loop {
+        let left = arguments.steps.saturating_sub(chain.steps());
+        let more = match chain.posterior(&asked) {
+            Ok(posterior) => break Ok(posterior),
+            Err(unconverged) if left == 0 => break Err(unconverged),
+            Err(unconverged) => unconverged.more_steps().max(FIRST_STEPS),
+        };
+        chain.advance(target, more.min(left)).map_err(user)?;
+    };
+    Ok(More::Sampled(Box::new(Sampled {
+        chain,
+        posterior,
+        surrogate_error: surrogate.map(|surrogate| surrogate.error),
+    })))
+}
+
+/// A new chain, or the one that lies in the output folder.
+fn started(
+    problem: &dyn Problem,
+    (fit, covariance): (&Fit, &Covariance),
+    arguments: &Arguments,
+) -> Result<Chain, Failure> {
+    let Some(folder) = arguments.out.as_deref().filter(|_| arguments.resume) else {
+        let walkers = WALKERS.max(4 * fit.point.len());
+        let how = Sampling {
+            walkers,
+            seed: arguments.seed,
+            ..Sampling::default()
+        };
+        return Chain::start(problem, fit, covariance, &how).map_err(user);
+    };
+    let path = folder.join(CHAIN);
+    let unread = |error: &dyn std::fmt::Display| {
+        Failure::User(format!("--resume: {}: {error}", path.display()))
+    };
+    let text = fs::read(&path).map_err(|error| unread(&error))?;
+    serde_json::from_slice(&text).map_err(|error| unread(&error))
+}
+
+/// Walkers of each ensemble, unless parameters are many.
+const WALKERS: usize = 32;
+
+/// The chain's file in the output folder.
+pub const CHAIN: &str = "chain.json";
+
+/// A model that was fitted to the same data.
+pub struct Rival {
+    /// Its name, with what is free.
+    pub name: String,
+    /// Its fit.
+    pub fit: Fit,
+    /// How well it foretells what it has not seen.
+    pub foretells: CrossValidation,
+}
+
+/// A model that found no minimum.
+pub struct Lost {
+    /// Its name, with what is free.
+    pub name: String,
+    /// How far from the data it ended.
+    pub chi_square: f64,
+    /// Why it ended there.
+    pub why: String,
+}
+
+/// All models, the fit's own first, and what the data say of them.
+pub struct Rivals {
+    /// Models.
+    pub all: Vec<Rival>,
+    /// Models that found no minimum, and so are out of the comparison.
+    pub lost: Vec<Lost>,
+    /// Their comparison, if at least two are left.
+    pub comparison: Option<Comparison>,
+}
+
+/// Fits the other models to the same data, if any are asked for.
+pub fn rivals(
+    problem: &CurveProblem,
+    own: &Fit,
+    arguments: &Arguments,
+) -> Result<Option<Rivals>, Failure> {
+    if arguments.against.is_empty() {
+        return Ok(None);
+    }
+    let name = format!(
+        "{} ({})",
+        problem.model().experiment().name(),
+        arguments.freed.free.join(", ")
+    );
+    let mut all = vec![rival(name, problem, own.clone(), arguments.seed)?];
+    let mut lost = Vec::new();
+    for against in &arguments.against {
+        match other(against, problem, arguments)? {
+            Ok(rival) => all.push(rival),
+            Err(without) => lost.push(without),
+        }
+    }
+    let compared: Vec<Compared<'_>> = all
+        .iter()
+        .map(|rival| Compared {
+            name: &rival.name,
+            fit: &rival.fit,
+            cross_validation: Some(&rival.foretells),
+        })
+        .collect();
+    let comparison = match compared.len() {
+        1 => None,
+        _ => Some(compare(&compared).map_err(user)?),
+    };
+    Ok(Some(Rivals {
+        all,
+        lost,
+        comparison,
+    }))
+}
+
+fn other(
+    against: &Against,
+    problem: &CurveProblem,
+    arguments: &Arguments,
+) -> Result<Result<Rival, Lost>, Failure> {
+    let (mut modelled, freed) = against.options(&arguments.modelled);
+    // A model far from the data is steep there: its noise would hide the minimum.
+    modelled.accuracy = modelled.accuracy.min(RIVALS_ACCURACY);
+    let data = problem.data().clone();
+    let experiment = inference::experiment(&modelled, Some(&data.case))?;
+    let model = inference::model(&experiment, &modelled, &freed)?;
+    let problem = inference::problem(model, data, &freed)?;
+    let name = format!("{} ({})", against.model, freed.free.join(", "));
+    let how = Fitting {
+        starts: arguments.starts,
+        seed: arguments.seed,
+        ..Fitting::default()
+    };
+    let fit =
+        fit(&problem, &how).map_err(|error| Failure::User(format!("--against {name}: {error}")))?;
+    if !fit.ending.converged() {
+        return Ok(Err(Lost {
+            chi_square: fit.chi_square(),
+            why: fit.ending.to_string(),
+            name,
+        }));
+    }
+    Ok(Ok(rival(name, &problem, fit, arguments.seed)?))
+}
+
+/// Relative accuracy of other models' times of flight.
+const RIVALS_ACCURACY: f64 = 1e-6;
+
+fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Rival, Failure> {
+    // What was measured at one speed is left out together.
+    let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
+    let how = Folding {
+        groups,
+        parts: Some(PARTS.min(problem.data().rows.len())),
+        seed,
+    };
+    let foretells = cross_validate(problem, &fit, &how)
+        .map_err(|error| Failure::User(format!("{name}: {error}")))?;
+    Ok(Rival {
+        name,
+        fit,
+        foretells,
+    })
+}
+
+/// Parts into which rows are dealt for cross-validation.
+const PARTS: usize = 5;

@@ -1,0 +1,61 @@
+//! K and A of the wet contacts against speed, beside those of known oils.
+
+use super::Gauged;
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
+use hertzchain_infer::gauge::{Contact, Oil};
+
+/// Speeds at which an oil's curve is drawn.
+const POINTS: usize = 60;
+
+/// Both numbers, one panel each.
+pub fn contacts(gauged: &Gauged) -> Figure {
+    let mut figure = Figure::single_column(120.0).share_x();
+    figure = figure.panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9));
+    let both = |contact: &Contact| contact.combination.is_none();
+    let told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
+    match told.into_iter().any(both) {
+        true => figure.panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
+        false => figure,
+    }
+}
+
+fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
+    let chart = Chart::new("Speed of the striker (m/s)", label)
+        .x_log()
+        .y_log();
+    let oils = gauged.oils.iter().enumerate();
+    let chart = oils.fold(chart, |chart, (at, oil)| {
+        chart.with(curve(gauged, (at, oil), of, unit))
+    });
+    let known = gauged.rows.iter().filter_map(|row| {
+        let contact = row.told.as_ref().ok()?;
+        let (value, sd) = contact.estimates()[of];
+        Some((row.speed_m_s, unit * value, unit * sd))
+    });
+    let known: Vec<(f64, f64, f64)> = known.collect();
+    let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
+    let points = Series::points("measured", &column(|p| p.0), &column(|p| p.1))
+        .y_error(&column(|p| p.2))
+        .marker(Marker::Circle)
+        .colour(Colour::BLACK);
+    chart.with(points)
+}
+
+/// What an oil would give.
+fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
+    let speeds = gauged.gauge.wet().speeds_m_s();
+    let first = speeds.first().copied().unwrap_or(0.1);
+    let last = speeds.last().copied().unwrap_or(1.0);
+    let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
+    let speeds: Vec<f64> = (0..POINTS).map(speed).collect();
+    let value = |speed: &f64| {
+        let (k, a) = oil.contact(gauged.gauge.wet_radius_m(), *speed);
+        unit * [k, a][of]
+    };
+    let values: Vec<f64> = speeds.iter().map(value).collect();
+    let colour = Colour::PALETTE[number % Colour::PALETTE.len()];
+    let dashes = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted];
+    Series::line(&oil.name, &speeds, &values)
+        .colour(colour)
+        .dash(dashes[number % dashes.len()])
+}

@@ -1,0 +1,224 @@
+//! What the gauge says, for people and for programs.
+
+use super::Gauged;
+use crate::format::{self, digits, with_error};
+use crate::inference::words::{estimate, percent};
+use crate::print::heading;
+use crate::table::cell;
+use hertzchain_infer::Problem;
+use hertzchain_infer::gauge::{Contact, Gauge, SharedLaw, WetRow};
+use serde_json::{Value, json};
+
+/// Everything that is to be said.
+pub fn text(gauged: &Gauged) -> String {
+    let mut text = format!("{}\n{}\n", heading("Dry contacts"), dry(gauged));
+    text += &format!("{}\n{}", heading("Wet contacts"), contacts(gauged));
+    if let Some(laws) = &gauged.laws {
+        text += &law("K", "N/m^1.5", &laws.stiffness);
+        text += &law("A", "s", &laws.relaxation);
+    }
+    if let Some(add) = gauged.gauge.to_add() {
+        text += &format!(
+            "One number a speed determines one combination of K and A. To tell both, {add}.\n"
+        );
+    }
+    text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
+    text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
+    for (oil, why) in &gauged.verdict.failed {
+        text += &format!("{oil} can't be computed: {why}\n");
+    }
+    text + &gauged.verdict.sentence() + "\n"
+}
+
+fn dry(gauged: &Gauged) -> String {
+    let gauge = &gauged.gauge;
+    let parameters = gauge.dry().parameters().iter().enumerate();
+    let rows = parameters.map(|(at, parameter)| {
+        let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
+        (parameter.name.clone(), estimate(parameter, value, sd))
+    });
+    format::pairs(&rows.collect::<Vec<_>>())
+}
+
+/// K in GN/m^1.5 and A in ns, with their errors.
+fn shown(contact: &Contact) -> [String; 3] {
+    let [(k, k_sd), (a, a_sd)] = contact.estimates();
+    let both = |value: f64, sd: f64| {
+        let (value, sd) = with_error(value, sd);
+        format!("{value} ± {sd}")
+    };
+    let stiffness = both(1e-9 * k, 1e-9 * k_sd);
+    match &contact.combination {
+        None => [stiffness, both(1e9 * a, 1e9 * a_sd), others(contact)],
+        Some(combination) => [
+            stiffness,
+            "–".to_owned(),
+            format!(
+                "K·(A/{} ns)^{}",
+                digits(1e9 * combination.reference_s, 4),
+                digits(combination.exponent, 3)
+            ),
+        ],
+    }
+}
+
+/// Other pairs that fit as well.
+fn others(contact: &Contact) -> String {
+    let pair = |ln: &[f64; 2]| {
+        let (k, a) = (digits(1e-9 * ln[0].exp(), 4), digits(1e9 * ln[1].exp(), 4));
+        format!("or {k}, {a}")
+    };
+    contact
+        .others
+        .iter()
+        .map(pair)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn contacts(gauged: &Gauged) -> String {
+    let row = |row: &WetRow| {
+        let speed = digits(row.speed_m_s, 4);
+        let cells = match &row.told {
+            Ok(contact) => shown(contact),
+            Err(why) => ["–".to_owned(), "–".to_owned(), why.clone()],
+        };
+        std::iter::once(speed).chain(cells).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = gauged.rows.iter().map(row).collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", "also"];
+    let few = rows.iter().all(|row| row[3].is_empty());
+    let shown = if few { 3 } else { 4 };
+    let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
+    let rows: Vec<Vec<String>> = rows.iter().map(cut).collect();
+    format::table(&cut(&head.map(str::to_owned).to_vec()), &rows)
+}
+
+/// Reduced chi-square from which values are said to follow no power law.
+const NO_LAW: f64 = 2.0;
+
+fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
+    let prefactor = law.law.prefactor;
+    let relative = percent(law.ln_prefactor_sd);
+    let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
+    let fits = match law.reduced_chi_square > NO_LAW {
+        true => format!(
+            "; the values do not follow it (reduced chi-square {})",
+            digits(law.reduced_chi_square, 2)
+        ),
+        false => String::new(),
+    };
+    format!(
+        "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
+        digits(prefactor, 4)
+    )
+}
+
+fn matches(gauged: &Gauged) -> String {
+    let rows = gauged.verdict.matches.iter().map(|found| {
+        vec![
+            found.oil.clone(),
+            digits(found.distance, 3),
+            percent(found.chi_square.probability),
+            if found.fits() { "possible" } else { "rejected" }.to_owned(),
+        ]
+    });
+    let head = [
+        "oil",
+        "distance (standard errors)",
+        "as far by chance",
+        "verdict",
+    ];
+    format::table(&head.map(str::to_owned), &rows.collect::<Vec<_>>())
+}
+
+/// The same as JSON, in SI.
+pub fn json(gauged: &Gauged) -> Value {
+    let gauge = &gauged.gauge;
+    let names = gauge.dry().parameters().iter().enumerate();
+    let verdict = &gauged.verdict;
+    json!({
+        "dry": names.map(|(at, parameter)| json!({
+            "name": parameter.name, "unit": parameter.unit,
+            "value": gauge.dry_fit.point[at], "standard_error": gauge.dry_covariance.sd[at],
+        })).collect::<Value>(),
+        "dry_chi_square": gauge.dry_fit.chi_square(),
+        "contacts": gauged.rows.iter().map(row).collect::<Value>(),
+        "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
+        "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
+        "to_add": gauge.to_add(),
+        "oils": verdict.matches.iter().map(|found| json!({
+            "name": found.oil, "distance": found.distance,
+            "chi_square": found.chi_square.value, "freedom": found.chi_square.freedom,
+            "probability": found.chi_square.probability, "possible": found.fits(),
+            "farthest": { "what": found.farthest.0, "standard_errors": found.farthest.1 },
+        })).collect::<Value>(),
+        "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
+        "verdict": verdict.sentence(),
+    })
+}
+
+fn row(row: &WetRow) -> Value {
+    let mut all = json!({ "line": row.line, "speed_m_s": row.speed_m_s });
+    match &row.told {
+        Err(why) => all["missing"] = json!(why),
+        Ok(contact) => {
+            let [(k, k_sd), (a, a_sd)] = contact.estimates();
+            all["stiffness"] = json!({ "value": k, "standard_error": k_sd });
+            match &contact.combination {
+                None => {
+                    all["relaxation_time_s"] = json!({ "value": a, "standard_error": a_sd });
+                    all["ln_covariance"] = json!(contact.covariance());
+                    all["others"] = contact
+                        .others
+                        .iter()
+                        .map(|ln| {
+                            json!({
+                                "stiffness": ln[0].exp(), "relaxation_time_s": ln[1].exp(),
+                            })
+                        })
+                        .collect();
+                }
+                Some(combination) => {
+                    all["stiffness_times_relaxation_to"] = json!({
+                        "exponent": combination.exponent, "reference_s": combination.reference_s,
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+fn law_json(law: &SharedLaw) -> Value {
+    json!({
+        "prefactor": law.law.prefactor,
+        "prefactor_relative_error": law.ln_prefactor_sd,
+        "exponent": law.law.exponent,
+        "exponent_error": law.exponent_sd,
+        "reduced_chi_square": law.reduced_chi_square,
+    })
+}
+
+/// One line a speed.
+pub fn contacts_csv(gauged: &Gauged) -> String {
+    let mut text = "speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error,\
+                    combination_exponent,combination_reference_s\n"
+        .to_owned();
+    for row in &gauged.rows {
+        let Ok(contact) = &row.told else { continue };
+        let [(k, k_sd), (a, a_sd)] = contact.estimates();
+        let mut cells = vec![cell(row.speed_m_s), cell(k), cell(k_sd)];
+        cells.extend(match &contact.combination {
+            None => [cell(a), cell(a_sd), String::new(), String::new()],
+            Some(c) => [
+                String::new(),
+                String::new(),
+                cell(c.exponent),
+                cell(c.reference_s),
+            ],
+        });
+        text += &format!("{}\n", cells.join(","));
+    }
+    text
+}

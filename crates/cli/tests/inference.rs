@@ -1,0 +1,287 @@
+//! fit, gauge and design at the command line, and what they refuse.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    program.args(arguments).output().unwrap()
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(!message.contains("panicked"), "{message}");
+    message
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(arguments);
+    let told = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
+}
+
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("inference-{test}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn file(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// Six speeds of a preset's curve, as `sweep` writes them, as a path.
+fn curve(folder: &Path, preset: &str) -> String {
+    let out = folder.join(preset);
+    let out = out.to_str().unwrap();
+    let swept = run(&[
+        "sweep",
+        "-p",
+        preset,
+        "--speeds",
+        "log:0.1:1.2:6",
+        "--out",
+        out,
+    ]);
+    assert!(swept.status.success());
+    format!("{out}/sweep.csv")
+}
+
+const ERRORS: [&str; 4] = ["--tof-error", "2e-7", "--speed-error", "5e-4"];
+
+fn with_errors<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    arguments.iter().copied().chain(ERRORS).collect()
+}
+
+#[test]
+fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
+    let folder = folder("fit");
+    let data = curve(&folder, "dry");
+    let out = folder.join("out");
+    let out = out.to_str().unwrap();
+    let fit = [
+        "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "eta=2e4", "--json", "-o", out,
+    ];
+    let found = json(&with_errors(&fit));
+    for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
+        let parameter = &found["parameters"][at];
+        let value = parameter["value"].as_f64().unwrap();
+        let sd = parameter["standard_error"].as_f64().unwrap();
+        // No noise, so only the solver's errors, far below the data's.
+        assert!((value - exact).abs() < 0.1 * sd, "{parameter}");
+    }
+    for name in [
+        "fit.json",
+        "fit.csv",
+        "parameters.csv",
+        "fit.svg",
+        "fit.png",
+        "singular-values.png",
+    ] {
+        assert!(Path::new(out).join(name).exists(), "{name}");
+    }
+    // One thread or two: the same bits.
+    let one = json(&with_errors(&[&fit[..], &["--threads", "1"]].concat()));
+    assert_eq!(one, found);
+}
+
+#[test]
+fn profiles_and_other_models_are_told_in_words() {
+    let folder = folder("words");
+    let data = curve(&folder, "dry");
+    let fit = [
+        "fit", &data, "-p", "dry", "--free", "eta,B", "--method", "profile",
+    ];
+    let against = ["--against", "hertz-viscoelastic=eta"];
+    let output = run(&with_errors(&[&fit[..], &against].concat()));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("by profile") && text.contains("is rejected"),
+        "{text}"
+    );
+    let three = ["fit", &data, "-p", "dry", "--free", "Y,nu,eta,B"];
+    let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
+    assert!(text.contains("determine 3 of 4 combinations"), "{text}");
+    assert!(text.contains("free K and A instead"), "{text}");
+}
+
+#[test]
+fn a_posterior_is_the_same_in_one_run_and_in_two() {
+    let folder = folder("posterior");
+    let data = curve(&folder, "dry");
+    let out = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (whole, parts) = (out("whole"), out("parts"));
+    let run_into = |out: &str, more: &[&str]| {
+        let fit = [
+            "fit",
+            &data,
+            "-p",
+            "dry",
+            "--free",
+            "eta,B",
+            "--method",
+            "posterior",
+            "--json",
+            "-o",
+            out,
+        ];
+        json(&with_errors(&[&fit[..], more].concat()))
+    };
+    let at_once = run_into(&whole, &["--steps", "400"]);
+    let first = run_into(&parts, &["--steps", "300"]);
+    assert!(
+        first["posterior"]["unconverged"]
+            .as_str()
+            .unwrap()
+            .contains("has not converged")
+    );
+    let then = run_into(&parts, &["--steps", "400", "--resume"]);
+    assert_eq!(at_once["posterior"], then["posterior"]);
+}
+
+#[test]
+fn the_gauge_knows_its_oils_and_says_when_it_does_not() {
+    let folder = folder("gauge");
+    let (dry, pump) = (curve(&folder, "dry"), curve(&folder, "pump"));
+    let found = json(&with_errors(&["gauge", &pump, "--dry", &dry, "--json"]));
+    assert!(
+        found["verdict"]
+            .as_str()
+            .unwrap()
+            .starts_with("It is pump oil"),
+        "{found}"
+    );
+    // A dry chain's curve is that of no oil.
+    let found = json(&with_errors(&[
+        "gauge", &dry, "--dry", &dry, "--json", "--use", "incident",
+    ]));
+    assert!(
+        found["verdict"]
+            .as_str()
+            .unwrap()
+            .starts_with("None of these"),
+        "{found}"
+    );
+    assert!(found["to_add"].as_str().unwrap().contains("reflected"));
+}
+
+#[test]
+fn a_design_ranks_what_to_measure() {
+    let folder = folder("design");
+    let data = curve(&folder, "dry");
+    let design = [
+        "design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json",
+    ];
+    let found = json(&with_errors(&design));
+    let now = found["standard_errors_now"][0].as_f64().unwrap();
+    let ranked = found["ranked"].as_array().unwrap();
+    assert!(ranked.len() > 30);
+    for pair in ranked.windows(2) {
+        assert!(pair[0]["information_nats"].as_f64() >= pair[1]["information_nats"].as_f64());
+    }
+    assert!(ranked[0]["standard_errors"][0].as_f64().unwrap() < now);
+    let message = refused(&with_errors(&[
+        "design", &data, "--free", "eta", "--target", "B",
+    ]));
+    assert!(
+        message.contains("--target B is not free; free are eta"),
+        "{message}"
+    );
+}
+
+const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
+
+#[test]
+fn data_that_can_not_be_fitted_are_told_by_row_and_column() {
+    let folder = folder("data");
+    for (number, (rows, words)) in [
+        (
+            "0.5,0,7.6e-4,1e-7\n0.5,0,7.6e-4,1e-7\n",
+            "stands in line 2 too",
+        ),
+        ("-0.5,0,7.6e-4,1e-7\n", "line 2, speed_m_s"),
+        ("0.5,0,7.6e-4,0\n", "line 2, tof_incident_s_error"),
+        ("0.5,0,7.6e-4,\n", "no uncertainty"),
+        ("0.5,0,760,1\n", "looks like microseconds"),
+        (
+            "0.5,0,7.6e-4,1e-7\n",
+            "1 measured values for 2 free parameters (eta, B)",
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let data = file(&folder, &format!("{number}.csv"), &format!("{HEAD}{rows}"));
+        let message = refused(&["fit", &data, "-p", "dry", "--free", "eta,B"]);
+        assert!(message.contains(words), "{rows}: {message}");
+    }
+    assert!(
+        refused(&["fit", "nowhere.csv", "--free", "eta"]).contains("nowhere.csv can't be read")
+    );
+}
+
+#[test]
+fn parameters_that_can_not_be_free_are_told_by_name() {
+    let folder = folder("free");
+    let rows = "0.1,0,1.0274e-3,1e-7\n0.4,0,7.9465e-4,1e-7\n1.0,0,6.8166e-4,1e-7\n";
+    let data = file(&folder, "data.csv", &format!("{HEAD}{rows}"));
+    for (arguments, words) in [
+        (&["--free", "eta,hardness"][..], "hardness"),
+        (&["--free", "eta,aisi316.eta"], "are the same number"),
+        (
+            &["--free", "friction", "--start", "friction=0.05"],
+            "friction changes no residual",
+        ),
+        (
+            &["--free", "eta", "--bounds", "eta=1e5:1e6"],
+            "outside its bounds",
+        ),
+        (
+            &["--free", "eta", "--bounds", "eta=1e6:1e5"],
+            "leave nothing between them",
+        ),
+        (
+            &["--free", "eta", "--prior", "eta=1e3+-10"],
+            "start nearer, or widen the prior",
+        ),
+        (
+            &["--free", "eta", "--prior", "eta=1e3+-0"],
+            "is no distribution",
+        ),
+        (
+            &["--free", "eta", "--start", "B=3"],
+            "nothing of this name is free; free are eta",
+        ),
+        (
+            &["--free", "eta", "--start", "eta=3 mm"],
+            "another dimension",
+        ),
+        (
+            &["--free", "nu", "--start", "nu=0.3", "--scale", "nu=-1"],
+            "expected a positive number",
+        ),
+    ] {
+        let fit = ["fit", &data, "-p", "dry"];
+        let message = refused(&[&fit[..], arguments].concat());
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn a_bound_that_binds_is_no_error_bar() {
+    let folder = folder("bound");
+    let data = curve(&folder, "dry");
+    let fit = [
+        "fit", &data, "-p", "dry", "--free", "eta,B", "--bounds", "B=80:200", "--start", "B=90",
+    ];
+    let text = String::from_utf8(run(&with_errors(&fit)).stdout).unwrap();
+    assert!(text.contains("80 kg s/m^2, at its bound"), "{text}");
+}

@@ -1,0 +1,303 @@
+//! K and A of the wet contacts, speed by speed.
+
+use super::Gauge;
+use super::dry::shifts;
+use crate::curve::{CurveProblem, Joint, Part, Supply};
+use crate::data::{Data, Observable};
+use crate::{Covariance, FitError, Fitting, Parameter, Problem, fit};
+use rayon::prelude::*;
+
+/// What one speed tells of the wet contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WetRow {
+    /// Line of the wet table.
+    pub line: u64,
+    /// Speed of the striker in m/s.
+    pub speed_m_s: f64,
+    /// K and A, or the one combination that is determined, or why neither.
+    pub told: Result<Contact, String>,
+}
+
+/// K and A of the wet contacts at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// ln K, K in N/m^{3/2}, and ln A, A in s.
+    pub ln: [f64; 2],
+    /// Covariance of both from this row's measurements alone.
+    pub own: [[f64; 2]; 2],
+    /// Shifts of both by one standard error of each independent shift of the dry
+    /// contacts' numbers: common to all rows.
+    pub shared: Vec<[f64; 2]>,
+    /// Other pairs ln K, ln A that fit as well.
+    pub others: Vec<[f64; 2]>,
+    /// Where only one number was measured: what it determines.
+    pub combination: Option<Combination>,
+}
+
+/// The combination K · (A/A₀)^`exponent` that one number determines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Combination {
+    /// Exponent of A: how many times less K must be for A twice as large is
+    /// 2^`exponent`, without any change of what was measured.
+    pub exponent: f64,
+    /// A₀ in s, that of the dry contacts.
+    pub reference_s: f64,
+}
+
+impl Contact {
+    /// Whole covariance of ln K and ln A.
+    #[must_use]
+    pub fn covariance(&self) -> [[f64; 2]; 2] {
+        let mut sum = self.own;
+        for shift in &self.shared {
+            for i in 0..2 {
+                for j in 0..2 {
+                    sum[i][j] += shift[i] * shift[j];
+                }
+            }
+        }
+        sum
+    }
+
+    /// K in N/m^{3/2} (or the combination) and A in s, each with its standard error.
+    #[must_use]
+    pub fn estimates(&self) -> [(f64, f64); 2] {
+        let covariance = self.covariance();
+        [0, 1].map(|i| {
+            let value = self.ln[i].exp();
+            (value, value * covariance[i][i].sqrt())
+        })
+    }
+}
+
+/// K and A that fit a row.
+struct Solution {
+    point: [f64; 2],
+    covariance: Covariance,
+    cost: f64,
+}
+
+/// What is free in a row, by the number of its measurements.
+#[derive(Clone, Copy, PartialEq)]
+enum Free {
+    Both,
+    StiffnessAlone,
+}
+
+impl Gauge {
+    /// What each speed of the wet data tells of the wet contacts.
+    #[must_use]
+    pub fn rows(&self) -> Vec<WetRow> {
+        let shifts = shifts(&self.dry_covariance.matrix);
+        let row = |at: usize| {
+            let row = &self.data.rows[at];
+            WetRow {
+                line: row.line,
+                speed_m_s: row.speed_m_s.value,
+                told: self.contact(at, &shifts).map_err(|error| error.to_string()),
+            }
+        };
+        (0..self.data.rows.len()).into_par_iter().map(row).collect()
+    }
+
+    fn contact(&self, row: usize, shifts: &[Vec<f64>]) -> Result<Contact, FitError> {
+        let free = match self.data.rows[row].observables().count() {
+            1 => Free::StiffnessAlone,
+            _ => Free::Both,
+        };
+        let mut solutions = self.solutions(row, free)?;
+        let Solution {
+            point, covariance, ..
+        } = solutions.remove(0);
+        let mut shared = Vec::new();
+        for shift in shifts {
+            let moved = self.dry_fit.point.iter().zip(shift).map(|(x, s)| x + s);
+            let moved: Vec<f64> = moved.collect();
+            let other = self.solved(row, free, &moved, point)?.point;
+            shared.push([0, 1].map(|i| (other[i] / point[i]).ln()));
+        }
+        let entry = |i: usize, j: usize| {
+            let of = covariance.matrix.get(i).and_then(|row| row.get(j));
+            of.map_or(0.0, |c| c / (point[i] * point[j]))
+        };
+        Ok(Contact {
+            ln: point.map(f64::ln),
+            own: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
+            shared,
+            others: solutions
+                .into_iter()
+                .map(|s| s.point.map(f64::ln))
+                .collect(),
+            combination: match free {
+                Free::Both => None,
+                Free::StiffnessAlone => Some(self.combination(row, point)?),
+            },
+        })
+    }
+
+    /// All that fit as well as the best, from several starts, the best first:
+    /// times of flight need not determine K and A uniquely.
+    fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
+        let [stiffness, relaxation] = self.dry_contact();
+        let starts = match free {
+            Free::Both => &TIMES_DRY[..],
+            Free::StiffnessAlone => &TIMES_DRY[..1],
+        };
+        let mut found: Vec<Solution> = Vec::new();
+        let mut failed = None;
+        for times in starts {
+            match self.solved(
+                row,
+                free,
+                &self.dry_fit.point,
+                [stiffness, times * relaxation],
+            ) {
+                Ok(solution) => found.push(solution),
+                Err(error) => failed = Some(error),
+            }
+        }
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let Some(best) = found.first().map(|best| best.cost) else {
+            return Err(failed.unwrap_or(FitError::NothingFree));
+        };
+        let mut distinct: Vec<Solution> = Vec::new();
+        for solution in found {
+            let same = |other: &Solution| (solution.point[1] / other.point[1]).ln().abs() < SAME;
+            if solution.cost < best + AS_GOOD && !distinct.iter().any(same) {
+                distinct.push(solution);
+            }
+        }
+        Ok(distinct)
+    }
+
+    /// K and A that one row asks for, with given numbers of the dry contacts.
+    fn solved(
+        &self,
+        row: usize,
+        free: Free,
+        dry: &[f64],
+        start: [f64; 2],
+    ) -> Result<Solution, FitError> {
+        let problem = self.row_problem(row, (free, start), dry);
+        let how = Fitting {
+            iterations: ITERATIONS,
+            tolerance: TOLERANCE,
+            ..Fitting::default()
+        };
+        let fitted = fit(&problem, &how)?;
+        Ok(Solution {
+            covariance: Covariance::new(problem.parameters(), &fitted),
+            point: [
+                fitted.point[0],
+                fitted.point.get(1).copied().unwrap_or(start[1]),
+            ],
+            cost: fitted.cost,
+        })
+    }
+
+    /// K and A of the dry contacts.
+    fn dry_contact(&self) -> [f64; 2] {
+        let start = self.start();
+        [0, 1].map(|at| start.get(at).map_or(f64::NAN, |p: &Parameter| p.start))
+    }
+
+    /// The last two of the wet model's parameters: K and A.
+    fn start(&self) -> Vec<Parameter> {
+        let all = self.wet.numbers().parameters(&[]);
+        all.into_iter().skip(self.dry_fit.point.len()).collect()
+    }
+
+    fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> Joint {
+        let data = Data {
+            rows: vec![self.data.rows[row].clone()],
+            ..self.data.clone()
+        };
+        let mut start = self.start();
+        for (parameter, value) in start.iter_mut().zip(at) {
+            parameter.start = value;
+            parameter.scale = value;
+        }
+        let mut supplies: Vec<Supply> = dry.iter().map(|value| Supply::Fixed(*value)).collect();
+        supplies.push(Supply::Free(0));
+        let parameters = match free {
+            Free::Both => {
+                supplies.push(Supply::Free(1));
+                start
+            }
+            Free::StiffnessAlone => {
+                supplies.push(Supply::Fixed(at[1]));
+                start.into_iter().take(1).collect()
+            }
+        };
+        let problem = CurveProblem::part(self.wet.clone(), data);
+        Joint::new(parameters, vec![Part { problem, supplies }])
+    }
+
+    /// What a change of A is worth in K, from derivatives of the one residual.
+    fn combination(&self, row: usize, point: [f64; 2]) -> Result<Combination, FitError> {
+        let problem = self.row_problem(row, (Free::Both, point), &self.dry_fit.point);
+        let moved = |at: usize, sign: f64| {
+            let mut moved = point.to_vec();
+            moved[at] *= (sign * STEP).exp();
+            moved
+        };
+        let points = [moved(0, 1.0), moved(0, -1.0), moved(1, 1.0), moved(1, -1.0)];
+        let found = problem.residuals(&points);
+        let mut first = Vec::new();
+        for residuals in found {
+            let residuals = residuals.map_err(FitError::Start)?.standardised;
+            first.push(residuals.first().copied().unwrap_or(f64::NAN));
+        }
+        let slopes = [first[0] - first[1], first[2] - first[3]];
+        Ok(Combination {
+            exponent: slopes[1] / slopes[0],
+            reference_s: point[1],
+        })
+    }
+
+    /// What would tell solutions apart that fit one row equally well.
+    #[must_use]
+    pub fn ambiguous(rows: &[WetRow]) -> Option<&'static str> {
+        let told = rows.iter().filter_map(|row| row.told.as_ref().ok());
+        let several = told.into_iter().any(|contact| !contact.others.is_empty());
+        several.then_some(
+            "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
+             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Power laws leave these rows out.",
+        )
+    }
+
+    /// Whether any row has more than one number, so that K and A come apart.
+    #[must_use]
+    pub fn tells_both(&self) -> bool {
+        let rows = &self.data.rows;
+        rows.iter().any(|row| row.observables().count() > 1)
+    }
+
+    /// What to add to data that do not tell K and A apart.
+    #[must_use]
+    pub fn to_add(&self) -> Option<&'static str> {
+        let missing = !self.tells_both() && !self.data.has(Observable::Reflected);
+        missing.then_some(
+            "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
+             the returning to the passing peak (--use incident,returning-ratio)",
+        )
+    }
+}
+
+/// Iterations of one row's fit: two equations with two unknowns are solved in some ten.
+const ITERATIONS: usize = 60;
+
+/// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
+const TIMES_DRY: [f64; 3] = [1.0, 4.0, 12.0];
+
+/// Difference of cost within which two solutions are equally good.
+const AS_GOOD: f64 = 1.0;
+
+/// Difference in ln A below which two solutions are one.
+const SAME: f64 = 0.02;
+
+/// Fall of chi-square/2 below which a row is solved: a thousandth of a standard error.
+const TOLERANCE: f64 = 1e-6;
+
+/// Half the step in ln K and ln A of the derivatives.
+const STEP: f64 = 0.01;

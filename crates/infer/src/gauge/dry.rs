@@ -1,0 +1,65 @@
+//! What the dry chain is to a gauge.
+
+use crate::curve::{CurveError, CurveProblem, Model};
+use crate::data::Data;
+use hertzchain_experiment::Experiment;
+
+/// A dry curve against its model, all as the experiment has it.
+pub(super) fn problem(model: Model, data: Data) -> Result<CurveProblem, CurveError> {
+    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    CurveProblem::new(model, data, parameters)
+}
+
+/// Reduced radius in m of the first wet contact; `None` without any.
+pub(super) fn wet_radius_m(experiment: &Experiment) -> Option<f64> {
+    let section = experiment.sections().iter().find(|section| section.wet)?;
+    let (chain, _) = experiment.chain(None).ok()?;
+    Some(chain.pair(section.from)?.radius_m)
+}
+
+/// Square root of a covariance by columns (Cholesky): shifts of all parameters
+/// that are independent of each other and one standard error long; parameters
+/// without an error do not move.
+pub(super) fn shifts(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let count = matrix.len();
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for at in 0..count {
+        let entry = |row: usize| {
+            let known: f64 = columns.iter().map(|c| c[row] * c[at]).sum();
+            matrix[row][at] - known
+        };
+        let pivot = entry(at);
+        let column: Vec<f64> = match pivot > 0.0 {
+            true => (0..count)
+                .map(|row| {
+                    if row < at {
+                        0.0
+                    } else {
+                        entry(row) / pivot.sqrt()
+                    }
+                })
+                .collect(),
+            false => vec![0.0; count],
+        };
+        columns.push(column);
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shifts_sum_to_the_covariance() {
+        let matrix = vec![vec![4.0, 1.2], vec![1.2, 0.9]];
+        let shifts = shifts(&matrix);
+        for i in 0..2 {
+            for j in 0..2 {
+                let sum: f64 = shifts.iter().map(|shift| shift[i] * shift[j]).sum();
+                // Rounding.
+                assert!((sum - matrix[i][j]).abs() < 1e-15, "{i} {j}");
+            }
+        }
+    }
+}

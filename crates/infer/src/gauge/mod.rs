@@ -1,0 +1,127 @@
+//! The oil gauge: what a liquid makes of the contacts, and which liquid it is.
+//!
+//! The dry curve tells the dry contacts, those in front of the sensor bead among
+//! them; with these known, the wet curve tells the stiffness K and the relaxation
+//! time A of the wet ones, speed by speed.
+
+mod contacts;
+mod dry;
+mod laws;
+mod oils;
+mod verdict;
+
+pub use contacts::{Combination, Contact, WetRow};
+pub use laws::{GaugeLaws, SharedLaw};
+pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
+pub use verdict::{Match, Verdict};
+
+use crate::curve::{CurveError, CurveProblem, Model};
+use crate::data::Data;
+use crate::free::{FreeError, FreeNumber, FreeNumbers};
+use crate::{Covariance, Fit, FitError, Fitting, ModelError, fit};
+use hertzchain_experiment::{Experiment, Mistakes};
+
+/// Why a liquid can't be gauged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GaugeError {
+    /// A number that can't be free.
+    #[error(transparent)]
+    Free(#[from] FreeError),
+    /// A model that is none.
+    #[error(transparent)]
+    Model(#[from] Mistakes),
+    /// Data that do not suit the model.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// The dry curve can't be fitted.
+    #[error("the dry curve: {0}")]
+    Dry(FitError),
+    /// The wet curve can't be computed at all.
+    #[error("the wet curve: {0}")]
+    Wet(FitError),
+    /// The wet model has no wet contacts.
+    #[error(
+        "{0} has no wet contacts: expected a section of [[contacts]] with `wet = true` in the \
+         model of the wet chain"
+    )]
+    NoWetContacts(String),
+    /// The model at the best fit.
+    #[error(transparent)]
+    At(#[from] ModelError),
+}
+
+/// The models of both chains and what is free in the dry contacts of both.
+pub struct Chains<'a> {
+    /// The dry chain.
+    pub dry: &'a Experiment,
+    /// The same chain with a wet section.
+    pub wet: &'a Experiment,
+    /// Free numbers of the dry contacts, by names that both experiments know.
+    pub free: &'a [String],
+    /// Relative accuracy of times of flight.
+    pub accuracy: f64,
+}
+
+/// A gauge that knows its dry contacts.
+pub struct Gauge {
+    dry: CurveProblem,
+    /// Fit of the dry curve.
+    pub dry_fit: Fit,
+    /// Its covariance.
+    pub dry_covariance: Covariance,
+    wet: Model,
+    data: Data,
+    /// Reduced radius of wet contacts in m.
+    radius_m: f64,
+}
+
+impl Gauge {
+    /// Fits the dry curve.
+    ///
+    /// # Errors
+    /// See [`GaugeError`].
+    pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, GaugeError> {
+        let numbers = |experiment: &Experiment, more: &[&str]| {
+            let names = chains.free.iter().map(String::as_str);
+            let found = names
+                .chain(more.iter().copied())
+                .map(|name| FreeNumber::find(experiment, name, None));
+            FreeNumbers::new(found.collect::<Result<_, _>>()?)
+        };
+        let radius_m = dry::wet_radius_m(chains.wet)
+            .ok_or_else(|| GaugeError::NoWetContacts(chains.wet.name().to_owned()))?;
+        let model = Model::new(chains.dry, numbers(chains.dry, &[])?)?;
+        let dry = dry::problem(model.with_accuracy(chains.accuracy), dry)?;
+        let dry_fit = fit(&dry, &Fitting::default()).map_err(GaugeError::Dry)?;
+        let parameters = crate::Problem::parameters(&dry);
+        let dry_covariance = Covariance::new(parameters, &dry_fit);
+        let wet_model = Model::new(chains.wet, numbers(chains.wet, &["wet.K", "wet.A"])?)?;
+        Ok(Self {
+            dry_covariance,
+            dry_fit,
+            dry,
+            wet: wet_model.with_accuracy(chains.accuracy),
+            data: wet,
+            radius_m,
+        })
+    }
+
+    /// The dry curve against its model.
+    #[must_use]
+    pub fn dry(&self) -> &CurveProblem {
+        &self.dry
+    }
+
+    /// Reduced radius of the wet contacts in m.
+    #[must_use]
+    pub fn wet_radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// The wet data.
+    #[must_use]
+    pub fn wet(&self) -> &Data {
+        &self.data
+    }
+}

@@ -1,0 +1,111 @@
+//! Simulated measurements at the paper's noise.
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each test uses a part; a test that cannot go on should fail"
+)]
+
+use hertzchain_experiment::Experiment;
+use hertzchain_infer::{
+    CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Model, Observable, Predicted, Speeds,
+};
+use hertzchain_signal::Estimate;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Shots at one speed.
+const SHOTS: f64 = 20.0;
+
+/// Scatter of a shot's speed in m/s, and of its times in s: half a sample of the
+/// paper's 1 MS/s.
+pub const SPEED_M_S: f64 = 0.003;
+pub const TIME_S: f64 = 0.5e-6;
+
+/// A model of an experiment with these numbers free.
+pub fn model(experiment: &Experiment, names: &[&str]) -> Model {
+    let numbers = names
+        .iter()
+        .map(|name| FreeNumber::find(experiment, name, None).unwrap());
+    Model::new(experiment, FreeNumbers::new(numbers.collect()).unwrap()).unwrap()
+}
+
+/// Speeds in equal ratios over the paper's range.
+pub fn speeds_m_s(count: usize) -> Vec<f64> {
+    let step = |at: usize| 0.075 * (1.23_f64 / 0.075).powf(at as f64 / (count - 1) as f64);
+    (0..count).map(step).collect()
+}
+
+/// A curve at the experiment's own numbers, a hundred times as accurate as a
+/// fit's, with its slopes d ln y/d ln v from shots 1 % slower and faster.
+pub struct Truth {
+    pub speeds_m_s: Vec<f64>,
+    pub curve: Vec<Predicted>,
+    slopes: Vec<[f64; 4]>,
+}
+
+/// Relative distance of the shots that tell slopes.
+const ASIDE: f64 = 0.01;
+
+impl Truth {
+    pub fn of(experiment: &Experiment, speeds_m_s: &[f64]) -> Self {
+        let exact = model(experiment, &[]).with_accuracy(1e-7);
+        let at = |factor: f64| {
+            let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
+            exact
+                .curves(&[Vec::new()], &Speeds::of_rows(&speeds))
+                .remove(0)
+                .unwrap()
+        };
+        let [below, curve, above] = [1.0 - ASIDE, 1.0, 1.0 + ASIDE].map(at);
+        let width = ((1.0 + ASIDE) / (1.0 - ASIDE)).ln();
+        let slope = |row: usize| {
+            [0, 1, 2, 3].map(|of| (above[row][of].unwrap() / below[row][of].unwrap()).ln() / width)
+        };
+        Self {
+            slopes: (0..curve.len()).map(slope).collect(),
+            speeds_m_s: speeds_m_s.to_vec(),
+            curve,
+        }
+    }
+
+    /// A repetition of the measurement: means of 20 shots, whose true mean speed
+    /// is not quite what was set.
+    pub fn measured(&self, seed: u64) -> Data {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
+        let (speed_error, time_error) = (SPEED_M_S / SHOTS.sqrt(), TIME_S / SHOTS.sqrt());
+        let mut row = |at: usize| {
+            let speed = self.speeds_m_s[at];
+            let moved = speed_error * normal() / speed;
+            let values = [Observable::Incident, Observable::Reflected].map(|of| {
+                let exact = self.curve[at][of as usize].unwrap();
+                let shifted = exact * (self.slopes[at][of as usize] * moved).exp();
+                let value = shifted + time_error * normal();
+                Some(Estimate {
+                    value,
+                    sigma: time_error,
+                })
+            });
+            DataRow {
+                line: at as u64 + 2,
+                speed_m_s: Estimate {
+                    value: speed,
+                    sigma: speed_error,
+                },
+                values: [values[0], values[1], None, None],
+            }
+        };
+        Data {
+            file: "simulated".to_owned(),
+            case: String::new(),
+            rows: (0..self.speeds_m_s.len()).map(&mut row).collect(),
+        }
+    }
+}
+
+/// Data against a model whose parameters start at the experiment's numbers.
+pub fn problem(model: &Model, data: Data) -> CurveProblem {
+    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    CurveProblem::new(model.clone(), data, parameters).unwrap()
+}

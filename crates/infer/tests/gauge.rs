@@ -1,0 +1,164 @@
+//! The oil gauge on simulated oils.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod common;
+
+use common::{Truth, speeds_m_s};
+use hertzchain_experiment::{Experiment, preset};
+use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
+use hertzchain_infer::{Data, Observable};
+
+const SPEEDS: usize = 4;
+
+fn gauge(wet: Data, seed: u64) -> Gauge {
+    let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
+    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &free,
+        accuracy: 1e-5,
+    };
+    let dry = Truth::of(&dry_model, &speeds_m_s(SPEEDS)).measured(seed);
+    Gauge::new(&chains, dry, wet).unwrap()
+}
+
+fn wet(experiment: &Experiment, seed: u64) -> Data {
+    Truth::of(experiment, &speeds_m_s(SPEEDS)).measured(100 + seed)
+}
+
+#[test]
+fn the_tables_oils_are_those_of_the_presets() {
+    let oils = known_oils().unwrap();
+    for (name, oil) in [("motor", &oils[0]), ("gear", &oils[1]), ("pump", &oils[2])] {
+        for speed in [0.1, 1.0] {
+            let (chain, _) = preset(name).unwrap().chain(Some(speed)).unwrap();
+            let pair = chain.pair(20).unwrap();
+            let (k, a) = oil.contact(pair.radius_m, speed);
+            // v^b computed twice: rounding.
+            assert!((k / pair.hertz_stiffness() - 1.0).abs() < 1e-12, "{name}");
+            assert!(
+                (a / pair.left.relaxation_time_s() - 1.0).abs() < 1e-12,
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn each_oil_is_recognised_and_the_others_rejected() {
+    for (seed, (name, called)) in [
+        ("motor", "motor oil"),
+        ("gear", "gear oil"),
+        ("pump", "pump oil"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let gauge = gauge(wet(&preset(name).unwrap(), seed as u64), seed as u64);
+        let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
+        let allowed: Vec<&str> = verdict.allowed().map(|found| found.oil.as_str()).collect();
+        assert_eq!(allowed.len(), 1, "{name}: {verdict:?}");
+        assert!(allowed[0].starts_with(called), "{name}: {allowed:?}");
+        assert!(verdict.sentence().starts_with("It is "));
+    }
+}
+
+#[test]
+fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
+    let unknown = preset("motor")
+        .unwrap()
+        .set(&[("motor-oil.young_modulus", 205e9)])
+        .unwrap();
+    let gauge = gauge(wet(&unknown, 7), 7);
+    let mut table = known_oils().unwrap();
+    let verdict = gauge.verdict(&table).unwrap();
+    assert!(
+        verdict.sentence().starts_with("None of these"),
+        "{}",
+        verdict.sentence()
+    );
+    let mut row = table[0].clone();
+    if let Description::Material {
+        young_modulus_pa, ..
+    } = &mut row.description
+    {
+        *young_modulus_pa = 205e9;
+    }
+    row.name = "mine".to_owned();
+    table.push(row);
+    assert_eq!(
+        gauge.verdict(&table).unwrap().sentence(),
+        "It is mine: no other known oil gives these times."
+    );
+}
+
+#[test]
+fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
+    let pump = preset("pump").unwrap();
+    let gauge = gauge(wet(&pump, 3), 3);
+    let oil = known_oils().unwrap().remove(2);
+    for row in gauge.rows() {
+        let contact = row.told.unwrap();
+        let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
+        let covariance = contact.covariance();
+        if !contact.others.is_empty() {
+            // Two pairs give the same times: one is the truth, to some percent.
+            let pairs = std::iter::once(contact.ln).chain(contact.others.clone());
+            let near = pairs
+                .map(|ln| (ln[1] - a.ln()).abs())
+                .fold(f64::INFINITY, f64::min);
+            assert!(near < 0.1, "{}: {contact:?}", row.speed_m_s);
+            continue;
+        }
+        for (of, exact) in [k, a].into_iter().enumerate() {
+            let pull = (contact.ln[of] - exact.ln()) / covariance[of][of].sqrt();
+            // Sixteen numbers: of a hundred seeds one would fail.
+            assert!(pull.abs() < 3.5, "{}: {of}: {pull}", row.speed_m_s);
+        }
+        assert!(contact.combination.is_none());
+    }
+    assert_eq!(gauge.to_add(), None);
+}
+
+#[test]
+fn incident_times_alone_tell_one_combination_and_what_to_add() {
+    let pump = preset("pump").unwrap();
+    let gauge = gauge(wet(&pump, 4).only(&[Observable::Incident]), 4);
+    let oil = known_oils().unwrap().remove(2);
+    for row in gauge.rows() {
+        let contact = row.told.unwrap();
+        let combination = contact.combination.unwrap();
+        let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
+        let exact = k.ln() + combination.exponent * (a / combination.reference_s).ln();
+        // The exponent is that at the dry A; to the pump oil's A, up to four times as
+        // large, it bends the combination by some percent.
+        assert!(
+            (contact.ln[0] - exact).abs() < 0.1,
+            "{}: {combination:?}",
+            row.speed_m_s
+        );
+    }
+    assert!(gauge.to_add().unwrap().contains("reflected"));
+}
+
+#[test]
+fn a_users_oil_may_be_given_by_its_contact() {
+    let text = "name,stiffness_prefactor,stiffness_exponent,relaxation_prefactor_s,relaxation_exponent\n\
+                mine,9e9,-0.1,8e-7,-0.2\n";
+    let oil = &oils("mine.csv", text).unwrap()[0];
+    assert_eq!(oil.contact(0.003, 1.0), (9e9, 8e-7));
+    for (row, words) in [
+        (",9e9,0,8e-7,0", "without a name"),
+        ("mine,9e9,0,,", "expected either"),
+        ("mine,fast,0,8e-7,0", "`fast` is no number"),
+        ("mine,-1,0,8e-7,0", "expected more than 0"),
+    ] {
+        let text = text.replace("mine,9e9,-0.1,8e-7,-0.2", row);
+        let error = oils("mine.csv", &text).unwrap_err().to_string();
+        assert!(
+            error.contains("mine.csv, line 2") && error.contains(words),
+            "{error}"
+        );
+    }
+}

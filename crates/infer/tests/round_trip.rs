@@ -1,0 +1,133 @@
+//! From known parameters to data and back, at the paper's noise.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod common;
+
+use common::{Truth, model, problem, speeds_m_s};
+use hertzchain_experiment::preset;
+use hertzchain_infer::{
+    Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,
+};
+use hertzchain_signal::coverage;
+
+const SPEEDS: usize = 12;
+
+#[test]
+fn the_dry_pair_comes_back_within_its_errors_from_a_start_far_off() {
+    let dry = preset("dry").unwrap();
+    let truth = Truth::of(&dry, &speeds_m_s(SPEEDS));
+    let model = model(&dry, &["eta", "B"]);
+    let data = truth.measured(1);
+    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    (parameters[0].start, parameters[1].start) = (1e4, 10.0);
+    let problem = hertzchain_infer::CurveProblem::new(model, data, parameters).unwrap();
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let covariance = Covariance::new(problem.parameters(), &best);
+    for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
+        let pull = (best.point[at] - exact) / covariance.sd[at];
+        // Of a thousand seeds three would fail.
+        assert!(pull.abs() < 3.0, "{at}: {pull}");
+        assert!(covariance.sd[at] / exact < 0.01, "{:?}", covariance.sd);
+    }
+    let goodness = Goodness::new(problem.parameters(), &best);
+    assert!(goodness.chi_square.unwrap().probability > 1e-3);
+    // Differences by two steps agree, so the derivatives are those of the model.
+    assert!(best.jacobian.worst_disagreement() < 0.01);
+}
+
+#[test]
+fn intervals_by_covariance_hold_the_truth_as_often_as_they_say() {
+    // A surrogate stands for the model; its error is a small part of σ.
+    let dry = preset("dry").unwrap();
+    let truth = Truth::of(&dry, &speeds_m_s(12));
+    let model = model(&dry, &["eta", "B"]);
+    let mut pulls: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    let first = problem(&model, truth.measured(0));
+    let best = fit(&first, &Fitting::default()).unwrap();
+    let around = Covariance::new(first.parameters(), &best);
+    let surrogate = Surrogate::new(&first, &best, &around).unwrap();
+    assert!(surrogate.error < 0.1, "{}", surrogate.error);
+    for seed in 0..150 {
+        let repeated = surrogate.with_data(truth.measured(1000 + seed)).unwrap();
+        let best = fit(&repeated, &Fitting::default()).unwrap();
+        let covariance = Covariance::new(repeated.parameters(), &best);
+        for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
+            pulls[at].push((best.point[at] - exact) / covariance.sd[at]);
+        }
+    }
+    for pulls in &pulls {
+        for (factor, share) in [(1.0, 0.6827), (1.96, 0.95)] {
+            let held = coverage(pulls, factor).unwrap().share;
+            // Three binomial standard errors of 150 trials.
+            let error = (share * (1.0 - share) / 150.0_f64).sqrt();
+            assert!((held - share).abs() < 3.0 * error, "{factor}: {held}");
+        }
+    }
+}
+
+#[test]
+fn leaving_out_the_cubic_term_is_rejected_at_the_papers_noise() {
+    let dry = preset("dry").unwrap();
+    let data = Truth::of(&dry, &speeds_m_s(SPEEDS)).measured(2);
+    let full = problem(&model(&dry, &["eta", "B"]), data.clone());
+    let full = fit(&full, &Fitting::default()).unwrap();
+    let without = preset("hertz-viscoelastic").unwrap();
+    // Even with the stiffness free too, which takes up what it can.
+    let poorer = problem(&model(&without, &["eta", "Y"]), data);
+    let best = fit(&poorer, &Fitting::default()).unwrap();
+    let goodness = Goodness::new(poorer.parameters(), &best);
+    assert!(goodness.chi_square.unwrap().probability < 1e-6);
+    assert!(Criteria::new(&best).aicc - Criteria::new(&full).aicc > 100.0);
+}
+
+#[test]
+fn three_numbers_of_a_material_are_two_of_its_contacts() {
+    let viscoelastic = preset("hertz-viscoelastic").unwrap();
+    let data = Truth::of(&viscoelastic, &[0.5]).measured(3);
+    let three = model(&viscoelastic, &["Y", "nu", "eta"]);
+    let parameters = three.numbers().parameters(&[0.5]);
+    // One speed tells two numbers: three can't even be asked for.
+    let few = hertzchain_infer::CurveProblem::new(three.clone(), data.clone(), parameters);
+    assert!(
+        few.unwrap_err()
+            .to_string()
+            .contains("2 measured values for 3 free")
+    );
+    // Nor do more speeds tell three.
+    let data = Truth::of(&viscoelastic, &speeds_m_s(8)).measured(3);
+    let three = problem(&three, data.clone());
+    let best = fit(&three, &Fitting::default()).unwrap();
+    let label = |at: usize| three.residual_label(at);
+    let found = Identifiability::new(three.parameters(), &best, label);
+    assert_eq!(found.determined(), 2, "{:?}", found.singular_values);
+    let advice = three.would_separate().join("; ");
+    assert!(advice.contains("enter only through K and A"), "{advice}");
+    // K and A they do tell.
+    let two = problem(&model(&viscoelastic, &["K", "A"]), data);
+    let best = fit(&two, &Fitting::default()).unwrap();
+    let found = Identifiability::new(two.parameters(), &best, |at| two.residual_label(at));
+    assert!(found.confused.is_empty());
+    let covariance = Covariance::new(two.parameters(), &best);
+    for (at, exact) in [8.792_630_379_6e9, 3.385_289_514_9e-7]
+        .into_iter()
+        .enumerate()
+    {
+        let pull = (best.point[at] - exact) / covariance.sd[at];
+        assert!(pull.abs() < 3.0, "{at}: {pull}");
+    }
+}
+
+#[test]
+fn one_speed_and_one_time_tell_one_number() {
+    let viscoelastic = preset("hertz-viscoelastic").unwrap();
+    let data = Truth::of(&viscoelastic, &[0.5]).measured(4);
+    let data = data.only(&[Observable::Incident]);
+    let one = model(&viscoelastic, &["K", "A"]);
+    let parameters = one.numbers().parameters(&[0.5]);
+    let error = hertzchain_infer::CurveProblem::new(one, data, parameters).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("1 measured values for 2 free parameters (K, A)")
+    );
+}
