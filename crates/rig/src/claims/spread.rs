@@ -31,7 +31,8 @@ pub struct Estimate {
 pub fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    (square / (values.len() as f64 - 1.0)).sqrt()
+    // 0/0 of one value and of none.
+    (square / values.len().saturating_sub(1) as f64).sqrt()
 }
 
 /// Mean of what shots have, with its error.
