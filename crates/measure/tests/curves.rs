@@ -141,7 +141,8 @@ fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
         .sum();
     // Taking a time to the mean speed moves its sigma by 1e-3 of itself.
     assert!((at_mean.sigma / (picking.sqrt() / 5.0) - 1.0).abs() < 1e-3);
-    assert!(at_mean.sigma < 0.3 * row.incident_s.error, "{row:?}");
+    // Times differ by 0.2 samples a shot, more than noise moves them.
+    assert!(at_mean.sigma < 0.5 * row.incident_s.error, "{row:?}");
 }
 
 #[test]
