@@ -146,12 +146,7 @@ impl Gauge {
         let mut found: Vec<Solution> = Vec::new();
         let mut failed = None;
         for times in starts {
-            match self.solved(
-                row,
-                free,
-                &self.dry_fit.point,
-                [stiffness, times * relaxation],
-            ) {
+            match self.from(row, free, [stiffness, times * relaxation]) {
                 Ok(solution) => found.push(solution),
                 Err(error) => failed = Some(error),
             }
@@ -168,6 +163,16 @@ impl Gauge {
             }
         }
         Ok(distinct)
+    }
+
+    /// The solution next to an A: first the K that suits it, then both.
+    fn from(&self, row: usize, free: Free, start: [f64; 2]) -> Result<Solution, FitError> {
+        let dry = &self.dry_fit.point;
+        let along = self.solved(row, Free::StiffnessAlone, dry, start)?;
+        match free {
+            Free::StiffnessAlone => Ok(along),
+            Free::Both => self.solved(row, free, dry, along.point),
+        }
     }
 
     /// K and A that one row asks for, with given numbers of the dry contacts.
@@ -288,7 +293,7 @@ impl Gauge {
 const ITERATIONS: usize = 60;
 
 /// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
-const TIMES_DRY: [f64; 3] = [1.0, 4.0, 12.0];
+const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
 
 /// Difference of cost within which two solutions are equally good.
 const AS_GOOD: f64 = 1.0;
