@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::{Truth, speeds_m_s};
+use common::Truth;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
 
-const SPEEDS: usize = 4;
+const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
@@ -19,12 +19,12 @@ fn gauge(wet: Data, seed: u64) -> Gauge {
         free: &free,
         accuracy: 1e-5,
     };
-    let dry = Truth::of(&dry_model, &speeds_m_s(SPEEDS)).measured(seed);
+    let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
 
 fn wet(experiment: &Experiment, seed: u64) -> Data {
-    Truth::of(experiment, &speeds_m_s(SPEEDS)).measured(100 + seed)
+    Truth::of(experiment, &SPEEDS_M_S).measured(100 + seed)
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
         let covariance = contact.covariance();
         if !contact.others.is_empty() {
             // Several pairs give the same times; the pump oil's is ambiguous only slow.
-            assert!(row.speed_m_s < 0.18, "{}: {contact:?}", row.speed_m_s);
+            assert!(row.speed_m_s < 0.3, "{}: {contact:?}", row.speed_m_s);
             continue;
         }
         for (of, exact) in [k, a].into_iter().enumerate() {
