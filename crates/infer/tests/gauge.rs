@@ -102,11 +102,6 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
         let contact = row.told.unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         let covariance = contact.covariance();
-        if !contact.others.is_empty() {
-            // Several pairs give the same times; the pump oil's is ambiguous only slow.
-            assert!(row.speed_m_s < 0.3, "{}: {contact:?}", row.speed_m_s);
-            continue;
-        }
         for (of, exact) in [k, a].into_iter().enumerate() {
             let pull = (contact.ln[of] - exact.ln()) / covariance[of][of].sqrt();
             // Sixteen numbers: of a hundred seeds one would fail.

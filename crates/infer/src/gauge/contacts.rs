@@ -135,7 +135,7 @@ impl Gauge {
         })
     }
 
-    /// All that fit as well as the best, from several starts, the best first:
+    /// All that fit as well as the best, from several starts, the smallest A first:
     /// times of flight need not determine K and A uniquely.
     fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
         let [stiffness, relaxation] = self.dry_contact();
@@ -162,6 +162,7 @@ impl Gauge {
                 distinct.push(solution);
             }
         }
+        distinct.sort_by(|a, b| a.point[1].total_cmp(&b.point[1]));
         Ok(distinct)
     }
 
@@ -267,7 +268,8 @@ impl Gauge {
         let several = told.into_iter().any(|contact| !contact.others.is_empty());
         several.then_some(
             "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
-             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Power laws leave these rows out.",
+             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Told first, and \
+             taken for power laws and the figure, is that of the smallest A.",
         )
     }
 
@@ -290,7 +292,7 @@ impl Gauge {
 }
 
 /// Iterations of one row's fit: two equations with two unknowns are solved in some ten.
-const ITERATIONS: usize = 60;
+const ITERATIONS: usize = 30;
 
 /// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
 const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
