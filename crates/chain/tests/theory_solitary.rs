@@ -1,7 +1,11 @@
 //! The exact lattice solitary wave against published digits, theorems and the lattice itself.
 
+#[path = "common/row.rs"]
+mod row;
+
 use hertzchain_chain::theory::TheoryError;
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave, kinetic_share_by_virial};
+use row::verlet_step;
 
 const EXPONENTS: [f64; 9] = [1.02, 1.2, 1.5, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0];
 
@@ -123,21 +127,6 @@ fn lattice_carries_the_wave_unchanged() {
         .fold(0.0, |worst: f64, gap| worst.max(gap.abs()));
     // Second-order steps of 1e-3: 1.3e-6, a quarter of that at half the step.
     assert!(error < 2e-6, "{error:e}");
-}
-
-fn verlet_step(overlap: &mut [f64], velocity: &mut [f64], h: f64) {
-    let drift = |overlap: &mut [f64], velocity: &[f64]| {
-        for (bead, gap) in overlap.iter_mut().enumerate() {
-            *gap += 0.5 * h * (velocity[bead] - velocity[bead + 1]);
-        }
-    };
-    drift(overlap, velocity);
-    for (contact, gap) in overlap.iter().enumerate() {
-        let push = h * gap.max(0.0).powf(1.5);
-        velocity[contact] -= push;
-        velocity[contact + 1] += push;
-    }
-    drift(overlap, velocity);
 }
 
 #[test]

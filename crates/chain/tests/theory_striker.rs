@@ -1,7 +1,11 @@
 //! The leading pulse of an equal striker: conservation, the exact wave and the lattice agree.
 
+#[path = "common/row.rs"]
+mod row;
+
 use hertzchain_chain::theory::solitary::SolitaryShape;
 use hertzchain_chain::theory::striker::{LeadingPulse, least_waves};
+use row::verlet_step;
 
 #[test]
 fn energy_share_of_an_equal_striker_fixes_the_known_speed_force_and_bead_speed() {
@@ -55,19 +59,4 @@ fn leading_energy_share(h: f64) -> f64 {
     (40..beads - 1)
         .map(|i| velocity[i] * velocity[i] + 0.8 * overlap[i].max(0.0).powf(2.5))
         .sum()
-}
-
-fn verlet_step(overlap: &mut [f64], velocity: &mut [f64], h: f64) {
-    let drift = |overlap: &mut [f64], velocity: &[f64]| {
-        for (bead, gap) in overlap.iter_mut().enumerate() {
-            *gap += 0.5 * h * (velocity[bead] - velocity[bead + 1]);
-        }
-    };
-    drift(overlap, velocity);
-    for (contact, gap) in overlap.iter().enumerate() {
-        let push = h * gap.max(0.0).powf(1.5);
-        velocity[contact] -= push;
-        velocity[contact + 1] += push;
-    }
-    drift(overlap, velocity);
 }

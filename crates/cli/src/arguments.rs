@@ -188,6 +188,16 @@ pub struct Shot {
     pub animate: bool,
 }
 
+/// Judges by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Judges {
+    /// Two more shots each, with longer steps
+    Each,
+    /// Forty speeds, computed much more tightly, choose the cheapest steps for all: two to five
+    /// times as fast on dry rows
+    Pilots,
+}
+
 /// Arguments of `sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
@@ -215,6 +225,9 @@ pub struct Sweep {
     /// Follow the striker until it is away for good and give its velocity; takes the slower loop
     #[arg(long)]
     pub rebound: bool,
+    /// Who tells how right times of flight are
+    #[arg(long, value_enum, value_name = "WHO", default_value = "each")]
+    pub judges: Judges,
     /// Threads; all cores when absent
     #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,

@@ -162,3 +162,98 @@ fn every_method_agrees_on_pulses_of_one_shape() {
         );
     }
 }
+
+/// Two columns, and what of them is told on standard error.
+fn told_of_two_columns(folder: &Path, arguments: &[&str]) -> String {
+    let rows = volts(0.5, 1.0);
+    let rows = rows
+        .iter()
+        .enumerate()
+        .map(|(i, v)| format!("{i},{v:.6}\n"));
+    let text = "t,sum\n".to_owned() + &rows.collect::<String>();
+    fs::write(folder.join("two.csv"), text).unwrap();
+    let output = measure(folder, &[&["two.csv"], arguments].concat());
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
+    let folder = folder("unit");
+    let told = told_of_two_columns(&folder, &[]);
+    assert!(
+        told.contains("taken as times in s") && told.contains("--time-unit us"),
+        "{told}"
+    );
+    let output = measure(&folder, &["two.csv", "--time-unit", "us", "--json"]);
+    let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
+    assert!((found.as_f64().unwrap() - 1e-6 * incident_us(0.5)).abs() < 1e-7);
+    assert_eq!(told_of_two_columns(&folder, &["--time-unit", "us"]), "");
+}
+
+#[test]
+fn a_continuous_recording_is_cut_and_the_cut_is_told() {
+    let folder = folder("continuous");
+    let shot = volts(0.5, 1.0);
+    let all = [
+        shot.as_slice(),
+        &vec![0.0; 40_000],
+        &shot,
+        &vec![0.0; 40_000],
+    ]
+    .concat();
+    write(&folder.join("long.csv"), &all);
+    let output = measure(&folder, &["long.csv", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let all = json(&output);
+    assert_eq!(all["shots"].as_array().unwrap().len(), 2);
+    assert!(
+        all["notes"][0]["note"]
+            .as_str()
+            .unwrap()
+            .contains("--whole")
+    );
+    let level = measure(&folder, &["long.csv", "--level", "0.3", "--json"]);
+    assert_eq!(json(&level)["shots"].as_array().unwrap().len(), 2);
+    let never = measure(&folder, &["long.csv", "--level", "-7"]);
+    let told = String::from_utf8_lossy(&never.stderr).into_owned();
+    assert!(told.contains("never passes the level of -7 V"), "{told}");
+    assert_eq!(never.status.code(), Some(2));
+}
+
+#[test]
+fn three_channels_of_a_shot_are_one_too_many() {
+    let folder = folder("three");
+    let told = told_of_two_columns(
+        &folder,
+        &["--channel", "1", "--channel", "1", "--channel", "1"],
+    );
+    assert!(told.contains("at most two channels"), "{told}");
+}
+
+#[test]
+fn lines_of_the_table_that_fit_no_record_are_told() {
+    let folder = folder("unmatched");
+    write(&folder.join("shot, 1.csv"), &volts(0.5, 1.0));
+    let list = "file,speed\n\"shot, 1.csv\",0.5\nshot-2.csv,0.7\n";
+    fs::write(folder.join("list.csv"), list).unwrap();
+    let output = measure(&folder, &["shot, 1.csv", "--shots", "list.csv"]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    let expected = "line 3: shot-2.csv is none of the files given (shot, 1.csv)";
+    assert!(told.contains(expected), "{told}");
+    assert_eq!(output.status.code(), Some(0));
+}
+
+#[test]
+fn shots_that_are_the_same_have_no_spread_of_rounding() {
+    let folder = folder("same");
+    let mut list = "file,speed,speed error\n".to_owned();
+    for (number, speed) in [0.5, 0.5, 0.7, 0.7, 0.9].iter().enumerate() {
+        write(&folder.join(format!("{number}.csv")), &volts(0.5, 1.0));
+        list += &format!("{number}.csv,{speed},0.001\n");
+    }
+    fs::write(folder.join("list.txt"), list).unwrap();
+    let output = measure(&folder, &[".", "--shots", "list.txt"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(!printed.contains("e-1"), "{printed}");
+    assert!(printed.contains(" ± 0) µs · v^(0 ± 0)"), "{printed}");
+}

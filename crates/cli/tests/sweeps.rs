@@ -130,3 +130,14 @@ fn threads_are_counted_from_1() {
         );
     }
 }
+
+#[test]
+fn a_sweep_judged_by_pilots_says_so() {
+    let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:100"];
+    let pilots = [&speeds[..], &["--judges", "pilots"]].concat();
+    let printed = text(&sweep(&pilots).stdout);
+    assert!(printed.contains("chosen by 40 pilots"), "{printed}");
+    let each = sweep(&[&speeds[..], &["--json"]].concat());
+    let swept: Value = serde_json::from_slice(&each.stdout).unwrap();
+    assert!(swept["pilots"].is_null());
+}

@@ -8,15 +8,20 @@
 
 mod curves;
 mod example;
+mod level;
 mod list;
+mod refused;
 mod run;
+mod several;
 mod shot;
 mod table;
 
 pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};
 pub use example::Example;
 pub use hertzchain_records as records;
+pub use level::Level;
 pub use list::{ListError, ShotList};
-pub use run::{Measurement, Options, measure};
+pub use refused::Refused;
+pub use run::{Cut, Measurement, Note, Options, measure};
 pub use shot::Shot;
-pub use table::{ratios_csv, shots_csv, speeds_csv};
+pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv};

@@ -1,16 +1,24 @@
 //! Speeds and cases that recordings themselves do not tell: `shots.csv`.
 
-use std::path::Path;
+use crate::Shot;
+use csv::{ReaderBuilder, StringRecord, Trim};
+use std::collections::{HashMap, HashSet};
+use std::ffi::OsString;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 /// A table of shots: which file, at which speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotList {
     entries: Vec<Entry>,
+    /// Which entries are about files of a name.
+    by_name: HashMap<OsString, Vec<usize>>,
 }
 
 /// One line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Entry {
+    line: u64,
     file: String,
     shot: Option<u64>,
     pub case: Option<String>,
@@ -36,7 +44,7 @@ pub enum ListError {
     #[error("line {line}: {text:?} is no {what}")]
     NoNumber {
         /// Which line, from 1.
-        line: usize,
+        line: u64,
         /// What stands there.
         text: String,
         /// What should stand there.
@@ -46,12 +54,19 @@ pub enum ListError {
     #[error("line {line} names no file")]
     NoFile {
         /// Which line, from 1.
-        line: usize,
+        line: u64,
+    },
+    /// Fields that a table cannot have.
+    #[error("{detail}")]
+    Malformed {
+        /// What and where.
+        detail: String,
     },
 }
 
 /// Columns by their titles.
 struct Columns {
+    decimal_comma: bool,
     file: usize,
     shot: Option<usize>,
     case: Option<usize>,
@@ -60,44 +75,122 @@ struct Columns {
 }
 
 impl ShotList {
-    /// Reads the table's text: commas, or semicolons with decimal commas.
+    /// Reads the table's text: commas, or semicolons or tabs with decimal commas.
+    /// Fields may stand in quotes.
     ///
     /// # Errors
     /// See [`ListError`].
     pub fn parse(text: &str) -> Result<Self, ListError> {
         let text = text.trim_start_matches('\u{feff}');
-        let mut lines = text.lines().enumerate().filter(|(_, line)| {
-            let line = line.trim();
-            !line.is_empty() && !line.starts_with('#')
-        });
-        let (_, titles) = lines.next().ok_or(ListError::NoTitles)?;
-        let delimiter = [';', '\t', ',']
-            .into_iter()
-            .find(|mark| titles.contains(*mark));
-        let delimiter = delimiter.unwrap_or(',');
-        if let Some(title) = titles.split(delimiter).find(|title| in_other_unit(title)) {
-            let title = title.trim().to_owned();
-            return Err(ListError::Unit { title });
+        let titles = text.lines().map(str::trim);
+        let titles = titles
+            .clone()
+            .find(|line| !line.is_empty() && !line.starts_with('#'));
+        let titles = titles.ok_or(ListError::NoTitles)?;
+        let marks = [b';', b'\t'].into_iter();
+        let delimiter = marks
+            .clone()
+            .find(|mark| titles.contains(char::from(*mark)));
+        let mut reader = ReaderBuilder::new()
+            .delimiter(delimiter.unwrap_or(b','))
+            .comment(Some(b'#'))
+            .trim(Trim::All)
+            .flexible(true)
+            .from_reader(text.as_bytes().chain(b"\n".as_slice()));
+        let malformed = |error: csv::Error| ListError::Malformed {
+            detail: error.to_string(),
+        };
+        let titles = reader.headers().map_err(malformed)?.clone();
+        let columns = Columns::of(&titles, delimiter.is_some())?;
+        let mut entries = Vec::new();
+        let mut row = StringRecord::new();
+        while reader.read_record(&mut row).map_err(malformed)? {
+            // Where a record begins is told before empty lines are passed over.
+            let line = reader.position().line() - 1;
+            // A spreadsheet leaves lines of nothing but delimiters.
+            if !row.iter().all(str::is_empty) {
+                entries.push(columns.entry(&row, line)?);
+            }
         }
-        let columns = Columns::of(titles, delimiter).ok_or(ListError::NoTitles)?;
-        let entries = lines.map(|(index, line)| columns.entry(line, delimiter, index + 1));
-        Ok(Self {
-            entries: entries.collect::<Result<_, _>>()?,
-        })
+        let mut by_name: HashMap<OsString, Vec<usize>> = HashMap::new();
+        for (index, entry) in entries.iter().enumerate() {
+            let name = Path::new(&entry.file).file_name().unwrap_or_default();
+            by_name.entry(name.to_owned()).or_default().push(index);
+        }
+        Ok(Self { entries, by_name })
     }
 
-    /// What is said of a shot: by its file's name with as much of the path as
-    /// the table gives, and its number if the table numbers shots.
+    /// What is said of a shot, by the first line that does.
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&Entry> {
-        self.entries.iter().find(|entry| {
-            file.ends_with(&entry.file) && (entry.shot.is_none() || entry.shot == shot)
-        })
+        let lines = self.by_name.get(file.file_name()?)?;
+        let mut entries = lines.iter().filter_map(|line| self.entries.get(*line));
+        entries.find(|entry| entry.means(file, shot))
+    }
+
+    /// What lines and shots do not find in each other, as it is told to people.
+    ///
+    /// Files that were refused are told of elsewhere, and so not here.
+    pub(crate) fn unmatched(&self, files: &[PathBuf], shots: &[Shot]) -> Vec<String> {
+        let mut used = HashSet::new();
+        let mut told: Vec<String> = Vec::new();
+        for shot in shots {
+            match self.find(&shot.file, shot.shot) {
+                Some(entry) => {
+                    used.insert(entry.line);
+                }
+                None if shot.speed_m_s.is_some() => {}
+                None => told.push(format!("no line is about {}", shot.source)),
+            }
+        }
+        let unused = self
+            .entries
+            .iter()
+            .filter(|entry| !used.contains(&entry.line));
+        told.extend(unused.filter_map(|entry| entry.unused(files, shots)));
+        told
+    }
+}
+
+/// Names that anybody reads at once.
+const SHOWN: usize = 6;
+
+impl Entry {
+    /// By the file's name with as much of its path as the table gives, and the
+    /// shot's number if the table numbers shots.
+    fn means(&self, file: &Path, shot: Option<u64>) -> bool {
+        file.ends_with(&self.file) && (self.shot.is_none() || self.shot == shot)
+    }
+
+    /// Why no shot found this line; `None` if its file gave none at all.
+    fn unused(&self, files: &[PathBuf], shots: &[Shot]) -> Option<String> {
+        let Self { line, file, .. } = self;
+        if !files.iter().any(|given| given.ends_with(file)) {
+            let names = files.iter().filter_map(|file| file.file_name());
+            let shown: Vec<_> = names
+                .take(SHOWN)
+                .map(|name| name.to_string_lossy())
+                .collect();
+            let more = if files.len() > SHOWN { ", …" } else { "" };
+            let shown = shown.join(", ");
+            return Some(format!(
+                "line {line}: {file} is none of the files given ({shown}{more})"
+            ));
+        }
+        let mut of_file = shots.iter().filter(|shot| shot.file.ends_with(file));
+        let some = of_file.clone().next().is_some();
+        let again = of_file.any(|shot| self.means(&shot.file, shot.shot));
+        let number = self.shot.unwrap_or_default();
+        match (some, again) {
+            (false, _) => None,
+            (true, true) => Some(format!("line {line}: an earlier line is about the same")),
+            (true, false) => Some(format!("line {line}: {file} has no shot {number}")),
+        }
     }
 }
 
 /// Whether a title is that of speeds and names a unit that is not m/s.
 fn in_other_unit(title: &str) -> bool {
-    let title = title.trim().trim_matches('"').to_lowercase();
+    let title = title.to_lowercase();
     let of_speed = ["speed", "velocity", "v0", "error"];
     let Some((name, unit)) = title.split_once(['(', '[']) else {
         return false;
@@ -108,25 +201,24 @@ fn in_other_unit(title: &str) -> bool {
 }
 
 impl Columns {
-    fn of(titles: &str, delimiter: char) -> Option<Self> {
-        let titles: Vec<String> = titles
-            .split(delimiter)
-            .map(|title| {
-                let title = title.split(['(', '[']).next().unwrap_or_default();
-                title
-                    .trim()
-                    .trim_matches('"')
-                    .to_lowercase()
-                    .replace('_', " ")
-            })
-            .collect();
+    fn of(titles: &StringRecord, decimal_comma: bool) -> Result<Self, ListError> {
+        if let Some(title) = titles.iter().find(|title| in_other_unit(title)) {
+            let title = title.to_owned();
+            return Err(ListError::Unit { title });
+        }
+        let plain = |title: &str| {
+            let name = title.split(['(', '[']).next().unwrap_or_default();
+            name.trim().to_lowercase().replace('_', " ")
+        };
+        let titles: Vec<String> = titles.iter().map(plain).collect();
         let find = |names: &[&str]| {
             titles
                 .iter()
                 .position(|title| names.contains(&title.as_str()))
         };
-        Some(Self {
-            file: find(&["file", "record", "recording"])?,
+        Ok(Self {
+            decimal_comma,
+            file: find(&["file", "record", "recording"]).ok_or(ListError::NoTitles)?,
             shot: find(&["shot", "segment"]),
             case: find(&["case", "oil", "section"]),
             speed: find(&["speed", "speed m s", "v0", "velocity"]),
@@ -134,49 +226,40 @@ impl Columns {
         })
     }
 
-    fn entry(&self, line: &str, delimiter: char, number: usize) -> Result<Entry, ListError> {
-        let fields: Vec<&str> = line
-            .split(delimiter)
-            .map(|field| field.trim().trim_matches('"'))
-            .collect();
+    fn entry(&self, row: &StringRecord, line: u64) -> Result<Entry, ListError> {
         let field = |column: Option<usize>| {
-            let text = fields.get(column?).copied();
+            let text = row.get(column?);
             text.filter(|text| !text.is_empty())
         };
         let wrong = |text: &str, what| ListError::NoNumber {
-            line: number,
+            line,
             text: text.to_owned(),
             what,
         };
-        let value = |column, what| -> Result<Option<f64>, ListError> {
-            let Some(text) = field(column) else {
-                return Ok(None);
-            };
-            let plain = if delimiter == ',' {
-                text.to_owned()
-            } else {
-                text.replace(',', ".")
-            };
-            let plain = plain.trim_end_matches("m/s").trim();
-            let value = plain
-                .parse()
-                .ok()
-                .filter(|v: &f64| v.is_finite() && *v >= 0.0);
-            value.map(Some).ok_or_else(|| wrong(text, what))
+        let value = |column, what| {
+            let number = |text: &str| self.number(text).ok_or_else(|| wrong(text, what));
+            field(column).map(number).transpose()
         };
-        let shot = match field(self.shot) {
-            None => None,
-            Some(text) => Some(text.parse().map_err(|_| wrong(text, "number of a shot"))?),
-        };
+        let shot = |text: &str| text.parse().map_err(|_| wrong(text, "number of a shot"));
         Ok(Entry {
+            line,
             file: field(Some(self.file))
-                .ok_or(ListError::NoFile { line: number })?
+                .ok_or(ListError::NoFile { line })?
                 .to_owned(),
-            shot,
+            shot: field(self.shot).map(shot).transpose()?,
             case: field(self.case).map(str::to_owned),
             speed_m_s: value(self.speed, "speed in m/s")?,
             speed_error_m_s: value(self.error, "error of a speed in m/s")?,
         })
+    }
+
+    fn number(&self, text: &str) -> Option<f64> {
+        let text = match self.decimal_comma {
+            true => text.replace(',', "."),
+            false => text.to_owned(),
+        };
+        let number = text.trim_end_matches("m/s").trim().parse().ok();
+        number.filter(|number: &f64| number.is_finite() && *number >= 0.0)
     }
 }
 
@@ -214,6 +297,25 @@ mod tests {
         let list = ShotList::parse("File;Shot;Speed (m/s)\na.h5;1;0,5\na.h5;2;0,7\n").unwrap();
         let speed = |shot| list.find(Path::new("a.h5"), Some(shot)).unwrap().speed_m_s;
         assert_eq!((speed(1), speed(2)), (Some(0.5), Some(0.7)));
+    }
+
+    #[test]
+    fn quoted_fields_keep_their_commas_and_quotes() {
+        let list =
+            "file,case,speed\n\"run 1, dry.csv\",\"gear, 2 drops of \"\"EP\"\"\",0.5\n\n,,\n";
+        let list = ShotList::parse(list).unwrap();
+        let entry = list.find(Path::new("run 1, dry.csv"), None).unwrap();
+        let case = entry.case.as_deref();
+        assert_eq!(
+            (case, entry.speed_m_s),
+            (Some("gear, 2 drops of \"EP\""), Some(0.5))
+        );
+        assert_eq!(list.entries.len(), 1);
+        let list = ShotList::parse("file,speed\na.csv,\"0,5\"\n");
+        assert!(
+            matches!(list, Err(ListError::NoNumber { line: 2, .. })),
+            "{list:?}"
+        );
     }
 
     #[test]

@@ -1,20 +1,27 @@
 //! Recordings into shots, over threads, in the order in which they came.
 
-use crate::{Example, Shot, ShotList};
-use hertzchain_records::{ReadOptions, Record, RecordError, read};
+use crate::level::AtLevel;
+use crate::several::{Content, content};
+use crate::{Example, Level, Refused, Shot, ShotList};
+use hertzchain_records::{Parts, ReadOptions, Record, read};
 use hertzchain_signal::Measuring;
 use rayon::prelude::*;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Samples that are read before they are measured together: enough for all
 /// threads, and some 100 MB at most.
 const BATCH: usize = 1 << 22;
+
+/// Samples of a recording that are looked through for a level at a time.
+const PIECE: usize = 1 << 20;
 
 /// How recordings are read and measured.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// What files leave open.
     pub reading: ReadOptions,
+    /// How recordings that hold several shots are cut, unless `reading` does.
+    pub cutting: Cut,
     /// How pulses are found and picked.
     pub measuring: Measuring,
     /// Speeds and cases of files.
@@ -23,18 +30,45 @@ pub struct Options {
     pub speed_error_m_s: Option<f64>,
 }
 
+/// How recordings that hold several shots are cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Cut {
+    /// Where several shots are plain in one record.
+    #[default]
+    Plain,
+    /// Never: a record is a shot.
+    Never,
+    /// Where they pass a level.
+    Level(Level),
+}
+
 /// What came of a set of recordings.
 #[derive(Debug, Default)]
 pub struct Measurement {
     /// Every record that could be read, in order; some without times.
     pub shots: Vec<Shot>,
     /// What could not be read.
-    pub refused: Vec<RecordError>,
+    pub refused: Vec<Refused>,
+    /// What was taken for granted, and of which files.
+    pub notes: Vec<Note>,
+    /// What the list of shots and the recordings do not find in each other.
+    pub unmatched: Vec<String>,
     /// The first good shot of every case, with its samples.
     pub examples: Vec<Example>,
     /// Samples that were read, all channels together.
     pub samples: u64,
 }
+
+/// Something that was taken for granted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// What, and how to say otherwise.
+    pub text: String,
+    /// Of which files, in order.
+    pub files: Vec<PathBuf>,
+}
+
+type Read = Box<dyn Iterator<Item = Result<Record, Refused>>>;
 
 /// Reads and measures recordings; `seen` is told how many records are done.
 ///
@@ -44,30 +78,47 @@ pub struct Measurement {
 #[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, seen: &mut dyn FnMut(usize)) -> Measurement {
     let mut measurement = Measurement::default();
-    let mut records = files.iter().flat_map(|file| read(file, &options.reading));
+    let mut records = files.iter().flat_map(|file| records(file, options));
     let mut refused = Vec::new();
-    let mut batch = gather(&mut records, options, &mut refused);
+    let mut batch = gather(&mut records, &mut refused);
     while !batch.is_empty() {
-        let cases = measurement.cases();
         let mut done = Vec::new();
         // Readers stay in this thread; the others measure meanwhile.
         let next = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| done = measured(&batch, &cases, options));
-            gather(&mut records, options, &mut refused)
+            scope.spawn(|_| done = measured(&batch, options));
+            gather(&mut records, &mut refused)
         });
         seen(batch.len());
-        measurement.keep(done, batch);
+        for (shots, record) in done.into_iter().zip(batch) {
+            measurement.keep(shots, &record, options);
+        }
         batch = next;
     }
     measurement.refused = refused;
+    if let Some(list) = &options.list {
+        measurement.unmatched = list.unmatched(files, &measurement.shots);
+    }
     measurement
+}
+
+/// The records of a file, cut at a level if one is given.
+fn records(file: &Path, options: &Options) -> Read {
+    match options.cutting {
+        Cut::Level(level) => {
+            let pieces = ReadOptions {
+                parts: Parts::Pieces(PIECE),
+                ..options.reading.clone()
+            };
+            Box::new(AtLevel::new(read(file, &pieces), level))
+        }
+        _ => Box::new(read(file, &options.reading).map(|record| record.map_err(Refused::from))),
+    }
 }
 
 /// The next records that can be read, as many as are measured together.
 fn gather(
-    records: &mut dyn Iterator<Item = Result<Record, RecordError>>,
-    options: &Options,
-    refused: &mut Vec<RecordError>,
+    records: &mut dyn Iterator<Item = Result<Record, Refused>>,
+    refused: &mut Vec<Refused>,
 ) -> Vec<Record> {
     let mut batch = Vec::new();
     let mut waiting = 0;
@@ -77,59 +128,77 @@ fn gather(
             Some(Err(error)) => refused.push(error),
             Some(Ok(record)) => {
                 waiting += record.len() * record.channels.len();
-                batch.push(named(record, options));
+                batch.push(record);
             }
         }
     }
     batch
 }
 
-/// A shot, and its samples if it may become an example.
-type Done = (Shot, Option<Vec<Vec<f64>>>);
+/// A shot, and where it begins and ends in a record that was cut.
+type Done = (Shot, Option<(usize, usize)>);
 
-fn measured(batch: &[Record], cases: &[String], options: &Options) -> Vec<Done> {
+fn measured(batch: &[Record], options: &Options) -> Vec<Vec<Done>> {
+    let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
-        let (shot, volts) = Shot::of(record, &options.measuring);
-        let worth = shot.flight.is_ok() && !cases.contains(&shot.case);
-        (shot, worth.then_some(volts))
+        let shot = |record: &Record| Shot::of(record, &options.measuring);
+        match searched.then(|| content(record)) {
+            Some(Content::Plain(ranges)) => {
+                let part = |(from, to)| (shot(&record.part(from, to - from)), Some((from, to)));
+                ranges.into_iter().map(part).collect()
+            }
+            content => vec![(
+                Shot {
+                    holds_several: content == Some(Content::Mixed),
+                    ..shot(record)
+                },
+                None,
+            )],
+        }
     };
     batch.par_iter().map(one).collect()
 }
 
-/// A record with what the list says of it.
-fn named(mut record: Record, options: &Options) -> Record {
-    let entry = options
-        .list
-        .as_ref()
-        .and_then(|list| list.find(&record.file, record.shot));
-    if let Some(entry) = entry {
-        record.speed_m_s = entry.speed_m_s.or(record.speed_m_s);
-        record.speed_error_m_s = entry.speed_error_m_s.or(record.speed_error_m_s);
-        record.case = entry.case.clone().or(record.case);
-    }
-    record.speed_error_m_s = record.speed_error_m_s.or(options.speed_error_m_s);
-    record
-}
-
 impl Measurement {
-    fn keep(&mut self, done: Vec<Done>, batch: Vec<Record>) {
-        for ((shot, volts), record) in done.into_iter().zip(batch) {
-            self.samples += (record.len() * record.channels.len()) as u64;
-            if let Some(volts) = volts.filter(|_| !self.has_example(&shot.case)) {
-                self.examples.push(Example {
-                    shot: shot.clone(),
-                    names: record.channels.into_iter().map(|c| c.name).collect(),
-                    volts,
-                });
+    fn keep(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
+        self.samples += (record.len() * record.channels.len()) as u64;
+        for note in &record.notes {
+            self.note(note, &record.file);
+        }
+        if shots.len() > 1 {
+            self.note(
+                "several shots with quiet between them were cut apart; --whole keeps a record one \
+                 shot, --level and --shot-samples cut otherwise",
+                &record.file,
+            );
+        }
+        let several = shots.len() > 1;
+        for (mut shot, range) in shots {
+            if several {
+                let of_file = self.shots.iter().rev();
+                let before = of_file.take_while(|before| before.file == shot.file);
+                let number = before.count() as u64 + 1;
+                shot.shot = Some(number);
+                shot.source = format!("{}, shot {number}", record.source);
+            }
+            shot.name(record.speed_error_m_s, options);
+            if shot.flight.is_ok() && !self.has_example(&shot.case) {
+                self.examples.push(Example::of(&shot, record, range));
             }
             self.shots.push(shot);
         }
     }
 
-    /// Cases that have an example.
-    fn cases(&self) -> Vec<String> {
-        let cases = self.examples.iter().map(|example| &example.shot.case);
-        cases.cloned().collect()
+    fn note(&mut self, text: &str, file: &Path) {
+        let known = self.notes.iter_mut().find(|note| note.text == text);
+        match known {
+            Some(note) if note.files.last().is_some_and(|last| last == file) => {}
+            Some(note) => note.files.push(file.to_owned()),
+            None => self.notes.push(Note {
+                text: text.to_owned(),
+                files: vec![file.to_owned()],
+            }),
+        }
     }
 
     fn has_example(&self, case: &str) -> bool {

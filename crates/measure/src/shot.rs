@@ -1,5 +1,6 @@
 //! One measured shot.
 
+use crate::Options;
 use hertzchain_records::{Channel, Record, Samples};
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
@@ -27,11 +28,13 @@ pub struct Shot {
     pub flight: Result<Flight, SignalError>,
     /// What is doubtful.
     pub doubts: Vec<Doubt>,
+    /// Whether its record seems to hold more shots than this one.
+    pub holds_several: bool,
 }
 
 impl Shot {
     /// Measures one record.
-    pub(crate) fn of(record: &Record, measuring: &Measuring) -> (Self, Vec<Vec<f64>>) {
+    pub(crate) fn of(record: &Record, measuring: &Measuring) -> Self {
         let volts: Vec<Vec<f64>> = record
             .channels
             .iter()
@@ -53,37 +56,61 @@ impl Shot {
             Ok(Measured { found, flight }) => (flight, found.doubts),
             Err(error) => (Err(error), Vec::new()),
         };
-        let shot = Self {
+        Self {
             source: record.source.clone(),
             file: record.file.clone(),
             shot: record.shot,
             case: record.case.clone().unwrap_or_default(),
             programmed_speed_m_s: record.programmed_speed_m_s,
-            speed_m_s: record.speed_m_s.map(|value| Estimate {
-                value,
-                sigma: record.speed_error_m_s.unwrap_or(0.0),
-            }),
+            speed_m_s: record.speed_m_s.map(|value| Estimate { value, sigma: 0.0 }),
             interval_s: record.interval_s,
             flight,
             doubts,
-        };
-        (shot, volts)
+            holds_several: false,
+        }
+    }
+
+    /// Takes over what the list says of it.
+    pub(crate) fn name(&mut self, error_m_s: Option<f64>, options: &Options) {
+        let list = options.list.as_ref();
+        let entry = list.and_then(|list| list.find(&self.file, self.shot));
+        let listed_m_s = entry.and_then(|entry| entry.speed_m_s);
+        let listed_error_m_s = entry.and_then(|entry| entry.speed_error_m_s);
+        let error_m_s = listed_error_m_s.or(error_m_s).or(options.speed_error_m_s);
+        let speed_m_s = listed_m_s.or(self.speed_m_s.map(|speed| speed.value));
+        self.speed_m_s = speed_m_s.map(|value| Estimate {
+            value,
+            sigma: error_m_s.unwrap_or(0.0),
+        });
+        if let Some(case) = entry.and_then(|entry| entry.case.clone()) {
+            self.case = case;
+        }
     }
 
     /// Whether its times may be of something else than the wave: a clipped
-    /// pulse, or pulses that may have been taken for one another.
+    /// pulse, or pulses that may have been taken for one another or be of
+    /// several shots.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
         let grave = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_) | Doubt::Order);
-        self.doubts.iter().any(grave)
+        self.holds_several || self.doubts.iter().any(grave)
     }
 
-    /// Doubts as one text.
+    /// What is doubtful, as it is told to people.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let several = "several shots: cut the recording with --level or --shot-samples";
+        let several = self.holds_several.then(|| several.to_owned());
+        let doubts = self.doubts.iter().map(ToString::to_string);
+        several.into_iter().chain(doubts).collect()
+    }
+
+    /// What is doubtful and what is missing, as one text.
     #[must_use]
     pub fn flags(&self) -> String {
         let error = self.flight.as_ref().err().map(ToString::to_string);
-        let doubts = self.doubts.iter().map(ToString::to_string);
-        doubts.chain(error).collect::<Vec<_>>().join("; ")
+        let all = self.remarks().into_iter().chain(error);
+        all.collect::<Vec<_>>().join("; ")
     }
 }
 

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
-use hertzchain_measure::{Curves, Grouping, Measurement, Options, ShotList, measure};
+use hertzchain_measure::{
+    Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
+};
 use hertzchain_signal::Doubt;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,7 +55,7 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
             .push(&ShotRow {
                 shot,
                 programmed_speed_m_s: speed_m_s,
-                measured_speed_m_s: speed_m_s + 0.02 * (shot as f64 - 2.0),
+                measured_speed_m_s: speed_m_s + 0.002 * (shot as f64 - 2.0),
                 samples: &samples(incident, height, shot),
                 truth: &[],
             })
@@ -119,6 +121,30 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
 }
 
 #[test]
+fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
+    let folder = folder("explained");
+    let mut shots = measured(&[series(&folder, "dry", 0.5, 9000.0)]).shots;
+    // Speeds to which these very times belong.
+    for shot in &mut shots {
+        let time_s = shot.flight.as_ref().unwrap().incident_s.value;
+        let speed = shot.speed_m_s.as_mut().unwrap();
+        speed.value = (time_s / 630e-6).powf(-5.0);
+    }
+    let curves = Curves::of(&shots, &Grouping::default());
+    let row = &curves.cases[0].rows[0];
+    let at_mean = row.at_mean_speed_s[0].unwrap();
+    // Rounding: all times are one when taken to one speed, and that is the law's.
+    assert!((at_mean.value / (630e-6 * row.speed_m_s.value.powf(-0.2)) - 1.0).abs() < 1e-12);
+    let picking: f64 = shots
+        .iter()
+        .map(|shot| shot.flight.as_ref().unwrap().incident_s.sigma.powi(2))
+        .sum();
+    // Taking a time to the mean speed moves its sigma by 1e-3 of itself.
+    assert!((at_mean.sigma / (picking.sqrt() / 5.0) - 1.0).abs() < 1e-3);
+    assert!(at_mean.sigma < 0.3 * row.incident_s.error, "{row:?}");
+}
+
+#[test]
 fn wet_is_held_against_dry_with_both_errors() {
     let folder = folder("ratio");
     let files = [
@@ -132,7 +158,8 @@ fn wet_is_held_against_dry_with_both_errors() {
     let relative = |case: usize| {
         let row = &curves.cases[case].rows[0];
         let speed = 0.2 * row.speed_m_s.sigma / row.speed_m_s.value;
-        (row.incident_s.error / row.incident_s.mean).hypot(speed)
+        let time = row.at_mean_speed_s[0].unwrap();
+        (time.sigma / time.value).hypot(speed)
     };
     // Rounding.
     assert!((ratio.ratio.sigma - relative(0).hypot(relative(1))).abs() < 1e-15);
@@ -168,4 +195,145 @@ fn a_list_overrides_what_files_say() {
         ("gear", 0.7, 0.01)
     );
     assert_eq!(shots[2].case, "dry");
+}
+
+/// Shots of one kind in one recording, 50,000 samples apart, as text.
+fn recording(folder: &Path, heights: &[f64]) -> PathBuf {
+    let path = folder.join("long.csv");
+    let mut text = "# rate: 1 MS/s\n".to_owned();
+    for height in heights {
+        let shot = samples(700.0, *height, 1);
+        for i in 0..50_000_usize {
+            // Between shots there is the noise of the shot's beginning.
+            text += &format!("{}\n", shot.get(i).copied().unwrap_or(shot[i % 300]));
+        }
+    }
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn cut(file: &Path, cutting: Cut) -> Measurement {
+    let options = Options {
+        cutting,
+        ..Options::default()
+    };
+    measure(&[file.to_owned()], &options, &mut |_| {})
+}
+
+#[test]
+fn several_shots_in_one_recording_are_cut_apart_where_that_is_plain() {
+    let file = recording(&folder("plain"), &[9000.0, 8000.0, 9000.0]);
+    let found = cut(&file, Cut::Plain);
+    let numbers: Vec<_> = found.shots.iter().map(|shot| shot.shot).collect();
+    assert_eq!(numbers, [Some(1), Some(2), Some(3)]);
+    for shot in &found.shots {
+        let incident_s = shot.flight.as_ref().unwrap().incident_s.value;
+        // Noise of 7 in 8000 moves a time by some 0.03 µs.
+        assert!((incident_s - 700e-6).abs() < 2e-7, "{incident_s}");
+        assert_eq!(shot.flags(), "");
+    }
+    assert!(found.notes.iter().any(|note| note.text.contains("--whole")));
+    assert_eq!(cut(&file, Cut::Never).shots.len(), 1);
+}
+
+#[test]
+fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
+    let file = recording(&folder("mixed"), &[9000.0, 2000.0, 9000.0]);
+    let found = cut(&file, Cut::Plain);
+    assert_eq!(found.shots.len(), 1);
+    assert!(
+        found.shots[0].flags().contains("--level"),
+        "{}",
+        found.shots[0].flags()
+    );
+    assert!(found.shots[0].is_dubious());
+    let level = |volts, samples| Cut::Level(Level { volts, samples });
+    for samples in [None, Some(4000)] {
+        let found = cut(&file, level(1000.0, samples));
+        assert_eq!(found.shots.len(), 3);
+        for shot in &found.shots {
+            let incident_s = shot.flight.as_ref().unwrap().incident_s.value;
+            // Noise of 7 in 2000.
+            assert!((incident_s - 700e-6).abs() < 1e-6, "{incident_s}");
+        }
+        assert!(
+            found.shots[2].source.contains("shot 3 at 0.1005 s"),
+            "{}",
+            found.shots[2].source
+        );
+    }
+    let never = cut(&file, level(50_000.0, None));
+    assert!(matches!(never.refused[0], Refused::NeverPassed { .. }));
+}
+
+#[test]
+fn a_level_finds_the_same_shots_whatever_the_pieces() {
+    let folder = folder("pieces");
+    let path = folder.join("long.h5");
+    let info = SeriesInfo {
+        channels: Channels::Summed,
+        interval_s: 1e-6,
+        volts_per_count: COUNT_V,
+        offset_v: 0.01,
+        pretrigger: 0,
+        samples_per_shot: 1_300_000,
+        series: 0,
+        case: "dry".to_owned(),
+        seed: 0,
+        experiment: String::new(),
+        more: Vec::new(),
+    };
+    let mut writer = SeriesWriter::create(&path, &info).unwrap();
+    let shot = samples(700.0, -9000.0, 1);
+    // The second lies across the end of the first piece of 2^20 samples.
+    let mut counts = vec![3_i16; 1_300_000];
+    for at in [1000, (1 << 20) - 1000, 1_200_000] {
+        counts[at..at + 4000].copy_from_slice(&shot);
+    }
+    writer
+        .push(&ShotRow {
+            shot: 0,
+            programmed_speed_m_s: 0.5,
+            measured_speed_m_s: 0.5,
+            samples: &counts,
+            truth: &[],
+        })
+        .unwrap();
+    let file = writer.finish().unwrap();
+    let falling = Cut::Level(Level {
+        volts: -0.4,
+        samples: Some(4000),
+    });
+    let found = cut(&file, falling);
+    assert_eq!(found.shots.len(), 3);
+    let times = found
+        .shots
+        .iter()
+        .map(|shot| shot.flight.as_ref().unwrap().incident_s.value);
+    let times: Vec<f64> = times.collect();
+    // The same samples thrice; only where they begin differs.
+    assert!(
+        times.iter().all(|time| (time - times[0]).abs() < 1e-9),
+        "{times:?}"
+    );
+    assert_eq!(found.shots[2].speed_m_s.map(|speed| speed.value), Some(0.5));
+}
+
+#[test]
+fn lines_and_shots_that_do_not_find_each_other_are_told() {
+    let folder = folder("unmatched");
+    let files = [series(&folder, "dry", 0.5, 9000.0)];
+    let list = "file,shot,speed\ndry-0.5.h5,3,0.7\ndry-0.5.h5,3,0.8\ndry-0.5.h5,9,0.7\nno.h5,,1\n";
+    let options = Options {
+        list: Some(ShotList::parse(list).unwrap()),
+        ..Options::default()
+    };
+    let told = measure(&files, &options, &mut |_| {}).unmatched;
+    assert_eq!(told.len(), 3, "{told:?}");
+    assert_eq!(told[0], "line 3: an earlier line is about the same");
+    assert_eq!(told[1], "line 4: dry-0.5.h5 has no shot 9");
+    assert_eq!(
+        told[2],
+        "line 5: no.h5 is none of the files given (dry-0.5.h5)"
+    );
 }

@@ -56,7 +56,7 @@ fn position(names: &[String], wanted: &str) -> Option<usize> {
 /// Names that anybody reads at once.
 const SHOWN: usize = 12;
 
-fn list(names: &[String]) -> String {
+pub(crate) fn list(names: &[String]) -> String {
     let shown: Vec<&str> = names.iter().take(SHOWN).map(String::as_str).collect();
     let more = if names.len() > SHOWN { ", …" } else { "" };
     shown.join(", ") + more
@@ -90,6 +90,23 @@ pub(crate) fn interval_s(
             interval_s,
         }),
     }
+}
+
+/// What is told where times without a unit were taken for seconds, and no rate
+/// was given to hold them against.
+pub(crate) fn seconds_taken(
+    name: &str,
+    unit_s: Option<f64>,
+    options: &ReadOptions,
+) -> Option<String> {
+    let told = unit_s.or(options.time_unit_s).or(options.rate_hz).is_some();
+    let called = match name {
+        "" => "its first column".to_owned(),
+        name => format!("{name:?}"),
+    };
+    (!told).then(|| {
+        format!("{called} names no unit and was taken as times in s; --time-unit us says another")
+    })
 }
 
 /// The option's interval, which is exact where an export rounds.

@@ -1,11 +1,14 @@
 //! What no record may be, whatever its format.
 
 use crate::error::RecordError;
+use crate::options::Parts;
 use crate::record::{Channel, Record, Samples};
 
 /// Refuses records without samples, with channels of different lengths,
 /// with samples that are not finite and with channels that never change.
-pub(crate) fn sound(record: Record) -> Result<Record, RecordError> {
+///
+/// A piece of a recording may be quiet.
+pub(crate) fn sound(record: Record, parts: Parts) -> Result<Record, RecordError> {
     let length = record.len();
     if length == 0 {
         return Err(RecordError::Empty {
@@ -22,7 +25,9 @@ pub(crate) fn sound(record: Record) -> Result<Record, RecordError> {
             });
         }
         finite(&record.source, channel)?;
-        varied(&record.source, channel)?;
+        if !matches!(parts, Parts::Pieces(_)) {
+            varied(&record.source, channel)?;
+        }
     }
     Ok(record)
 }
@@ -63,16 +68,23 @@ fn varied(source: &str, channel: &Channel) -> Result<(), RecordError> {
     })
 }
 
-/// Refuses records that are not as long as the file's first.
-pub(crate) fn as_long(record: Record, first: &mut Option<usize>) -> Result<Record, RecordError> {
+/// Refuses shots that are not as long as the file's first.
+pub(crate) fn as_long(
+    record: Record,
+    parts: Parts,
+    first: &mut Option<usize>,
+) -> Result<Record, RecordError> {
     let expected = *first.get_or_insert(record.len());
-    match record.len() == expected {
-        true => Ok(record),
-        false => Err(RecordError::MixedLengths {
-            found: record.len(),
-            source_name: record.source,
-            expected,
-            why: "as in the file's first record",
-        }),
+    if record.len() == expected || matches!(parts, Parts::Pieces(_)) {
+        return Ok(record);
     }
+    Err(RecordError::MixedLengths {
+        found: record.len(),
+        source_name: record.source,
+        expected,
+        why: match parts == Parts::Shots(expected) {
+            true => "what cutting left over is no shot",
+            false => "as in the file's first record",
+        },
+    })
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{RecordError, name};
 use crate::numbers::Number;
+use crate::options::Parts;
 use crate::record::{Channel, Record, Samples};
 use std::io::Read;
 use std::path::PathBuf;
@@ -27,46 +28,71 @@ pub(crate) struct Head {
     pub total: usize,
     /// Samples of a channel in a record.
     pub each: usize,
+    /// Whether records are pieces of one recording and not shots.
+    pub pieces: bool,
 }
 
 impl Head {
-    /// Whether several records come of it.
-    fn several(&self) -> bool {
-        self.total > self.each
+    /// Divides what would be one record.
+    pub fn divided(self, parts: Parts) -> Self {
+        Self {
+            each: parts.most().unwrap_or(self.each),
+            pieces: matches!(parts, Parts::Pieces(_)),
+            ..self
+        }
     }
 
-    fn source(&self, shot: u64) -> String {
+    /// Whether several shots come of it.
+    fn several(&self) -> bool {
+        self.total > self.each && !self.pieces
+    }
+
+    fn source(&self, number: u64) -> String {
         let part = self
             .part
             .as_ref()
             .map_or(String::new(), |part| format!(", {part}"));
         let shot = match self.several() {
-            true => format!(", shot {shot}"),
+            true => format!(", shot {number}"),
             false => String::new(),
         };
-        name(&self.file) + &part + &shot
+        let source = name(&self.file) + &part + &shot;
+        from_sample(source, self.first_sample(number))
     }
 
-    /// A record of this stream.
-    pub fn record(&self, shot: u64, samples: Vec<Samples>) -> Record {
-        let channels = self.names.iter().zip(samples);
-        Record {
-            source: self.source(shot),
-            file: self.file.clone(),
-            shot: self.several().then_some(shot),
-            interval_s: self.interval_s,
-            channels: channels
-                .map(|(name, samples)| Channel {
-                    name: name.clone(),
-                    samples,
-                })
-                .collect(),
-            programmed_speed_m_s: None,
-            speed_m_s: None,
-            speed_error_m_s: None,
-            case: None,
-            pretrigger: None,
+    /// Of a piece; shots begin anew.
+    fn first_sample(&self, number: u64) -> u64 {
+        match self.pieces {
+            true => (number - 1) * self.each as u64,
+            false => 0,
         }
+    }
+
+    /// A record of this stream, by its number from 1.
+    pub fn record(&self, number: u64, samples: Vec<Samples>) -> Record {
+        let channels = self.names.iter().zip(samples);
+        let channels = channels.map(|(name, samples)| Channel {
+            name: name.clone(),
+            samples,
+        });
+        Record {
+            shot: self.several().then_some(number),
+            first_sample: self.first_sample(number),
+            ..Record::new(
+                self.source(number),
+                &self.file,
+                self.interval_s,
+                channels.collect(),
+            )
+        }
+    }
+}
+
+/// What a piece of a recording is called.
+pub(crate) fn from_sample(source: String, first_sample: u64) -> String {
+    match first_sample {
+        0 => source,
+        first => format!("{source}, from sample {} on", first + 1),
     }
 }
 
@@ -116,7 +142,7 @@ impl<S: Stream> Iterator for Cut<S> {
 }
 
 /// Raw numbers of several channels, sample by sample or record by record.
-pub(crate) struct Raw<R> {
+pub(crate) struct RawNumbers<R> {
     pub reader: R,
     pub file: PathBuf,
     pub number: Number,
@@ -128,7 +154,7 @@ pub(crate) struct Raw<R> {
     pub planar: bool,
 }
 
-impl<R: Read> Stream for Raw<R> {
+impl<R: Read> Stream for RawNumbers<R> {
     fn take(&mut self, count: usize) -> Result<Vec<Samples>, RecordError> {
         let wide = self.number.width();
         let bytes = count

@@ -47,9 +47,7 @@ pub enum RecordError {
         found: &'static str,
     },
     /// None of the formats.
-    #[error(
-        "{file}: is none of HDF5 (a series of ours), CSV or other text, NPY, NPZ, WAV and TDMS"
-    )]
+    #[error("{file}: is none of HDF5, CSV or other text, NPY, NPZ, WAV and TDMS")]
     UnknownFormat {
         /// Which file.
         file: String,
@@ -93,8 +91,9 @@ pub enum RecordError {
     },
     /// Times that do not go in equal steps.
     #[error(
-        "{source_name}: its times are not evenly spaced: sample {sample} is at {found_s} s, \
-         {expected_s} s was expected; was a sample lost?"
+        "{source_name}: its times are not evenly spaced: from sample {sample}, at {time_s} s, to \
+         the next they go on by {:.4} µs where steps of {:.4} µs are usual; were samples lost?",
+        .step_s * 1e6, .usual_s * 1e6
     )]
     UnevenTimes {
         /// Which file or record.
@@ -102,9 +101,11 @@ pub enum RecordError {
         /// Which sample, from 1.
         sample: usize,
         /// Its time in s.
-        found_s: f64,
-        /// The even time in s.
-        expected_s: f64,
+        time_s: f64,
+        /// From there to the next in s.
+        step_s: f64,
+        /// The usual step in s.
+        usual_s: f64,
     },
     /// No channel of that name.
     #[error("{file}: has no channel {wanted:?}; it has {there}")]
@@ -118,8 +119,8 @@ pub enum RecordError {
     },
     /// More channels than anybody can tell apart without being told.
     #[error(
-        "{file}: has {count} channels ({there}); say which with --channel, one that sums both \
-         sensors or two"
+        "{file}: has {count} channels ({there}); say which with --channel: one that sums both \
+         sensors, or two, the sensor bead's first"
     )]
     WhichChannel {
         /// Which file.
@@ -173,7 +174,9 @@ pub enum RecordError {
         why: &'static str,
     },
     /// More samples in one piece than a shot can have.
-    #[error("{source_name}: more than {most} samples in one record; cut it with --shot-samples")]
+    #[error(
+        "{source_name}: more than {most} samples in one record; cut it into shots with --level or --shot-samples"
+    )]
     TooLong {
         /// Which record.
         source_name: String,

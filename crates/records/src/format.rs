@@ -8,7 +8,7 @@ use std::path::Path;
 /// Formats of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// HDF5: series of a virtual campaign.
+    /// HDF5: series of a virtual campaign, and datasets of anybody.
     Hdf5,
     /// Columns of numbers as text.
     Text,

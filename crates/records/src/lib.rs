@@ -1,18 +1,20 @@
 //! Records on disk: what a rig's sensors gave, sampled and digitised.
 //!
 //! Writes series of a virtual campaign as HDF5 ([`SeriesWriter`]) and reads
-//! anybody's recordings, one record at a time ([`read`]): HDF5 of ours, CSV,
+//! anybody's recordings, one record at a time ([`read`]): HDF5, CSV,
 //! NPY and NPZ, WAV and LabVIEW TDMS. Knows nothing of chains.
 //!
 //! The reader never opens the true values that a virtual campaign keeps beside
 //! its samples, so that no analysis peeks by accident.
 
+mod arrays;
 mod channels;
 mod check;
 mod csv;
 mod cut;
 mod error;
 mod format;
+mod hdf5;
 mod numbers;
 mod numpy;
 mod options;
@@ -24,7 +26,7 @@ mod wav;
 
 pub use error::RecordError;
 pub use format::Format;
-pub use options::{ReadOptions, Rows};
+pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
 pub use record::{Channel, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, verify};

@@ -10,10 +10,36 @@ pub struct ReadOptions {
     /// Channels, columns or arrays by name or by number from 1; all that a
     /// shot can have when empty.
     pub channels: Vec<String>,
-    /// Cut longer records into shots of so many samples.
-    pub shot_samples: Option<usize>,
+    /// What a unit of times is in s, where neither title nor name tells one.
+    pub time_unit_s: Option<f64>,
+    /// How longer records are divided.
+    pub parts: Parts,
     /// What the rows of a table of numbers are.
     pub rows: Rows,
+}
+
+/// How records are divided that are longer than a shot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Parts {
+    /// Not at all: a record is a shot.
+    #[default]
+    Whole,
+    /// Into shots of so many samples.
+    Shots(usize),
+    /// Into pieces of at most so many samples, in which somebody else looks for
+    /// shots; [`Record::first_sample`](crate::Record::first_sample) tells where
+    /// each begins.
+    Pieces(usize),
+}
+
+impl Parts {
+    /// Most samples of a part.
+    pub(crate) fn most(self) -> Option<usize> {
+        match self {
+            Self::Whole => None,
+            Self::Shots(most) | Self::Pieces(most) => Some(most.max(1)),
+        }
+    }
 }
 
 /// What the first axis of a two-dimensional array is.

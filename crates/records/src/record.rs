@@ -1,6 +1,6 @@
 //! One shot as a rig recorded it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What one or two sensors gave during one shot.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +25,62 @@ pub struct Record {
     pub case: Option<String>,
     /// Samples before the trigger, if the file says.
     pub pretrigger: Option<usize>,
+    /// Number of its first sample in a recording of which it is a piece, from 0.
+    pub first_sample: u64,
+    /// What was taken for granted while it was read, as it is told to people.
+    pub notes: Vec<String>,
 }
 
 impl Record {
+    /// A record of which nothing but its samples is known.
+    pub(crate) fn new(
+        source: String,
+        file: &Path,
+        interval_s: f64,
+        channels: Vec<Channel>,
+    ) -> Self {
+        Self {
+            source,
+            file: file.to_owned(),
+            shot: None,
+            interval_s,
+            channels,
+            programmed_speed_m_s: None,
+            speed_m_s: None,
+            speed_error_m_s: None,
+            case: None,
+            pretrigger: None,
+            first_sample: 0,
+            notes: Vec::new(),
+        }
+    }
+
+    /// The part from sample `start`, at most `count` long.
+    #[must_use]
+    pub fn part(&self, start: usize, count: usize) -> Self {
+        let channels = self.channels.iter().map(|channel| Channel {
+            name: channel.name.clone(),
+            samples: channel.samples.part(start, count),
+        });
+        Self {
+            channels: channels.collect(),
+            ..self.without_samples()
+        }
+    }
+
+    /// What is known of it besides its samples.
+    #[must_use]
+    pub fn without_samples(&self) -> Self {
+        Self {
+            source: self.source.clone(),
+            file: self.file.clone(),
+            case: self.case.clone(),
+            notes: self.notes.clone(),
+            channels: Vec::new(),
+            ..*self
+        }
+    }
+
     /// Number of samples of a channel.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -115,6 +168,26 @@ impl Samples {
         let at = |count: i16| f64::from(count) * volts_per_count + offset_v;
         let (a, b) = (at(i16::MIN), at(i16::MAX));
         Some((a.min(b), a.max(b)))
+    }
+
+    /// Other voltages as samples of the same kind; readings are rounded back.
+    #[must_use]
+    pub fn with_volts(&self, volts: Vec<f64>) -> Self {
+        match self {
+            Self::Volts(_) => Self::Volts(volts),
+            Self::Counts {
+                volts_per_count,
+                offset_v,
+                ..
+            } => Self::Counts {
+                counts: volts
+                    .iter()
+                    .map(|volt| ((volt - offset_v) / volts_per_count).round() as i16)
+                    .collect(),
+                volts_per_count: *volts_per_count,
+                offset_v: *offset_v,
+            },
+        }
     }
 
     /// The part from `start`, at most `count` long.

@@ -1,7 +1,7 @@
 //! RIFF WAVE: the header by hound, the samples as raw numbers.
 
 use crate::channels::{chosen, interval_s, numbered};
-use crate::cut::{Cut, Head, Raw as RawNumbers};
+use crate::cut::{Cut, Head, RawNumbers};
 use crate::error::{RecordError, name};
 use crate::numbers::{Kind, Number};
 use crate::options::ReadOptions;
@@ -32,7 +32,8 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         names: chosen.iter().map(|index| names[*index].clone()).collect(),
         interval_s: interval_s(file, Some(rate_hz.recip()), options)?,
         total,
-        each: options.shot_samples.unwrap_or(total).max(1),
+        each: total,
+        pieces: false,
     };
     let stream = RawNumbers {
         reader: wave.into_inner(),
@@ -42,7 +43,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         chosen,
         planar: false,
     };
-    Ok(Box::new(Cut::new(head, stream)))
+    Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
 }
 
 fn number(file: &Path, spec: WavSpec) -> Result<Number, RecordError> {
@@ -67,6 +68,10 @@ fn number(file: &Path, spec: WavSpec) -> Result<Number, RecordError> {
 
 fn refused(file: &Path, error: hound::Error) -> RecordError {
     match error {
+        // What the library says where a header ends before its end.
+        hound::Error::IoError(cause) if cause.kind() == std::io::ErrorKind::Other => {
+            RecordError::truncated(name(file), "its header is not whole")
+        }
         hound::Error::IoError(cause) => RecordError::reading(file, cause),
         error => RecordError::malformed(file, "WAV", error),
     }

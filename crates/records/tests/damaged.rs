@@ -85,6 +85,10 @@ fn each_failing_is_one_clear_report() {
         assert!(told.contains(expected), "{name}: {told}");
         assert!(told.contains(name), "{name}: {told}");
     }
+    let header = folder.join("header.wav");
+    fs::write(&header, &fs::read(kept("both.wav")).unwrap()[..20]).unwrap();
+    let told = only_error(&header);
+    assert!(told.contains("its header is not whole"), "{told}");
     let missing = only_error(&folder.join("missing.csv"));
     assert!(missing.contains("cannot be read"), "{missing}");
     let renamed = folder.join("renamed.csv");
@@ -107,6 +111,50 @@ fn a_missing_rate_and_a_wrong_one_are_told() {
             "{name}"
         );
     }
+}
+
+#[test]
+fn what_was_taken_for_granted_is_told() {
+    let folder = folder("granted");
+    let rows = "0,1.5\n2,2.5\n4,0.5\n6,1.0\n";
+    let file = |name: &str, content: String| file(&folder, name, &content);
+    let bare = file("bare.csv", rows.to_owned());
+    let titled = file("titled.csv", format!("t,a\n{rows}"));
+    let notes = |path: &Path, options: &ReadOptions| {
+        let mut records: Vec<_> = read(path, options).collect();
+        records.remove(0).unwrap().notes
+    };
+    let open = ReadOptions::default();
+    assert!(notes(&bare, &open)[0].contains("its first column names no unit"));
+    assert!(notes(&titled, &open)[0].contains("\"t\" names no unit"));
+    let told = ReadOptions {
+        time_unit_s: Some(1e-6),
+        ..ReadOptions::default()
+    };
+    let record = read(&titled, &told).next().unwrap().unwrap();
+    assert_eq!((record.interval_s, record.notes.len()), (2e-6, 0));
+    let unit = file("unit.csv", format!("t (us),a\n{rows}"));
+    assert_eq!(notes(&unit, &open).len(), 0);
+    let two = file(
+        "two.csv",
+        "t (s),x,y\n0,1,2\n1,2,1\n2,1,3\n3,5,1\n".to_owned(),
+    );
+    let note = notes(&two, &open).remove(0);
+    assert!(note.contains("\"x\" was taken for the sensor"), "{note}");
+}
+
+#[test]
+fn a_jump_in_times_is_told_where_it_is() {
+    let folder = folder("jump");
+    let times = (0..100).map(|i| if i < 60 { i } else { i + 3 });
+    let rows: String = times.map(|t| format!("{t},{}\n", t % 7)).collect();
+    let path = file(&folder, "jump.csv", &format!("t (us),a\n{rows}"));
+    let told = only_error(&path);
+    assert!(told.contains("from sample 60, at 0.000059 s"), "{told}");
+    assert!(
+        told.contains("by 4.0000 µs where steps of 1.0000 µs"),
+        "{told}"
+    );
 }
 
 #[test]

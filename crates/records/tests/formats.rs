@@ -4,7 +4,7 @@
 mod common;
 
 use common::{folder, kept, python};
-use hertzchain_records::{ReadOptions, Record, RecordError, Rows, Samples, read};
+use hertzchain_records::{Parts, ReadOptions, Record, RecordError, Rows, Samples, read};
 use std::path::Path;
 
 fn all(path: &Path, options: &ReadOptions) -> Vec<Record> {
@@ -166,12 +166,177 @@ wavfile.write("long.wav", 500000, (long * 32768).astype("int16"))
     }
     assert_wave(&all(&folder.join("u1.wav"), &at_1_mhz())[0], 0, 0, 1.0);
     let cut = ReadOptions {
-        shot_samples: Some(200),
+        parts: Parts::Shots(200),
         ..ReadOptions::default()
     };
     let records = all(&folder.join("long.wav"), &cut);
     assert_eq!((records.len(), records[2].interval_s), (3, 2e-6));
     assert_wave(&records[2], 0, 2, 1.0);
+}
+
+#[test]
+fn tables_are_cut_into_shots_too() {
+    let folder = folder("cut");
+    let program = WAVE.to_owned()
+        + r#"
+import h5py
+rows = numpy.array([numpy.concatenate([wave(0), wave(1)]), numpy.concatenate([wave(2), wave(3)])])
+numpy.save("rows.npy", rows)
+numpy.save("fortran.npy", numpy.asfortranarray(rows))
+with h5py.File("rows.h5", "w") as file:
+    file["rows"] = rows
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let cut = ReadOptions {
+        parts: Parts::Shots(200),
+        ..at_1_mhz()
+    };
+    for name in ["rows.npy", "fortran.npy", "rows.h5"] {
+        let records = all(&folder.join(name), &cut);
+        assert_eq!(records.len(), 4, "{name}");
+        for (shot, record) in records.iter().enumerate() {
+            assert_eq!(record.shot, Some(shot as u64 + 1), "{name}");
+            assert_wave(record, 0, shot, 1.0);
+        }
+    }
+    let channels = ReadOptions {
+        rows: Rows::Channels,
+        ..cut.clone()
+    };
+    let records = all(&folder.join("rows.npy"), &channels);
+    assert_eq!((records.len(), records[1].channels.len()), (2, 2));
+    assert_wave(&records[1], 1, 3, 1.0);
+    let uneven = ReadOptions {
+        parts: Parts::Shots(300),
+        ..cut
+    };
+    let results: Vec<_> = read(&folder.join("rows.npy"), &uneven).collect();
+    let error = results[1].as_ref().unwrap_err().to_string();
+    assert!(error.contains("what cutting left over"), "{error}");
+}
+
+#[test]
+fn pieces_of_a_recording_follow_each_other() {
+    let folder = folder("pieces");
+    let program = WAVE.to_owned()
+        + r#"
+long = numpy.concatenate([wave(shot) for shot in range(3)])
+numpy.save("long.npy", long)
+numpy.save("rows.npy", numpy.array([long, long]))
+numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delimiter=",",
+              header="time_s,sum", comments="")
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let pieces = ReadOptions {
+        parts: Parts::Pieces(250),
+        ..at_1_mhz()
+    };
+    for (name, expected) in [
+        ("long.npy", vec![0, 250, 500]),
+        ("long.csv", vec![0, 250, 500]),
+        ("rows.npy", vec![0, 250, 500, 0, 250, 500]),
+    ] {
+        let records = all(&folder.join(name), &pieces);
+        let first: Vec<u64> = records.iter().map(|record| record.first_sample).collect();
+        assert_eq!(first, expected, "{name}");
+        let whole: Vec<f64> = records
+            .iter()
+            .take(3)
+            .flat_map(|record| record.channels[0].samples.volts())
+            .collect();
+        let expected: Vec<f64> = (0..600).map(|i| wave(i / 200, i % 200)).collect();
+        assert_eq!(whole, expected, "{name}");
+        assert!(
+            records
+                .iter()
+                .all(|record| record.interval_s == records[0].interval_s)
+        );
+    }
+}
+
+#[test]
+fn datasets_of_h5py_are_read() {
+    let folder = folder("h5py");
+    let program = WAVE.to_owned()
+        + r#"
+import h5py
+shots = numpy.array([wave(shot) for shot in range(3)])
+with h5py.File("one.h5", "w") as file:
+    data = file.create_dataset("run/adc", data=(shots * 128).astype("i2"), chunks=(1, 50),
+                               compression="gzip", shuffle=True)
+    data.attrs["sampling_rate"] = 5e5
+with h5py.File("channels.h5", "w") as file:
+    file["bead"], file["wall"] = wave(0), wave(1).astype("f4")
+    file["time"] = numpy.arange(200) * 1e-6
+    file["note"] = "no numbers"
+with h5py.File("big-endian.h5", "w") as file:
+    file["a"], file["speeds"] = shots.astype(">f8"), [0.1, 0.2, 0.3]
+    file["b"] = (shots * 128).astype(">i4")
+    file["c"] = numpy.array([[wave(0), wave(1)], [wave(2), wave(3)]])
+with h5py.File("columns.h5", "w") as file:
+    file["x"] = shots[:2].T
+with h5py.File("text.h5", "w") as file:
+    file["note"] = "no numbers"
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let open = ReadOptions::default();
+    let one = all(&folder.join("one.h5"), &open);
+    assert_eq!((one.len(), one[2].interval_s), (3, 2e-6));
+    assert_wave(&one[2], 0, 2, 1.0 / 128.0);
+    let both = all(&folder.join("channels.h5"), &open);
+    assert_eq!((both.len(), both[0].channels[1].name.as_str()), (1, "wall"));
+    assert_wave(&both[0], 1, 1, 1.0);
+    assert_eq!(both[0].notes.len(), 2, "{:?}", both[0].notes);
+    let told = |channels: &[&str]| ReadOptions {
+        channels: channels.iter().map(|name| (*name).to_owned()).collect(),
+        ..at_1_mhz()
+    };
+    let several = folder.join("big-endian.h5");
+    let a = all(&several, &told(&["a"]));
+    assert_eq!(a[1].speed_m_s, Some(0.2));
+    assert_wave(&a[1], 0, 1, 1.0);
+    assert_wave(&all(&several, &told(&["b"]))[2], 0, 2, 1.0 / 128.0);
+    assert_wave(&all(&several, &told(&["b", "a"]))[2], 1, 2, 1.0);
+    let results: Vec<_> = read(&several, &at_1_mhz()).collect();
+    let error = results[0].as_ref().unwrap_err().to_string();
+    assert!(
+        error.contains("(a, b, c)") && error.contains("--channel"),
+        "{error}"
+    );
+    assert_wave(&all(&folder.join("columns.h5"), &at_1_mhz())[0], 1, 1, 1.0);
+    let empty: Vec<_> = read(&folder.join("text.h5"), &open).collect();
+    assert!(matches!(empty[0], Err(RecordError::Empty { .. })));
+}
+
+#[test]
+fn two_tables_of_one_archive_are_channels_only_if_told() {
+    let folder = folder("tables");
+    let program = WAVE.to_owned()
+        + r#"
+shots = numpy.array([wave(shot) for shot in range(3)])
+numpy.savez("tables.npz", dry=shots, gear=shots[::-1], fs=1e6)
+numpy.savez("uneven.npz", bead=shots, wall=shots[:2], fs=1e6)
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let results: Vec<_> = read(&folder.join("tables.npz"), &ReadOptions::default()).collect();
+    assert!(matches!(results[0], Err(RecordError::WhichChannel { .. })));
+    let both = |a: &str, b: &str| ReadOptions {
+        channels: vec![a.to_owned(), b.to_owned()],
+        ..ReadOptions::default()
+    };
+    let records = all(&folder.join("tables.npz"), &both("dry", "gear"));
+    assert_eq!(records.len(), 3);
+    assert_wave(&records[0], 1, 2, 1.0);
+    let uneven: Vec<_> = read(&folder.join("uneven.npz"), &both("bead", "wall")).collect();
+    assert!(uneven[1].is_ok() && uneven[2].is_err(), "{uneven:?}");
 }
 
 #[test]

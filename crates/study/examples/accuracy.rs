@@ -16,17 +16,9 @@ use hertzchain_chain::observe::Passages;
 use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
 use hertzchain_experiment::preset;
+use hertzchain_study::reproduce::CASES;
 use hertzchain_study::{Flight, InstructionSet, Plan, Shot, shoot, shoot_all};
 use std::error::Error;
-
-const PRESETS: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "gear",
-    "motor",
-];
 
 const SPEEDS_M_S: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
 
@@ -108,7 +100,7 @@ fn mean_passes<'a>(works: impl Iterator<Item = &'a Work>) -> f64 {
 
 fn by_accuracy() -> Result<()> {
     println!("| preset | asked | sweep | passes | stayed, of 11 | wave loop | passes |");
-    for name in PRESETS {
+    for name in CASES {
         let exact = one_by_one(name, EXACT)?;
         for accuracy in ACCURACIES {
             let sweep = together(name, accuracy)?;
@@ -138,15 +130,15 @@ const KINDS: [(Precision, bool); 4] = [
 ];
 
 fn by_step() -> Result<()> {
-    let names = PRESETS.join(" | ");
+    let names = CASES.join(" | ");
     println!("| precision | openings | step | {names} | passes, dry | until it has passed |");
-    let exact = PRESETS.iter().map(|name| one_by_one(name, EXACT));
+    let exact = CASES.iter().map(|name| one_by_one(name, EXACT));
     let exact = exact.collect::<Result<Vec<_>>>()?;
     for kind in KINDS {
         for step in STEPS {
             let (precision, openings) = kind;
             let mut row = format!("| {precision:?} | {openings} | {step} |");
-            for (name, exact) in PRESETS.iter().zip(&exact) {
+            for (name, exact) in CASES.iter().zip(&exact) {
                 let flown = flown(name, step, kind, End::Reflected)?;
                 let flights = flown.into_iter().map(|flown| flight(flown?));
                 row += &format!(" {} |", told(&errors(flights, exact)));
@@ -166,7 +158,7 @@ fn rounding() -> Result<()> {
     println!("| preset | openings | step | incident | reflected |");
     let kinds = [false, true].into_iter();
     let kinds = kinds.flat_map(|openings| STEPS.map(|step| (openings, step)));
-    for (name, (openings, step)) in PRESETS
+    for (name, (openings, step)) in CASES
         .iter()
         .flat_map(|name| kinds.clone().map(move |kind| (name, kind)))
     {

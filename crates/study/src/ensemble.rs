@@ -11,6 +11,7 @@ use crate::flight::Flight;
 use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked, tie};
+use crate::tuned::Tuned;
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::{Passages, RETURN_WITHIN};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
@@ -29,21 +30,41 @@ pub fn shoot_all(
     checked: bool,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Result<Shot, StudyError>> {
-    each_block(plans, |block| {
-        let shots = shoot_block(block, set, checked);
-        block.iter().for_each(|_| progress());
-        shots
+    in_blocks(plans, progress, |block| {
+        shoot_block(block, &judged(block, set), checked)
     })
 }
 
-/// The same for who needs many shots at known accuracy more than the accuracy of
+/// Runs plans like those that pilots have tuned a setting for, several times as
+/// fast as [`shoot_all`], in order and with the same bits whatever the number of
+/// threads.
+///
+/// The accuracy that shots carry is that of the pilots. A shot that longer steps
+/// change by more than the accuracy asked is unlike them, and computed as by
+/// [`shoot_all`].
+pub fn shoot_tuned(
+    plans: &[Plan],
+    tuned: &Tuned,
+    set: InstructionSet,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Result<Shot, StudyError>> {
+    in_blocks(plans, progress, |block| {
+        let judged_alone = |plan: &&Plan| judged(&[*plan], set).pop().flatten();
+        let fired = tuned.fired(block, set).into_iter().zip(block);
+        let fired = fired.map(|(shot, plan)| shot.or_else(|| judged_alone(plan)));
+        shoot_block(block, &fired.collect::<Vec<_>>(), true)
+    })
+}
+
+/// The same as [`shoot_all`] for who needs many shots at known accuracy more than the accuracy of
 /// each, such as a fit: nothing is computed twice, and no shot tells what it
 /// reached. Whatever the ensemble loop does not have, or loses, the wave loop
 /// computes.
 pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, StudyError>> {
-    each_block(plans, |block| {
-        let (systems, shots) = loaded(block, |ready| fire(ready, set, (1.0, false)));
-        let shots = in_place(&systems, shots.into_iter());
+    in_blocks(plans, &|| {}, |block| {
+        let own = block.first().and_then(|plan| Setting::of(plan));
+        let once = |own: Setting| fire(block, &load(block), set, &own.longer(1.0));
+        let shots = own.map_or_else(|| vec![None; block.len()], once);
         let shots = block.iter().zip(shots);
         shots
             .map(|(plan, shot)| shot.map_or_else(|| shoot(plan), Ok))
@@ -51,21 +72,23 @@ pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, S
     })
 }
 
-/// Results of a function of plans that go together, in the order of all plans.
-fn each_block(
+/// Plans in blocks over threads, each block as `fired` has it.
+fn in_blocks(
     plans: &[Plan],
-    of: impl Fn(&[&Plan]) -> Vec<Result<Shot, StudyError>> + Sync,
+    progress: &(dyn Fn() + Sync),
+    fired: impl Fn(&[&Plan]) -> Vec<Result<Shot, StudyError>> + Sync,
 ) -> Vec<Result<Shot, StudyError>> {
     let mut results: Vec<Option<Result<Shot, StudyError>>> = vec![None; plans.len()];
-    let blocks = blocks(plans);
-    let fired: Vec<_> = blocks
+    let shots: Vec<_> = blocks(plans)
         .par_iter()
         .flat_map_iter(|block| {
             let together: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
-            block.iter().copied().zip(of(&together)).collect::<Vec<_>>()
+            let shots = fired(&together);
+            together.iter().for_each(|_| progress());
+            block.iter().copied().zip(shots).collect::<Vec<_>>()
         })
         .collect();
-    for (at, shot) in fired {
+    for (at, shot) in shots {
         results[at] = Some(shot);
     }
     results.into_iter().flatten().collect()
@@ -94,7 +117,7 @@ fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn fire_together(one: &Plan, other: &Plan) -> bool {
+pub(crate) fn fire_together(one: &Plan, other: &Plan) -> bool {
     one.accuracy == other.accuracy
         && one.sensor_bead == other.sensor_bead
         && one.chain.beads.len() == other.chain.beads.len()
@@ -102,7 +125,7 @@ fn fire_together(one: &Plan, other: &Plan) -> bool {
 }
 
 /// Whether the ensemble loop can run a plan to the accuracy asked.
-fn suits(plan: &Plan) -> bool {
+pub(crate) fn suits(plan: &Plan) -> bool {
     plan.solver == Solver::Adaptive
         && !plan.rebound
         && !plan.budget
@@ -122,10 +145,11 @@ const LONGER: [f64; 2] = [1.3, 1.69];
 /// the first and once and a half that by the second.
 const OF_CHANGE: [f64; 2] = [3.0, 1.5];
 
-/// Shots of plans that go together, or of one that goes alone.
+/// Shots of plans that go together, or of one that goes alone: what was fired,
+/// and the rest by the wave loop.
 fn shoot_block(
     plans: &[&Plan],
-    set: InstructionSet,
+    fired: &[Option<Shot>],
     checked: bool,
 ) -> Vec<Result<Shot, StudyError>> {
     // What was too hard for equal steps deserves a check in the wave loop too.
@@ -133,8 +157,7 @@ fn shoot_block(
         true => shoot_checked(plan),
         false => shoot(plan),
     };
-    let shots = fired(plans, set);
-    let shots = plans.iter().zip(shots);
+    let shots = plans.iter().zip(fired.iter().cloned());
     shots
         .map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok))
         .collect()
@@ -143,43 +166,27 @@ fn shoot_block(
 /// Shots of plans by the ensemble loop, each with the accuracy it reached;
 /// `None` where the wave loop must have a look, because that is not what was
 /// asked or if only to say what is wrong.
-fn fired(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
-    let (systems, kept) = loaded(plans, |ready| {
-        let shots = fire(ready, set, (1.0, true)).into_iter();
-        let [near, far] = LONGER.map(|longer| fire(ready, set, (longer, false)));
-        let judges = near.into_iter().zip(far);
-        shots
-            .zip(judges)
-            .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]))
-            .collect::<Vec<_>>()
-    });
-    in_place(&systems, kept.into_iter())
+fn judged(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+    let Some(own) = plans.first().and_then(|plan| Setting::of(plan)) else {
+        return vec![None; plans.len()];
+    };
+    let loaded = load(plans);
+    let shots = fire(plans, &loaded, set, &own).into_iter();
+    let [near, far] = LONGER.map(|longer| fire(plans, &loaded, set, &own.longer(longer)));
+    let judges = near.into_iter().zip(far);
+    shots
+        .zip(judges)
+        .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]))
+        .collect()
 }
 
-/// The systems of plans that the ensemble loop can fire, and a function of those.
-fn loaded<T>(plans: &[&Plan], of: impl Fn(&[(&Plan, &System)]) -> T) -> (Vec<Option<System>>, T) {
+/// Chains of plans, set up; `None` for those that the ensemble loop can't fire.
+pub(crate) fn load(plans: &[&Plan]) -> Vec<Option<System>> {
     let load = |plan: &&Plan| {
         let suits = suits(plan) && plan.check().is_ok();
         suits.then(|| System::new(&plan.chain).ok()).flatten()
     };
-    let systems: Vec<Option<System>> = plans.iter().map(load).collect();
-    let ready = plans.iter().zip(&systems);
-    let ready: Vec<(&Plan, &System)> = ready
-        .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
-        .collect();
-    let of_ready = of(&ready);
-    (systems, of_ready)
-}
-
-/// Shots of the systems that there are, in the place of each.
-fn in_place(
-    systems: &[Option<System>],
-    mut shots: impl Iterator<Item = Option<Shot>>,
-) -> Vec<Option<Shot>> {
-    systems
-        .iter()
-        .map(|system| system.as_ref().and_then(|_| shots.next().flatten()))
-        .collect()
+    plans.iter().map(load).collect()
 }
 
 /// A shot with the accuracy it reached, if that is what was asked.
@@ -190,26 +197,72 @@ fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
     (reached <= shot.accuracy_asked).then_some(shot)
 }
 
-/// Fires plans that are alike in accuracy, sensor and length, with their step
-/// times a factor; pulses have widths if asked, or if a pick needs their shape.
-fn fire(
-    ready: &[(&Plan, &System)],
+/// How plans that go together are fired.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Setting {
+    /// In contact times.
+    pub step: f64,
+    /// That of each plan's accuracy if `None`; where a load presses beads
+    /// together never single.
+    pub precision: Option<Precision>,
+    /// Whether openings are found.
+    pub openings: bool,
+    /// Pulses have widths, whether or not a pick needs their shape.
+    pub shapes: bool,
+}
+
+impl Setting {
+    /// For a plan whose shots are judged one by one.
+    pub(crate) fn of(plan: &Plan) -> Option<Self> {
+        let (step, openings) = accuracy::equal_steps(plan)?;
+        Some(Self {
+            step,
+            precision: None,
+            openings,
+            shapes: true,
+        })
+    }
+
+    fn precision(&self, plan: &Plan, system: &System) -> Precision {
+        match self.precision {
+            Some(Precision::Single) if !system.flies_free() => Precision::Double,
+            Some(precision) => precision,
+            None => accuracy::precision(plan, system),
+        }
+    }
+
+    /// The same with longer steps, for judges.
+    pub(crate) fn longer(self, times: f64) -> Self {
+        Self {
+            step: times * self.step,
+            shapes: false,
+            ..self
+        }
+    }
+}
+
+/// Fires plans that are alike in sensor and length, those whose chain is set up.
+pub(crate) fn fire(
+    plans: &[&Plan],
+    loaded: &[Option<System>],
     set: InstructionSet,
-    (longer, shapes): (f64, bool),
+    setting: &Setting,
 ) -> Vec<Option<Shot>> {
-    let Some((first, system)) = ready.first() else {
-        return Vec::new();
+    let ready = || {
+        plans
+            .iter()
+            .zip(loaded)
+            .filter_map(|(plan, system)| Some((*plan, system.as_ref()?)))
     };
-    let Some((step, openings)) = accuracy::equal_steps(first) else {
-        return vec![None; ready.len()];
+    let Some((first, system)) = ready().next() else {
+        return vec![None; plans.len()];
     };
-    let shots: Vec<ensemble::Shot<'_>> = ready
-        .iter()
+    let shots: Vec<ensemble::Shot<'_>> = ready()
         .map(|(plan, system)| ensemble::Shot {
             system,
-            step: step * longer,
+            step: setting.step,
             duration_s: duration::end(plan, system).longest_s,
-            precision: accuracy::precision(plan, system),
+            precision: setting.precision(plan, system),
         })
         .collect();
     let wall = system.contacts() - 1;
@@ -222,16 +275,16 @@ fn fire(
             End::Duration
         },
         set,
-        shapes: shapes || ready.iter().any(|(plan, _)| shaped(plan)),
+        shapes: setting.shapes || ready().any(|(plan, _)| shaped(plan)),
         whole_chain: false,
-        openings,
+        openings: setting.openings,
     };
-    let flown = ensemble::fire(&shots, &settings).into_iter();
-    ready
-        .iter()
-        .zip(flown)
-        .map(|((plan, system), flown)| shot(plan, system, flown.ok()?))
-        .collect()
+    let mut flown = ensemble::fire(&shots, &settings).into_iter();
+    let one = |(plan, system): (&&Plan, &Option<System>)| {
+        let system = system.as_ref()?;
+        shot(plan, system, flown.next()?.ok()?)
+    };
+    plans.iter().zip(loaded).map(one).collect()
 }
 
 /// A single step may correct a velocity by this fraction of the shot's speed:

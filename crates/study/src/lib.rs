@@ -30,16 +30,18 @@ mod plan;
 mod shot;
 mod speeds;
 mod sweep;
+mod tuned;
 
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use ensemble::{shoot_all, shoot_unjudged};
+pub use ensemble::{shoot_all, shoot_tuned, shoot_unjudged};
 pub use error::StudyError;
 pub use flight::Flight;
 pub use hertzchain_chain::InstructionSet;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
-pub use sweep::{Point, PointError, Settings, Sweep, sweep};
+pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep};
+pub use tuned::{PILOTS, Tuned};
 
 /// The README's example, compiled and run with the tests.
 #[cfg(doctest)]

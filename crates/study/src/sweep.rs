@@ -1,10 +1,11 @@
 //! Many speeds, one chain.
 
-use crate::ensemble::shoot_all;
+use crate::ensemble::{shoot_all, shoot_tuned};
 use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::plan::Plan;
 use crate::shot::Shot;
+use crate::tuned::Tuned;
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, Warning};
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
@@ -41,6 +42,8 @@ pub struct Sweep {
     pub incident: Result<PowerLaw, FitError>,
     /// Reflected time of flight in s against speed in m/s.
     pub reflected: Result<PowerLaw, FitError>,
+    /// The setting that pilots chose, if shots were not judged each.
+    pub tuned: Option<Tuned>,
 }
 
 impl Sweep {
@@ -82,12 +85,25 @@ impl Sweep {
     }
 }
 
+/// Who tells how right the shots of an ensemble are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Judges {
+    /// Two more shots each, with longer steps.
+    #[default]
+    Each,
+    /// Pilots among the speeds, computed much more tightly, for all; each where
+    /// that can't be.
+    Pilots,
+}
+
 /// How a sweep is run.
 pub struct Settings<'a> {
     /// Changes the plan that the experiment gives, such as its accuracy.
     pub adjust: &'a (dyn Fn(&mut Plan) + Sync),
     /// Compute every shot twice to learn the accuracy reached.
     pub checked: bool,
+    /// Who judges the shots of the ensemble loop.
+    pub judges: Judges,
     /// Vector instructions of the ensemble loop.
     pub set: InstructionSet,
     /// Called after every shot, from any thread.
@@ -99,6 +115,7 @@ impl Default for Settings<'_> {
         Self {
             adjust: &|_| {},
             checked: false,
+            judges: Judges::Each,
             set: InstructionSet::default(),
             progress: &|| {},
         }
@@ -123,8 +140,16 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
     let planned: Vec<Planned> = speeds_m_s.par_iter().map(plan).collect();
     let plans = planned.iter().filter_map(|plan| plan.as_ref().ok());
     let plans: Vec<Plan> = plans.map(|(plan, _)| plan.clone()).collect();
-    let shots = shoot_all(&plans, settings.set, settings.checked, settings.progress);
+    let tuned = match settings.judges {
+        Judges::Pilots => Tuned::new(&Tuned::pilots(&plans), settings.set),
+        Judges::Each => None,
+    };
+    let shots = match &tuned {
+        Some(tuned) => shoot_tuned(&plans, tuned, settings.set, settings.progress),
+        None => shoot_all(&plans, settings.set, settings.checked, settings.progress),
+    };
     let mut sweep = Sweep {
+        tuned,
         points: points(speeds_m_s, planned, shots),
         incident: Err(FitError::TooFew),
         reflected: Err(FitError::TooFew),

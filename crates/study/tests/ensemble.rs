@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, preset};
+use hertzchain_study::reproduce::CASES;
 use hertzchain_study::{InstructionSet, Plan, Shot, shoot, shoot_all};
 
 fn plans(name: &str, speeds_m_s: &[f64], accuracy: f64) -> Vec<Plan> {
@@ -18,20 +19,11 @@ fn fly(plans: &[Plan]) -> Vec<Shot> {
     shots.into_iter().map(Result::unwrap).collect()
 }
 
-const PRESETS: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "gear",
-    "motor",
-];
-
 const SPEEDS: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
 
 #[test]
 fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
-    for name in PRESETS {
+    for name in CASES {
         let exact: Vec<_> = plans(name, &SPEEDS, 1e-9)
             .iter()
             .map(|p| shoot(p).unwrap())
@@ -54,7 +46,7 @@ fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
 fn every_pick_is_as_accurate_as_asked() {
     let accuracy = 1e-5;
     let mut stayed = 0;
-    for name in PRESETS {
+    for name in CASES {
         let plans = |accuracy: f64| -> Vec<Plan> {
             let plans = plans(name, &[0.1, 0.4, 1.0], accuracy).into_iter();
             plans.map(Plan::comparing_picks).collect()
@@ -172,7 +164,7 @@ fn random_plans(count: u64) -> Vec<Plan> {
         low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let plan = |_| {
-        let experiment = preset(PRESETS[random(0.0, 6.0) as usize]).unwrap();
+        let experiment = preset(CASES[random(0.0, 6.0) as usize]).unwrap();
         let speed = 0.1 * 10_f64.powf(random(0.0, 1.3));
         let (mut plan, _) = Plan::from_experiment(&experiment, Some(speed)).unwrap();
         let kind = random(0.0, 4.0) as usize;

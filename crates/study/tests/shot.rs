@@ -7,6 +7,7 @@
 
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, preset};
+use hertzchain_study::reproduce::CASES;
 use hertzchain_study::{Flight, Pick, Plan, Shot, Solver, StudyError, shoot, shoot_checked};
 
 fn plan(name: &str, speed_m_s: f64) -> Plan {
@@ -102,14 +103,7 @@ fn accuracy_beyond_double_precision_is_said_to_be_so() {
 
 #[test]
 fn energy_is_balanced_to_the_asked_accuracy() {
-    for name in [
-        "dry",
-        "hertz",
-        "hertz-viscoelastic",
-        "pump",
-        "gear",
-        "motor",
-    ] {
+    for name in CASES {
         for accuracy in [1e-6, 1e-9] {
             let shot = shoot(&plan(name, 0.5).with_accuracy(accuracy).with_budget()).unwrap();
             let residual = shot.budget.as_ref().map(Budget::relative_residual).unwrap();

@@ -163,14 +163,20 @@ impl Columns {
     /// Columns from one row a contact.
     #[must_use]
     pub fn from_rows(rows: &[Vec<f64>]) -> Self {
-        let width = rows.first().map_or(0, Vec::len);
-        let values = (0..width)
-            .flat_map(|j| rows.iter().map(move |row| row[j]))
-            .collect();
-        Self {
-            values,
-            contacts: rows.len(),
+        Self::from_runs(rows.iter().map(|row| (row.as_slice(), 1)))
+    }
+
+    /// Columns from rows and how many contacts in a row have each.
+    pub(crate) fn from_runs<'a>(runs: impl Iterator<Item = (&'a [f64], usize)> + Clone) -> Self {
+        let width = runs.clone().next().map_or(0, |(row, _)| row.len());
+        let contacts = runs.clone().map(|(_, count)| count).sum();
+        let mut values = Vec::with_capacity(width * contacts);
+        for j in 0..width {
+            for (row, count) in runs.clone() {
+                values.resize(values.len() + count, row[j]);
+            }
         }
+        Self { values, contacts }
     }
 
     /// Coefficients a row.
@@ -230,6 +236,9 @@ pub trait Law: Debug + Send + Sync {
     /// # Errors
     /// When the materials lack what the law needs.
     fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError>;
+
+    /// How many coefficients there are.
+    fn width(&self) -> usize;
 
     /// Adds the forces of consecutive contacts, the first being row `first`
     /// of the columns, to `force_n`.
@@ -291,6 +300,10 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
                 ),
             }),
         }
+    }
+
+    fn width(&self) -> usize {
+        C
     }
 
     fn add_forces(

@@ -7,6 +7,7 @@ use super::{Scales, SectionColumns, Spring, System, TermColumns};
 use crate::chain::{Chain, ChainError, FarEnd, Push, Section, Start};
 use crate::laws::{Columns, Law, Nature};
 use crate::material::Pair;
+use std::ops::Range;
 use std::sync::Arc;
 
 pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
@@ -61,7 +62,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         .flat_map(SectionColumns::terms)
         .any(|term| term.law.info().nature == Nature::ElasticPlastic);
     system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
-    settle(chain, &mut system)?;
+    settle(chain, &pairs, &mut system)?;
     set_in_motion(chain, &mut system);
     system.kinds = kinds(&system, &pairs).into();
     system.scales = scales(&system, &system.kinds);
@@ -106,24 +107,10 @@ fn section_columns(
 ) -> Result<SectionColumns, ChainError> {
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
     let (mut gated, mut ungated) = (Vec::new(), Vec::new());
-    // A contact that does not exist has coefficients 0: nothing acts across it.
-    let Some(any) = pairs.iter().flatten().next() else {
-        return Ok(SectionColumns {
-            contacts,
-            gated,
-            ungated,
-        });
-    };
     for law in &section.laws {
-        let width = coefficients(law, any, *section.contacts.start())?.len();
-        let rows = contacts.clone().map(|contact| match &pairs[contact] {
-            Some(pair) => coefficients(law, pair, contact),
-            None => Ok(vec![0.0; width]),
-        });
-        let columns = Columns::from_rows(&rows.collect::<Result<Vec<_>, _>>()?);
         let term = TermColumns {
+            columns: columns(law, pairs, contacts.clone())?,
             law: law.clone(),
-            columns,
         };
         if law.info().gated {
             gated.push(term)
@@ -136,6 +123,26 @@ fn section_columns(
         gated,
         ungated,
     })
+}
+
+/// A law's coefficients over contacts; neighbours that join alike are asked once.
+fn columns(
+    law: &Arc<dyn Law>,
+    pairs: &[Option<Pair>],
+    contacts: Range<usize>,
+) -> Result<Columns, ChainError> {
+    let (mut runs, mut contact) = (Vec::new(), contacts.start);
+    for alike in pairs[contacts].chunk_by(PartialEq::eq) {
+        let row = match &alike[0] {
+            Some(pair) => coefficients(law, pair, contact)?,
+            // Nothing acts across a contact that does not exist.
+            None => vec![0.0; law.width()],
+        };
+        runs.push((row, alike.len()));
+        contact += alike.len();
+    }
+    let rows = runs.iter().map(|(row, count)| (row.as_slice(), *count));
+    Ok(Columns::from_runs(rows))
 }
 
 fn coefficients(law: &Arc<dyn Law>, pair: &Pair, contact: usize) -> Result<Vec<f64>, ChainError> {
@@ -188,25 +195,34 @@ fn loads(chain: &Chain, system: &System) -> Vec<f64> {
 }
 
 /// Static overlap and force of every contact.
-fn settle(chain: &Chain, system: &mut System) -> Result<(), ChainError> {
+fn settle(chain: &Chain, pairs: &[Option<Pair>], system: &mut System) -> Result<(), ChainError> {
     let loads = loads(chain, system);
+    let alike =
+        |b: usize, c: usize| pairs[b] == pairs[c] && system.section_of[b] == system.section_of[c];
     check_equilibrium(chain, system, &loads)?;
     let exists = |c: usize| match c {
         0 => !matches!(chain.start, Start::Free),
         c if c == chain.beads.len() => !matches!(chain.far, FarEnd::Free),
         _ => true,
     };
-    for (c, &load) in loads.iter().enumerate().filter(|&(c, _)| exists(c)) {
-        let overlap = static_overlap(system, c, load)?;
-        Arc::make_mut(&mut system.offset_m)[c] = overlap;
-        let force = elastic_force(system, c, overlap);
-        Arc::make_mut(&mut system.static_force_n)[c] = force;
+    let (mut offset_m, mut force_n) = (system.offset_m.to_vec(), system.static_force_n.to_vec());
+    for c in (0..loads.len()).filter(|&c| exists(c)) {
+        let as_before = |before: &usize| alike(*before, c) && loads[*before] == loads[c];
+        (offset_m[c], force_n[c]) = match c.checked_sub(1).filter(|b| exists(*b)).filter(as_before)
+        {
+            Some(before) => (offset_m[before], force_n[before]),
+            None => {
+                let overlap = static_overlap(system, c, loads[c])?;
+                (overlap, elastic_force(system, c, overlap))
+            }
+        };
     }
     for gap in &chain.gaps {
         if loads[gap.contact] == 0.0 && gap.gap_m > 0.0 && exists(gap.contact) {
-            Arc::make_mut(&mut system.offset_m)[gap.contact] = -gap.gap_m;
+            offset_m[gap.contact] = -gap.gap_m;
         }
     }
+    (system.offset_m, system.static_force_n) = (offset_m.into(), force_n.into());
     Ok(())
 }
 

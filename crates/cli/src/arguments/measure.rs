@@ -53,9 +53,18 @@ pub struct Reading {
     /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
     #[arg(long, value_name = "NAME")]
     pub channel: Vec<String>,
+    /// Unit of a column of times that names none: s, ms, us or ns
+    #[arg(long, value_name = "UNIT", value_parser = time_unit)]
+    pub time_unit: Option<f64>,
     /// Cut longer recordings into shots of so many samples
     #[arg(long, value_name = "COUNT", value_parser = count)]
     pub shot_samples: Option<usize>,
+    /// Cut recordings into shots where they pass so many volts; --shot-samples is then their length, else 10 ms
+    #[arg(long, value_name = "VOLTS", value_parser = volts, allow_hyphen_values = true)]
+    pub level: Option<f64>,
+    /// Take every record for one shot, also where several with quiet between them are plain
+    #[arg(long, conflicts_with_all = ["level", "shot_samples"])]
+    pub whole: bool,
     /// What the first axis of a two-dimensional array is; by its shape when absent
     #[arg(long, value_enum, value_name = "WHAT")]
     pub rows: Option<RowsAre>,
@@ -134,6 +143,25 @@ const RATES: [(&str, f64); 8] = [
     ("kS/s", 1e3),
     ("S/s", 1.0),
 ];
+
+fn time_unit(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 5] = [
+        ("s", 1.0),
+        ("ms", 1e-3),
+        ("us", 1e-6),
+        ("µs", 1e-6),
+        ("ns", 1e-9),
+    ];
+    let unit = UNITS.iter().find(|unit| unit.0 == text.trim());
+    let size = unit.map(|unit| unit.1);
+    size.ok_or_else(|| "expected s, ms, us or ns".to_owned())
+}
+
+fn volts(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('V').trim().parse().ok();
+    let number = number.filter(|volts: &f64| volts.is_finite());
+    number.ok_or_else(|| "expected volts such as 0.2 or -0.2".to_owned())
+}
 
 fn rate(text: &str) -> Result<f64, String> {
     let text = text.trim();

@@ -10,9 +10,10 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::{input, print};
 use hertzchain_experiment::Experiment;
-use hertzchain_measure::records::{ReadOptions, Rows};
+use hertzchain_measure::records::{Parts, ReadOptions, Rows};
 use hertzchain_measure::{
-    Curves, Grouping, Measurement, Options, ShotList, ratios_csv, shots_csv, speeds_csv,
+    Curves, Cut, Grouping, Level, Measurement, Note, Options, ShotList, laws_csv, ratios_csv,
+    shots_csv, speeds_csv,
 };
 use hertzchain_signal::{Finding, LowPass, Measuring, Method, Polarity, Shape, Template};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -45,9 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         keep_dubious: arguments.keep_dubious,
     };
     let curves = Curves::of(&measured.shots, &grouping);
-    for refused in &measured.refused {
-        eprintln!("refused: {refused}");
-    }
+    tell(&measured);
     let all = results::json(&measured, &curves);
     match arguments.json {
         true => print::print_json(&all)?,
@@ -102,18 +101,37 @@ fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
 fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let rig = arguments.rig.as_deref().map(open_rig).transpose()?;
     let reading = &arguments.reading;
+    if reading.channel.len() > 2 {
+        return Err(Failure::User(
+            "a shot has at most two channels: --channel once if one sums both sensors, twice for \
+             the sensor bead's and the wall's"
+                .to_owned(),
+        ));
+    }
     Ok(Options {
         reading: ReadOptions {
             rate_hz: reading.rate,
             trust_rate: reading.trust_rate,
             channels: reading.channel.clone(),
-            shot_samples: reading.shot_samples,
+            time_unit_s: reading.time_unit,
+            parts: match (reading.shot_samples, reading.level) {
+                (Some(samples), None) => Parts::Shots(samples),
+                _ => Parts::Whole,
+            },
             rows: match reading.rows {
                 None => Rows::Auto,
                 Some(RowsAre::Shots) => Rows::Shots,
                 Some(RowsAre::Channels) => Rows::Channels,
                 Some(RowsAre::Times) => Rows::Times,
             },
+        },
+        cutting: match (reading.level, reading.whole) {
+            (Some(volts), _) => Cut::Level(Level {
+                volts,
+                samples: reading.shot_samples,
+            }),
+            (None, true) => Cut::Never,
+            (None, false) => Cut::Plain,
         },
         measuring: measuring(&arguments.picking, rig.as_ref())?,
         list: arguments.shots.as_deref().map(list).transpose()?,
@@ -200,6 +218,30 @@ fn bar() -> ProgressBar {
     bar
 }
 
+/// Most lines about the table of shots, which may be of other recordings.
+const MOST_LINES: usize = 20;
+
+/// What is to be known of records beside their times.
+fn tell(measured: &Measurement) {
+    for refused in &measured.refused {
+        eprintln!("refused: {refused}");
+    }
+    for line in measured.unmatched.iter().take(MOST_LINES) {
+        eprintln!("--shots: {line}");
+    }
+    if let more @ 1.. = measured.unmatched.len().saturating_sub(MOST_LINES) {
+        eprintln!("--shots: … and {more} more; measured.json has all");
+    }
+    for Note { text, files } in &measured.notes {
+        let first = files.first().map(|file| file.display().to_string());
+        let more = match files.len() {
+            0 | 1 => String::new(),
+            files => format!(" and {} more", files - 1),
+        };
+        eprintln!("note: {}{more}: {text}", first.unwrap_or_default());
+    }
+}
+
 fn write(
     mut folder: Folder,
     measured: &Measurement,
@@ -213,6 +255,7 @@ fn write(
     }
     if !curves.cases.is_empty() {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
+        folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
         folder.figure("times-of-flight", &pictures::times(curves))?;
     }
     if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {
@@ -227,14 +270,18 @@ fn write(
 /// so does a run in which no record had a time of flight.
 fn judge(measured: &Measurement) -> Result<(), Failure> {
     let refused = measured.refused.len();
-    match refused {
-        0 if measured.shots.iter().all(|shot| shot.flight.is_err()) => Err(Failure::User(
-            "no record had a time of flight; shots.csv tells why, one by one".to_owned(),
+    let all = refused + measured.shots.len();
+    let timed = measured.shots.iter().any(|shot| shot.flight.is_ok());
+    match (refused, timed) {
+        (0, true) => Ok(()),
+        (0, false) => Err(Failure::User(
+            "no record had a time of flight; its flags tell why".to_owned(),
         )),
-        0 => Ok(()),
-        _ => Err(Failure::User(format!(
-            "{refused} of {} records were refused; the others were measured",
-            refused + measured.shots.len()
+        (_, true) => Err(Failure::User(format!(
+            "{refused} of {all} records were refused; the others were measured"
+        ))),
+        (_, false) => Err(Failure::User(format!(
+            "nothing was measured: {refused} of {all} records were refused"
         ))),
     }
 }

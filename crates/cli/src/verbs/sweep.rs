@@ -2,7 +2,7 @@
 
 mod fits;
 
-use crate::arguments::{How, Sweep as Arguments};
+use crate::arguments::{self, How, Sweep as Arguments};
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::{self, Style};
@@ -11,7 +11,9 @@ use crate::print::heading;
 use crate::table::cell;
 use crate::{input, json, missing, pictures, print, table};
 use hertzchain_experiment::{Experiment, Units};
-use hertzchain_study::{Plan, Point, PointError, Settings, Shot, Sweep, parse_speeds, sweep};
+use hertzchain_study::{
+    Judges, Plan, Point, PointError, Settings, Shot, Sweep, parse_speeds, sweep,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use serde_json::json;
@@ -30,6 +32,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let settings = Settings {
         adjust: &|plan| adjust(arguments, plan),
         checked: arguments.how.check,
+        judges: match arguments.judges {
+            arguments::Judges::Each => Judges::Each,
+            arguments::Judges::Pilots => Judges::Pilots,
+        },
         set: input::instruction_set()?,
         progress: &|| bar.inc(1),
     };
@@ -99,6 +105,7 @@ fn show(
     if arguments.json {
         let results = json!({
             "experiment": experiment.name(),
+            "pilots": swept.tuned.map(|tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()})),
             "points": swept.points.iter().map(|point| json::point(point, experiment.units(), plan)).collect::<serde_json::Value>(),
             "power_law_incident": json::fit(&swept.incident, swept.incident_uncertainty().ok()),
             "power_law_reflected": json::fit(&swept.reflected, swept.reflected_uncertainty().ok()),
@@ -122,6 +129,9 @@ fn show(
         return print::print(&text);
     }
     text += &fits::lines(swept, experiment.units());
+    if let Some(tuned) = &swept.tuned {
+        text += &format!("Times of flight: {tuned}\n");
+    }
     print::print(&text)
 }
 

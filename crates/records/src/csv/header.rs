@@ -10,8 +10,10 @@ pub(super) struct Header {
     pub channels: Vec<usize>,
     /// Their names.
     pub names: Vec<String>,
-    /// Column of times and what one of its units is in s.
-    pub time: Option<(usize, f64)>,
+    /// Column of times and what one of its units is in s, if anything says.
+    pub time: Option<(usize, Option<f64>)>,
+    /// Its title.
+    pub time_name: String,
     /// Sampling interval in s that a line states.
     pub interval_s: Option<f64>,
 }
@@ -50,7 +52,9 @@ const TIME_NAMES: &[&str] = &[
     "t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x",
 ];
 /// How columns that count are called.
-const INDEX_NAMES: &[&str] = &["#", "n", "no", "nr", "index", "sample", "samples", "point"];
+const INDEX_NAMES: &[&str] = &[
+    "#", "n", "no", "nr", "index", "sample", "samples", "point", "sequence",
+];
 /// How intervals are called; the first that a line begins with counts.
 const INTERVALS: &[&str] = &[
     "sample interval",
@@ -92,13 +96,13 @@ impl Header {
             own.and_then(|unit| look_up(TIMES, &unit))
         };
         let is_time = |column: usize| called(TIME_NAMES, title(column)) || unit(column).is_some();
-        let nameless = dialect.columns.iter().all(|c| title(*c).is_empty());
         let first = dialect.columns.first().copied();
         let counts = |column: usize| called(INDEX_NAMES, title(column));
         let several = dialect.columns.len() > 1;
         let mut time = dialect.columns.iter().copied().find(|c| is_time(*c));
         let mut index = dialect.columns.iter().copied().find(|c| counts(*c));
-        if let Some(first) = first.filter(|_| nameless && several) {
+        // No signal rises evenly, whatever its title.
+        if let Some(first) = first.filter(|_| time.or(index).is_none() && several) {
             match rising(&rows, 0) {
                 Some(1.0) => index = Some(first),
                 Some(_) => time = Some(first),
@@ -120,7 +124,8 @@ impl Header {
         Self {
             names: names.collect(),
             channels,
-            time: time.map(|column| (column, unit(column).unwrap_or(1.0))),
+            time: time.map(|column| (column, unit(column).or_else(|| ending(title(column))))),
+            time_name: time.map_or(String::new(), |column| plain(title(column))),
             interval_s: stated_s(beginning, dialect),
         }
     }
@@ -208,10 +213,13 @@ fn plain(title: &str) -> String {
 
 fn called(names: &[&str], title: &str) -> bool {
     let title = plain(title).to_lowercase();
-    let seconds = ["_s", "_ms", "_us"]
-        .iter()
-        .find_map(|end| title.strip_suffix(end));
-    names.contains(&title.as_str()) || seconds.is_some_and(|stem| names.contains(&stem))
+    let stem = title.rsplit_once('_').filter(|_| ending(&title).is_some());
+    names.contains(&title.as_str()) || stem.is_some_and(|(stem, _)| names.contains(&stem))
+}
+
+/// The unit that a title ends in: "time_us".
+fn ending(title: &str) -> Option<f64> {
+    look_up(TIMES, title.rsplit_once('_')?.1)
 }
 
 fn look_up(units: &[(&str, f64)], unit: &str) -> Option<f64> {
@@ -223,7 +231,20 @@ fn look_up(units: &[(&str, f64)], unit: &str) -> Option<f64> {
 /// The interval that a line before or beside the numbers states.
 fn stated_s(beginning: &str, dialect: &Dialect) -> Option<f64> {
     let lines = beginning.lines().take(dialect.first_row.max(BESIDE));
-    lines.filter_map(|line| line_states_s(line, dialect)).next()
+    let beside = lines.clone().find_map(|line| line_states_s(line, dialect));
+    let mut pairs = lines.clone().zip(lines.skip(1));
+    beside.or_else(|| pairs.find_map(|(titles, values)| below_s(titles, values, dialect)))
+}
+
+/// The interval that stands under its title.
+fn below_s(titles: &str, values: &str, dialect: &Dialect) -> Option<f64> {
+    let called = |title: &str| INTERVALS.contains(&title.to_lowercase().as_str());
+    let titles = fields(titles, dialect.delimiter);
+    let at = titles.iter().position(|title| called(title))?;
+    number(
+        fields(values, dialect.delimiter).get(at)?,
+        dialect.decimal_comma,
+    )
 }
 
 fn line_states_s(line: &str, dialect: &Dialect) -> Option<f64> {
@@ -267,13 +288,17 @@ mod tests {
     #[test]
     fn a_column_of_times_is_told_by_name_unit_or_even_steps() {
         let named = header("Time (ms),Channel A (mV)\n0.000,1.0\n0.001,2.5\n");
-        assert_eq!(named.time, Some((0, 1e-3)));
+        assert_eq!(named.time, Some((0, Some(1e-3))));
         assert_eq!(named.names, ["Channel A"]);
         let units = header("Time,A,B\n(us),(mV),(mV)\n\n0,1.5,2\n1,3.5,4\n2,3.5,1\n");
-        assert_eq!(units.time, Some((0, 1e-6)));
+        assert_eq!(units.time, Some((0, Some(1e-6))));
+        let ending = header("time_us,a\n0.5,1\n1,2\n1.5,3\n");
+        assert_eq!(ending.time, Some((0, Some(1e-6))));
         assert_eq!(units.names, ["A", "B"]);
         let bare = header("0.000,5\n0.002,7\n0.004,1\n0.006,3\n");
-        assert_eq!(bare.time, Some((0, 1.0)));
+        assert_eq!(bare.time, Some((0, None)));
+        let strange = header("Moment,a\n0.000,5\n0.002,7\n0.004,1\n0.006,3\n");
+        assert_eq!((strange.time, strange.channels), (Some((0, None)), vec![1]));
         let counted = header("0,5.5\n1,7.5\n2,1.5\n3,3.5\n");
         assert_eq!((counted.time, counted.channels), (None, vec![1]));
     }
@@ -287,6 +312,12 @@ mod tests {
     #[test]
     fn a_stated_interval_may_have_a_decimal_comma() {
         let text = "Increment;1,0E-6\n1,5;2,0\n2,5;1,0\n0,5;3,0\n";
+        assert_eq!(header(text).interval_s, Some(1e-6));
+    }
+
+    #[test]
+    fn an_interval_may_stand_under_its_title() {
+        let text = "X,CH1,Start,Increment,\nSequence,Volt,-5.0e-04,1.0e-06\n0,1.5,\n1,2.5,\n2,0.5,\n3,1,\n";
         assert_eq!(header(text).interval_s, Some(1e-6));
     }
 

@@ -6,7 +6,7 @@ mod header;
 mod rows;
 mod times;
 
-use crate::channels::{chosen, interval_s};
+use crate::channels::{chosen, interval_s, seconds_taken};
 use crate::error::RecordError;
 use crate::options::ReadOptions;
 use crate::read::Raw;
@@ -22,17 +22,26 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
     let columns = picked
         .iter()
         .filter_map(|index| header.channels.get(*index));
+    let unit_s = header
+        .time
+        .map(|time| time.1.or(options.time_unit_s).unwrap_or(1.0));
     let plan = rows::Plan {
         names: picked
             .iter()
             .filter_map(|index| header.names.get(*index).cloned())
             .collect(),
         columns: columns.copied().collect(),
-        time: header.time,
+        time: header.time.map(|time| time.0).zip(unit_s),
         interval_s: match header.time {
-            Some(_) => None,
-            None => Some(interval_s(file, header.interval_s, options)?),
+            // Told by the times.
+            Some(_) => f64::NAN,
+            None => interval_s(file, header.interval_s, options)?,
         },
+        notes: header
+            .time
+            .and_then(|time| seconds_taken(&header.time_name, time.1, options))
+            .into_iter()
+            .collect(),
         separators: beginning
             .lines()
             .take(dialect.first_row)

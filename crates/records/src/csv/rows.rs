@@ -4,9 +4,9 @@ use super::dialect::{Dialect, text};
 use super::field::{fields, number};
 use super::times;
 use crate::channels;
-use crate::cut::MOST_SAMPLES;
+use crate::cut::{MOST_SAMPLES, from_sample};
 use crate::error::{RecordError, name};
-use crate::options::ReadOptions;
+use crate::options::{Parts, ReadOptions};
 use crate::record::{Channel, Record, Samples};
 use std::collections::VecDeque;
 use std::fs::File;
@@ -22,11 +22,13 @@ pub(super) struct Plan {
     pub columns: Vec<usize>,
     /// Column of times and their unit in s.
     pub time: Option<(usize, f64)>,
-    /// Where no times are written.
-    pub interval_s: Option<f64>,
+    /// Between samples; of the last segment where times are written.
+    pub interval_s: f64,
     /// Lines that, seen again, separate segments.
     pub separators: Vec<String>,
     pub options: ReadOptions,
+    /// What was taken for granted.
+    pub notes: Vec<String>,
 }
 
 /// An iterator over the records of a text.
@@ -38,8 +40,10 @@ pub(super) struct Rows {
     ended: bool,
     /// Skipping to the next segment after a bad row.
     lost: bool,
-    /// Whether anything was given before.
+    /// Segments so far.
     shots: u64,
+    /// Samples of the segment under way that were given before.
+    passed: usize,
     block: Block,
     ready: VecDeque<Result<Record, RecordError>>,
 }
@@ -75,6 +79,7 @@ impl Rows {
             ended: false,
             lost: false,
             shots: 0,
+            passed: 0,
             block: Block::default(),
             ready: VecDeque::new(),
         })
@@ -122,7 +127,7 @@ impl Rows {
             Line::Row(_) if self.lost => {}
             Line::Row(values) => self.row(&values),
             Line::Separator => {
-                self.close();
+                self.close(true);
                 self.lost = false;
             }
             Line::Bad(detail) if !self.lost => {
@@ -134,7 +139,7 @@ impl Rows {
             }
             Line::Bad(_) => {}
             Line::End => {
-                self.close();
+                self.close(true);
                 self.ended = true;
             }
         }
@@ -146,7 +151,7 @@ impl Rows {
             let (time, rest) = values.split_first().unwrap_or((&f64::NAN, &[]));
             let time_s = time * unit_s;
             if self.block.times_s.last().is_some_and(|last| time_s < *last) {
-                self.close();
+                self.close(true);
             }
             self.block.times_s.push(time_s);
             values = rest;
@@ -156,8 +161,8 @@ impl Rows {
             column.push(*value);
         }
         let length = self.block.len();
-        if Some(length) == self.plan.options.shot_samples {
-            self.close();
+        if Some(length) == self.plan.options.parts.most() {
+            self.close(false);
         } else if length > MOST_SAMPLES {
             self.block = Block::default();
             self.lost = true;
@@ -168,60 +173,70 @@ impl Rows {
         }
     }
 
-    /// Makes records of the block.
-    fn close(&mut self) {
+    /// Makes records of the block, of which more may follow only if it is a piece.
+    fn close(&mut self, ended: bool) {
         let block = std::mem::take(&mut self.block);
-        if block.len() == 0 {
-            return;
-        }
         let whole = 0..block.len();
         let segments = match self.plan.time {
+            _ if block.len() == 0 => Vec::new(),
             Some(_) => times::segments(&block.times_s),
             None => std::iter::once(whole).collect(),
         };
-        for range in segments {
-            self.shots += 1;
+        for (number, range) in segments.into_iter().enumerate() {
+            if number > 0 || self.passed == 0 {
+                self.passed = 0;
+                self.shots += 1;
+            }
+            let count = range.len();
             let record = self.record(&block, range);
             self.ready.push_back(record);
+            self.passed += count;
+        }
+        if ended || !matches!(self.plan.options.parts, Parts::Pieces(_)) {
+            self.passed = 0;
         }
     }
 
-    fn record(&self, block: &Block, range: Range<usize>) -> Result<Record, RecordError> {
+    fn record(&mut self, block: &Block, range: Range<usize>) -> Result<Record, RecordError> {
         // The number of the only record would tell nothing, but when it is made
         // nobody knows whether more will follow.
-        let source = match self.shots {
+        let segment = match self.shots {
             1 => name(&self.file),
             shot => format!("{}, segment {shot}", name(&self.file)),
         };
-        let interval_s = match (self.plan.interval_s, block.times_s.get(range.clone())) {
-            (Some(interval_s), _) => interval_s,
-            (None, times) => {
-                let stated = times::interval_s(&source, times.unwrap_or_default())?;
-                channels::interval_s(&self.file, Some(stated), &self.plan.options)?
-            }
+        let source = from_sample(segment, self.passed as u64);
+        let interval_s = match block.times_s.get(range.clone()) {
+            Some(times) if self.plan.time.is_some() => self.interval_s(&source, times)?,
+            _ => self.plan.interval_s,
         };
+        let channels = self.plan.names.iter().zip(&block.columns);
         let channel = |(name, column): (&String, &Vec<f64>)| Channel {
             name: name.clone(),
             samples: Samples::Volts(column.get(range.clone()).unwrap_or_default().to_vec()),
         };
         Ok(Record {
-            source,
-            file: self.file.clone(),
             shot: Some(self.shots),
-            interval_s,
-            channels: self
-                .plan
-                .names
-                .iter()
-                .zip(&block.columns)
-                .map(channel)
-                .collect(),
-            programmed_speed_m_s: None,
-            speed_m_s: None,
-            speed_error_m_s: None,
-            case: None,
-            pretrigger: None,
+            first_sample: self.passed as u64,
+            notes: self.plan.notes.clone(),
+            ..Record::new(
+                source,
+                &self.file,
+                interval_s,
+                channels.map(channel).collect(),
+            )
         })
+    }
+
+    /// A piece that goes on is as the piece before it.
+    fn interval_s(&mut self, source: &str, times_s: &[f64]) -> Result<f64, RecordError> {
+        if self.passed == 0 {
+            let stated_s = times::interval_s(source, times_s)?;
+            self.plan.interval_s =
+                channels::interval_s(&self.file, Some(stated_s), &self.plan.options)?;
+        } else if times_s.len() > 1 {
+            times::interval_s(source, times_s)?;
+        }
+        Ok(self.plan.interval_s)
     }
 }
 

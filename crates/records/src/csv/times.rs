@@ -12,28 +12,16 @@ const UNEVEN: f64 = 0.4;
 
 /// Where times jump back, or ahead by many steps.
 pub(super) fn segments(times_s: &[f64]) -> Vec<Range<usize>> {
-    let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let jumps = |usual: f64| {
-        let wide = times_s.windows(2).enumerate();
-        let far = wide.filter(move |(_, pair)| {
-            let step = pair[1] - pair[0];
-            step < 0.0 || (usual > 0.0 && step > GAP * usual)
-        });
-        far.map(|(before, _)| before + 1).collect::<Vec<_>>()
+    let usual = usual_step(times_s);
+    let jumps = |at: &usize| {
+        let step = step(times_s, at - 1);
+        step < 0.0 || (usual > 0.0 && step > GAP * usual)
     };
-    let middle = steps.len() / 2;
-    let usual = match steps.is_empty() {
-        true => 0.0,
-        false => *steps.select_nth_unstable_by(middle, f64::total_cmp).1,
-    };
-    let mut starts = vec![0];
-    starts.extend(jumps(usual));
-    let ends = starts.iter().skip(1).copied().chain([times_s.len()]);
-    starts
-        .iter()
-        .copied()
-        .zip(ends)
-        .map(|(a, b)| a..b)
+    let starts = (1..times_s.len()).filter(jumps);
+    let mut begin = 0;
+    let segments = starts.chain([times_s.len()]);
+    segments
+        .map(|end| std::mem::replace(&mut begin, end)..end)
         .collect()
 }
 
@@ -63,15 +51,43 @@ pub(super) fn interval_s(source: &str, times_s: &[f64]) -> Result<f64, RecordErr
         let off = (time - even(i)).abs();
         off.is_nan() || off > bearable
     };
-    let Some(at) = times_s.iter().enumerate().position(off) else {
-        return Ok(interval_s);
+    match times_s.iter().enumerate().any(off) {
+        false => Ok(interval_s),
+        true => Err(uneven(source, times_s)),
+    }
+}
+
+/// Tells of the step that is least like the usual one.
+fn uneven(source: &str, times_s: &[f64]) -> RecordError {
+    let usual_s = usual_step(times_s);
+    let odd = |at: &usize| {
+        let odd = (step(times_s, *at) - usual_s).abs();
+        if odd.is_nan() { f64::INFINITY } else { odd }
     };
-    Err(RecordError::UnevenTimes {
+    let steps = 0..times_s.len().saturating_sub(1);
+    let at = steps.max_by(|a, b| odd(a).total_cmp(&odd(b))).unwrap_or(0);
+    RecordError::UnevenTimes {
         source_name: source.to_owned(),
         sample: at + 1,
-        found_s: times_s.get(at).copied().unwrap_or(f64::NAN),
-        expected_s: even(at),
-    })
+        time_s: times_s.get(at).copied().unwrap_or(f64::NAN),
+        step_s: step(times_s, at),
+        usual_s,
+    }
+}
+
+fn step(times_s: &[f64], at: usize) -> f64 {
+    let pair = times_s.get(at).zip(times_s.get(at + 1));
+    pair.map_or(f64::NAN, |(from, to)| to - from)
+}
+
+/// The step in the middle of all steps by size; 0 without any.
+fn usual_step(times_s: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    match steps.is_empty() {
+        true => 0.0,
+        false => *steps.select_nth_unstable_by(middle, f64::total_cmp).1,
+    }
 }
 
 /// How far a time may be off the even ones: part of a step, or the unit that

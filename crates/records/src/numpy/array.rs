@@ -1,12 +1,12 @@
 //! One array: its header by npyz, its numbers raw.
 
-use crate::channels::{chosen, numbered};
-use crate::cut::{Cut, Head, MOST_SAMPLES, Raw as RawNumbers, Stream};
+use crate::arrays::{Axes, Table};
+use crate::cut::{Cut, Head, MOST_SAMPLES, RawNumbers, Stream};
 use crate::error::{RecordError, name};
 use crate::numbers::{Kind, Number};
-use crate::options::{ReadOptions, Rows};
+use crate::options::ReadOptions;
 use crate::read::Raw;
-use crate::record::{Record, Samples};
+use crate::record::Samples;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -20,17 +20,6 @@ pub(super) struct Array {
     fortran: bool,
     number: Number,
     reader: Box<dyn Read>,
-}
-
-/// How an array's numbers make records.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Layout {
-    stored: usize,
-    frames: usize,
-    records: usize,
-    planar: bool,
-    /// Whether what is stored side by side are shots.
-    shots_side_by_side: bool,
 }
 
 impl Array {
@@ -81,36 +70,36 @@ impl Array {
 
     /// The records of an array of samples.
     pub fn records(self, interval_s: f64, options: &ReadOptions) -> Result<Raw, RecordError> {
-        if self.shape.contains(&0) {
-            return Err(RecordError::Empty {
-                source_name: name(&self.file),
-            });
+        let fortran = self.fortran && self.shape.len() > 1;
+        if fortran && self.shape.len() > 2 {
+            let detail = "its three axes are stored column by column; save it with order C";
+            return Err(RecordError::malformed(&self.file, "a NumPy array", detail));
         }
-        let layout = layout(&self.shape, self.fortran, options.rows);
-        let layout = layout.ok_or_else(|| {
-            let detail = format!("an array of {:?} is no table of samples", self.shape);
-            RecordError::malformed(&self.file, "a NumPy array", detail)
-        })?;
-        let names = numbered(layout.stored);
-        let chosen = match layout.shots_side_by_side || layout.stored == 1 {
-            true => (0..layout.stored).collect(),
-            false => chosen(&self.file, &names, options)?,
-        };
-        let continuous = layout.records == 1 && !layout.planar && !layout.shots_side_by_side;
-        let cut = options.shot_samples.filter(|_| continuous);
-        let head = Head {
-            file: self.file.clone(),
-            part: self.part.clone(),
-            names: chosen.iter().map(|index| names[*index].clone()).collect(),
+        let table = Table::of(
+            &self.file,
+            self.part.clone(),
+            &self.shape,
             interval_s,
-            total: layout.frames.saturating_mul(layout.records),
-            each: cut.unwrap_or(layout.frames).max(1),
+            options,
+        )?;
+        let Axes {
+            shots, channels, ..
+        } = table.axes;
+        if fortran && shots.is_some() {
+            let all = (0..table.shots).collect();
+            return Ok(side_by_side(
+                table.head,
+                self.stream(all, table.shots, false),
+            ));
+        }
+        // Numbers of the last axis lie side by side; column by column those of the first.
+        let planar = channels.is_some_and(|axis| (axis == 0) != fortran || shots.is_some());
+        let head = match shots.is_some() || planar {
+            true => table.head,
+            false => table.head.divided(options.parts),
         };
-        let stream = self.stream(chosen, layout.stored, layout.planar);
-        Ok(match layout.shots_side_by_side {
-            true => side_by_side(head, stream),
-            false => Box::new(Cut::new(head, stream)),
-        })
+        let stream = self.stream(table.chosen, table.stored, planar);
+        Ok(Box::new(Cut::new(head, stream)))
     }
 
     fn stream(self, chosen: Vec<usize>, stored: usize, planar: bool) -> RawNumbers<Box<dyn Read>> {
@@ -127,19 +116,11 @@ impl Array {
 
 /// Shots whose samples alternate are read together.
 fn side_by_side(head: Head, mut stream: RawNumbers<Box<dyn Read>>) -> Raw {
-    let shots = match stream.take(head.total) {
+    let shots = match stream.take(head.each) {
         Ok(shots) => shots,
         Err(error) => return Box::new(std::iter::once(Err(error))),
     };
-    let head = Head {
-        names: numbered(1),
-        each: head.total,
-        total: head.total.saturating_mul(shots.len()),
-        ..head
-    };
-    let record = move |(number, samples)| -> Result<Record, RecordError> {
-        Ok(head.record(number, vec![samples]))
-    };
+    let record = move |(number, samples)| Ok(head.record(number, vec![samples]));
     Box::new((1..).zip(shots).map(record))
 }
 
@@ -162,63 +143,4 @@ fn number(dtype: &DType) -> Option<Number> {
         _ => return None,
     };
     Some(Number::plain(kind, plain.endianness() == Endianness::Big))
-}
-
-/// What the axes are. Of two, the second goes over numbers side by side; stored
-/// column by column it is the first that does.
-fn layout(shape: &[usize], fortran: bool, rows: Rows) -> Option<Layout> {
-    let make = |stored, frames, records, planar| {
-        Some(Layout {
-            stored,
-            frames,
-            records,
-            planar,
-            shots_side_by_side: false,
-        })
-    };
-    match (shape, fortran) {
-        (&[frames], _) => make(1, frames, 1, false),
-        (&[a, b], fortran) => {
-            let rows = match rows {
-                Rows::Auto if a <= b => Rows::Shots,
-                Rows::Auto => Rows::Times,
-                told => told,
-            };
-            match (rows, fortran) {
-                (Rows::Times, false) => make(b, a, 1, false),
-                (Rows::Times, true) => make(b, a, 1, true),
-                (Rows::Channels, false) => make(a, b, 1, true),
-                (Rows::Channels, true) => make(a, b, 1, false),
-                (_, false) => make(1, b, a, false),
-                (_, true) => Some(Layout {
-                    shots_side_by_side: true,
-                    ..make(a, b, 1, false)?
-                }),
-            }
-        }
-        (&[shots, channels, frames], false) => make(channels, frames, shots, true),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_longer_axis_is_time_unless_told() {
-        let told = |shape: &[usize], rows| layout(shape, false, rows).unwrap();
-        let shots = told(&[20, 1000], Rows::Auto);
-        assert_eq!((shots.records, shots.frames, shots.stored), (20, 1000, 1));
-        let columns = told(&[1000, 2], Rows::Auto);
-        assert_eq!(
-            (columns.records, columns.frames, columns.stored),
-            (1, 1000, 2)
-        );
-        let channels = told(&[2, 1000], Rows::Channels);
-        assert_eq!(
-            (channels.records, channels.stored, channels.planar),
-            (1, 2, true)
-        );
-    }
 }

@@ -1,39 +1,16 @@
-//! Several arrays in a ZIP: samples, and what else is named as what it is.
+//! Several arrays in a ZIP.
 
 use super::array::Array;
-use crate::channels::{chosen, interval_s};
-use crate::error::{RecordError, name};
-use crate::options::{ReadOptions, Rows};
+use crate::arrays::{self, Arrays};
+use crate::channels;
+use crate::error::RecordError;
+use crate::options::ReadOptions;
 use crate::read::Raw;
-use crate::record::{Channel, Record};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use zip::{CompressionMethod, ZipArchive};
-
-/// Names of arrays that hold one interval in s.
-const INTERVALS: &[&str] = &[
-    "dt",
-    "interval",
-    "interval_s",
-    "sampling_interval",
-    "sampling_interval_s",
-];
-/// Names of arrays that hold one rate in Hz.
-const RATES: &[&str] = &[
-    "fs",
-    "rate",
-    "rate_hz",
-    "sample_rate",
-    "sampling_rate",
-    "samplerate",
-];
-/// Names of arrays of times in s.
-const TIMES: &[&str] = &["t", "time", "times", "time_s", "t_s"];
-/// Names of arrays of speeds in m/s, one a shot.
-const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
-/// One-dimensional arrays that are called so, and a number, are shots.
-const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg"];
 
 /// An array in the file.
 #[derive(Clone, Debug)]
@@ -44,149 +21,63 @@ struct Entry {
     deflated: bool,
 }
 
+/// An archive of arrays.
+struct Archive {
+    file: PathBuf,
+    entries: Vec<Entry>,
+}
+
 /// Opens an archive of arrays.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
-    let entries = entries(file)?;
-    let called = |names: &[&str]| {
-        let found = entries
+    let archive = Archive {
+        file: file.to_owned(),
+        entries: entries(file)?,
+    };
+    arrays::open(Rc::new(archive), options)
+}
+
+impl Arrays for Archive {
+    fn file(&self) -> &Path {
+        &self.file
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.entries
             .iter()
-            .find(|entry| names.contains(&entry.name.as_str()));
-        found.map(|entry| array(file, entry)?.values()).transpose()
-    };
-    let stated_s = stated_s(called(INTERVALS)?, called(RATES)?, called(TIMES)?);
-    let interval_s = interval_s(file, stated_s, options)?;
-    let speeds = called(SPEEDS)?.unwrap_or_default();
-    let known = [INTERVALS, RATES, TIMES, SPEEDS].concat();
-    let rest = entries
-        .iter()
-        .filter(|entry| !known.contains(&entry.name.as_str()));
-    let samples: Vec<Entry> = rest.cloned().collect();
-    if samples.is_empty() {
-        return Err(RecordError::Empty {
-            source_name: name(file),
-        });
+            .map(|entry| entry.name.clone())
+            .collect()
     }
-    let shapes: Vec<usize> = samples
-        .iter()
-        .map(|entry| Ok(array(file, entry)?.shape.len()))
-        .collect::<Result<_, RecordError>>()?;
-    let shots = samples.iter().all(|entry| is_shot(&entry.name));
-    let alone = samples.len() == 1;
-    let records = match shapes.iter().all(|axes| *axes == 1) {
-        true if !alone && (!shots || options.rows == Rows::Channels) => {
-            channels(file, &samples, interval_s, options)?
-        }
-        several_shots => {
-            // Shots of one axis each have no columns to choose from.
-            let free = ReadOptions {
-                channels: match several_shots {
-                    true => Vec::new(),
-                    false => options.channels.clone(),
-                },
-                ..options.clone()
-            };
-            one_by_one(file.to_owned(), samples, interval_s, free)
-        }
-    };
-    Ok(with_speeds(records, speeds))
-}
 
-fn stated_s(
-    interval: Option<Vec<f64>>,
-    rate: Option<Vec<f64>>,
-    times: Option<Vec<f64>>,
-) -> Option<f64> {
-    let first = |values: Option<Vec<f64>>| values?.first().copied();
-    let step = |times: Vec<f64>| {
-        let steps = times.len().checked_sub(1).filter(|steps| *steps > 0)?;
-        Some((times.last()? - times.first()?) / steps as f64)
-    };
-    let of_rate = || first(rate).map(f64::recip);
-    first(interval)
-        .or_else(of_rate)
-        .or_else(|| times.and_then(step))
-}
-
-fn is_shot(name: &str) -> bool {
-    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
-    let stem_is_shot = SHOTS.contains(
-        &stem
-            .trim_end_matches(['_', '-', ' '])
-            .to_lowercase()
-            .as_str(),
-    );
-    stem.len() < name.len() && stem_is_shot
-}
-
-/// One-dimensional arrays side by side.
-fn channels(
-    file: &Path,
-    samples: &[Entry],
-    interval_s: f64,
-    options: &ReadOptions,
-) -> Result<Raw, RecordError> {
-    let names: Vec<String> = samples.iter().map(|entry| entry.name.clone()).collect();
-    let mut record: Option<Record> = None;
-    for index in chosen(file, &names, options)? {
-        let Some(entry) = samples.get(index) else {
-            continue;
-        };
-        let free = ReadOptions {
-            channels: Vec::new(),
-            shot_samples: None,
-            ..options.clone()
-        };
-        let mut one = array(file, entry)?.records(interval_s, &free)?;
-        let Some(one) = one.next().transpose()? else {
-            continue;
-        };
-        let source = name(file);
-        let record = record.get_or_insert_with(|| Record {
-            source,
-            channels: Vec::new(),
-            ..one.clone()
-        });
-        record
-            .channels
-            .extend(one.channels.into_iter().map(|channel| Channel {
-                name: entry.name.clone(),
-                ..channel
-            }));
+    fn axes(&self, name: &str) -> Result<usize, RecordError> {
+        self.array(name).map(|array| array.shape.len())
     }
-    Ok(Box::new(record.into_iter().map(Ok)))
+
+    fn values(&self, name: &str) -> Result<Vec<f64>, RecordError> {
+        self.array(name)?.values()
+    }
+
+    fn records(
+        &self,
+        name: &str,
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Raw, RecordError> {
+        self.array(name)?.records(interval_s, options)
+    }
 }
 
-/// The records of one array after the other.
-fn one_by_one(file: PathBuf, samples: Vec<Entry>, interval_s: f64, options: ReadOptions) -> Raw {
-    let several = samples.len() > 1;
-    let mut shot = 0;
-    let records = samples.into_iter().flat_map(move |entry| {
-        let opened = array(&file, &entry).and_then(|array| array.records(interval_s, &options));
-        opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
-    });
-    Box::new(records.map(move |record| {
-        shot += 1;
-        record.map(|record| Record {
-            shot: record.shot.or(several.then_some(shot)),
-            ..record
-        })
-    }))
-}
-
-/// Speeds in the order of the records.
-fn with_speeds(records: Raw, speeds: Vec<f64>) -> Raw {
-    let mut number = 0;
-    Box::new(records.map(move |record| {
-        let speed = match speeds.as_slice() {
-            [one] => Some(*one),
-            several => several.get(number).copied(),
-        };
-        number += 1;
-        record.map(|record| Record {
-            speed_m_s: speed.filter(|speed| speed.is_finite()),
-            ..record
-        })
-    }))
+impl Archive {
+    fn array(&self, name: &str) -> Result<Array, RecordError> {
+        let entry = self.entries.iter().find(|entry| entry.name == name);
+        match entry {
+            Some(entry) => array(&self.file, entry),
+            None => Err(RecordError::NoChannel {
+                file: crate::error::name(&self.file),
+                wanted: name.to_owned(),
+                there: channels::list(&self.names()),
+            }),
+        }
+    }
 }
 
 fn entries(file: &Path) -> Result<Vec<Entry>, RecordError> {

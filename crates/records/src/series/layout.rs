@@ -8,7 +8,7 @@ pub(super) const VERSION: (&str, i64) = ("format_version", 1);
 /// Readings of the converter, shots × samples: of both sensors in one channel, or
 /// of one each.
 pub(super) const SUMMED: &[&str] = &["samples"];
-pub(super) const SEPARATE: &[&str] = &["sensor", "wall"];
+pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 /// Numbers of the shots; the scale of the first axis.
 pub(super) const SHOT: &str = "shot";
 /// The second axis, which has no numbers of its own.

@@ -6,7 +6,8 @@ mod truth;
 mod verify;
 mod write;
 
-pub(crate) use read::open;
+pub(crate) use layout::SEPARATE;
+pub(crate) use read::{attribute_number, is_ours, open};
 pub use truth::truth;
 pub use verify::verify;
 pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};

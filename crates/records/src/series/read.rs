@@ -3,22 +3,22 @@
 use super::layout;
 use crate::channels::{chosen, interval_s};
 use crate::error::{RecordError, name};
+use crate::hdf5::damaged;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::{Channel, Record, Samples};
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::path::{Path, PathBuf};
 
+/// Whether an open file is a series of ours.
+pub(crate) fn is_ours(open: &H5File) -> bool {
+    attribute_text(open, layout::FORMAT.0).as_deref() == Some(layout::FORMAT.1)
+}
+
 /// Opens a series of ours.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
-    let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", told(&error));
-    let open = H5File::open(file).map_err(foreign)?;
-    let kind = attribute_text(&open, layout::FORMAT.0);
-    if kind.as_deref() != Some(layout::FORMAT.1) {
-        let detail = "it is HDF5, but no series of a virtual campaign; export its samples as NPY";
-        return Err(RecordError::malformed(file, "a series", detail));
-    }
-    let channels = channels(&open).map_err(foreign)?;
+pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let foreign = |error: Hdf5Error| RecordError::malformed(file, "a series", damaged(&error));
+    let channels = channels(open).map_err(foreign)?;
     let names: Vec<String> = channels
         .iter()
         .map(|(name, _)| (*name).to_owned())
@@ -46,12 +46,12 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         volts_per_count: number(layout::VOLTS_PER_COUNT)?,
         offset_v: number(layout::OFFSET)?,
         pretrigger: number(layout::PRETRIGGER)? as usize,
-        case: attribute_text(&open, layout::CASE),
-        speed_error_m_s: attribute_text(&open, layout::SPEED_ERROR)
+        case: attribute_text(open, layout::CASE),
+        speed_error_m_s: attribute_text(open, layout::SPEED_ERROR)
             .and_then(|text| text.trim().parse().ok()),
-        numbers: column(&open, layout::SHOT, shots).map_err(foreign)?,
-        speeds: column(&open, layout::MEASURED, shots).map_err(foreign)?,
-        programmed: column(&open, layout::PROGRAMMED, shots).map_err(foreign)?,
+        numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
+        speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
+        programmed: column(open, layout::PROGRAMMED, shots).map_err(foreign)?,
         channels,
         wanted,
         length,
@@ -89,19 +89,16 @@ impl Shelf {
             .map(|(name, samples)| self.channel(name, samples, row))
             .collect();
         let channels =
-            channels.map_err(|error| RecordError::truncated(source.clone(), told(&error)))?;
+            channels.map_err(|error| RecordError::truncated(source.clone(), damaged(&error)))?;
         let speed = self.speeds.get(row).copied();
         Ok(Record {
-            source,
-            file: self.file.clone(),
             shot,
-            interval_s: self.interval_s,
-            channels,
             programmed_speed_m_s: self.programmed.get(row).copied(),
             speed_m_s: speed.filter(|speed| speed.is_finite()),
             speed_error_m_s: self.speed_error_m_s,
             case: self.case.clone(),
             pretrigger: Some(self.pretrigger),
+            ..Record::new(source, &self.file, self.interval_s, channels)
         })
     }
 
@@ -151,7 +148,7 @@ pub(super) fn attribute_text(open: &H5File, name: &str) -> Option<String> {
     open.attr_string(name).ok()
 }
 
-fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
+pub(crate) fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
     let missing = || Hdf5Error::NotFound(name.to_owned());
     let attribute = of.attr(name)?;
     let floats = attribute.read_numeric_as::<f64>();
@@ -161,9 +158,4 @@ fn attribute_number(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
         Err(_) => whole()?.first().map(|whole| *whole as f64),
     };
     value.ok_or_else(missing)
-}
-
-/// What the library says, after the likeliest reason.
-pub(super) fn told(error: &Hdf5Error) -> String {
-    format!("cut short or damaged ({error})")
 }

@@ -1,8 +1,9 @@
 //! Whether a file is the series that somebody is about to write.
 
-use super::read::{attribute_text, channels, column, told};
+use super::read::{attribute_text, channels, column};
 use super::{SeriesInfo, layout};
 use crate::error::RecordError;
+use crate::hdf5::damaged;
 use rust_hdf5::{H5File, Hdf5Error};
 use std::path::Path;
 
@@ -19,7 +20,7 @@ pub fn verify(
     programmed_speed_m_s: f64,
 ) -> Result<(), RecordError> {
     let found = differs(file, info, shots, programmed_speed_m_s);
-    match found.unwrap_or_else(|error| Some(told(&error))) {
+    match found.unwrap_or_else(|error| Some(damaged(&error))) {
         Some(what) => Err(RecordError::malformed(file, "this series", what)),
         None => Ok(()),
     }

@@ -79,7 +79,8 @@ fn open_group(
         names: kept.iter().map(|channel| channel.name.clone()).collect(),
         interval_s: interval_s(file, stated_s, options)?,
         total,
-        each: options.shot_samples.unwrap_or(total).max(1),
+        each: total,
+        pieces: false,
     };
     let opened = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
     let stream = Group {
@@ -88,7 +89,7 @@ fn open_group(
         channels: kept,
         at: 0,
     };
-    Ok(Box::new(Cut::new(head, stream)))
+    Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
 }
 
 /// The channels of a group, read piece by piece.

@@ -15,6 +15,11 @@ pub fn json(measured: &Measurement, curves: &Curves) -> Value {
             "incident": wet.incident.iter().map(ratio).collect::<Value>(),
             "reflected": wet.reflected.iter().map(ratio).collect::<Value>(),
         })).collect::<Value>(),
+        "notes": measured.notes.iter().map(|note| json!({
+            "note": note.text,
+            "files": note.files.iter().map(|file| file.display().to_string()).collect::<Value>(),
+        })).collect::<Value>(),
+        "unmatched": measured.unmatched,
         "refused": refused.collect::<Vec<_>>(),
     })
 }
@@ -29,7 +34,7 @@ fn shot(shot: &Shot) -> Value {
         "shot": shot.shot,
         "case": shot.case,
         "speed_m_s": shot.speed_m_s.map(estimate),
-        "flags": shot.doubts.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "flags": shot.remarks(),
     });
     match &shot.flight {
         Err(error) => all["missing"] = json!(error.to_string()),
@@ -100,6 +105,10 @@ fn law(of: &Result<PowerLaw, FitError>) -> Value {
             "exponent_error": law.exponent_error,
             "covariance": law.covariance,
             "r_squared": law.r_squared,
+            "chi_square": law.chi_square.map(|judged| judged.value),
+            "degrees_of_freedom": law.chi_square.map(|judged| judged.freedom),
+            "probability": law.chi_square.map(|judged| judged.probability),
+            "supported": law.is_supported(),
         }),
     }
 }

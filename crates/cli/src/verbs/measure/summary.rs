@@ -8,10 +8,14 @@ use hertzchain_signal::{Estimate, FitError, PowerLaw, Summary};
 /// Shots that anybody reads one by one.
 const MOST_SHOTS: usize = 30;
 
+/// Relative errors below this are the arithmetic's.
+const ROUNDING: f64 = 1e-12;
+
 /// Tables and fits.
 pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
-    if curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS {
+    let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
+    if few && !measured.shots.is_empty() {
         text += &shots(&measured.shots);
     }
     for case in &curves.cases {
@@ -36,10 +40,14 @@ pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String 
 
 fn counted(measured: &Measurement) -> String {
     let timed = measured.shots.iter().filter(|shot| shot.flight.is_ok());
-    let flagged = measured.shots.iter().filter(|shot| !shot.doubts.is_empty());
+    let flagged = measured
+        .shots
+        .iter()
+        .filter(|shot| !shot.remarks().is_empty());
+    let all = measured.shots.len() + measured.refused.len();
     format!(
-        "{} records, {} with times of flight, {} flagged, {} refused",
-        measured.shots.len() + measured.refused.len(),
+        "{all} record{}, {} with times of flight, {} flagged, {} refused",
+        if all == 1 { "" } else { "s" },
         timed.count(),
         flagged.count(),
         measured.refused.len()
@@ -137,15 +145,46 @@ fn curve(case: &Case) -> String {
     )
 }
 
-/// A fit; too few speeds for one are plain to see.
+/// A fit, judged; too few speeds for one are plain to see. Errors are widened to
+/// the points' scatter where that is larger.
 fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
-    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * law.prefactor_error);
-    let (exponent, exponent_error) = with_error(law.exponent, law.exponent_error);
+    // Of equal shots, what the arithmetic rounds is no error.
+    let alike = law.prefactor_error < ROUNDING * law.prefactor;
+    let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
+    let exponent = match alike {
+        true => (law.exponent / ROUNDING).round() * ROUNDING,
+        false => law.exponent,
+    };
+    let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));
     match law.exponent_error.is_finite() {
-        true => format!("{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error})\n"),
+        true => format!(
+            "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
+            judgement(law)
+        ),
         false => {
             format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
         }
+    }
+}
+
+/// Whether the points follow the law within their errors.
+fn judgement(law: &PowerLaw) -> String {
+    let Some(judged) = &law.chi_square else {
+        return String::new();
+    };
+    let squares = format!(
+        ", chi-square {} of {}, probability {}",
+        format::digits(judged.value, 3),
+        judged.freedom,
+        format::digits(judged.probability, 2)
+    );
+    match law.is_supported() {
+        Some(false) => format!(
+            "{squares}: NOT a power law within the errors; those given here are widened {} times, to the scatter about it",
+            format::digits(law.excess(), 2)
+        ),
+        _ => squares,
     }
 }

@@ -1,0 +1,208 @@
+//! Several shots in one record: told apart where that is plain.
+
+use hertzchain_records::Record;
+use hertzchain_signal::median;
+
+/// Samples that are looked at together.
+const BLOCK: usize = 32;
+
+/// Share of a channel's largest swing from which on something is a pulse.
+const PULSE: f64 = 0.2;
+
+/// Share of it that the largest pulse of every shot has.
+const ALIKE: f64 = 0.4;
+
+/// Quiet between two shots over quiet between the pulses of one: waves run to
+/// and fro in about equal times.
+const QUIET: usize = 4;
+
+/// Swing of quiet blocks over which a pulse stands.
+const ABOVE_NOISE: f64 = 4.0;
+
+/// What a record holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Content {
+    /// One shot, as far as can be told.
+    One,
+    /// Several, that quiet keeps apart: first sample and end of each.
+    Plain(Vec<(usize, usize)>),
+    /// Several, but what belongs to which is not plain.
+    Mixed,
+}
+
+/// A pulse, or a shot: its first and its last block, and the largest swing as a
+/// share of its channel's.
+#[derive(Clone, Copy, Debug)]
+struct Burst {
+    from: usize,
+    to: usize,
+    swing: f64,
+    pulses: usize,
+}
+
+/// How many shots a record holds.
+pub(crate) fn content(record: &Record) -> Content {
+    let channels = record
+        .channels
+        .iter()
+        .map(|channel| channel.samples.volts());
+    of(&channels.collect::<Vec<_>>())
+}
+
+fn of(channels: &[Vec<f64>]) -> Content {
+    let samples = channels.first().map_or(0, Vec::len);
+    let mut shares = vec![0.0_f64; samples.div_ceil(BLOCK)];
+    for volts in channels {
+        for (share, own) in shares.iter_mut().zip(shares_of(volts)) {
+            *share = share.max(own);
+        }
+    }
+    let loud = shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
+    let blocks = loud.map(|(at, share)| Burst {
+        from: at,
+        to: at,
+        swing: *share,
+        pulses: 1,
+    });
+    let pulses = joined(blocks, 3, |_| 0);
+    let Some(quiet) = division(&pulses) else {
+        return Content::One;
+    };
+    let bursts = joined(pulses.into_iter(), quiet, |burst| burst.pulses);
+    // The first and the wall's pulse at least make a shot.
+    let whole = |burst: &&Burst| burst.pulses > 1 && burst.swing >= ALIKE;
+    match bursts.iter().filter(whole).count() {
+        0 | 1 => Content::One,
+        count if count == bursts.len() => Content::Plain(ranges(&bursts, quiet, samples)),
+        _ => Content::Mixed,
+    }
+}
+
+/// Largest swing in every block as a share of the largest of all; 0 without a pulse.
+fn shares_of(volts: &[f64]) -> Vec<f64> {
+    let stride = volts.len().div_ceil(4096).max(1);
+    let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
+    let middle = median(&some).unwrap_or(0.0);
+    let swing = |block: &[f64]| {
+        let off = block.iter().map(|volt| (volt - middle).abs());
+        off.fold(0.0, f64::max)
+    };
+    let swings: Vec<f64> = volts.chunks(BLOCK).map(swing).collect();
+    let largest = swings.iter().copied().fold(0.0, f64::max);
+    let noise = median(&swings).unwrap_or(0.0);
+    let level = (PULSE * largest).max(ABOVE_NOISE * noise);
+    let share = |swing: f64| if swing > level { swing / largest } else { 0.0 };
+    swings.into_iter().map(share).collect()
+}
+
+/// Joins what is less than so many blocks apart.
+fn joined(
+    parts: impl Iterator<Item = Burst>,
+    apart: usize,
+    pulses: impl Fn(&Burst) -> usize,
+) -> Vec<Burst> {
+    let mut all: Vec<Burst> = Vec::new();
+    for part in parts {
+        match all.last_mut() {
+            Some(last) if part.from - last.to < apart => {
+                last.to = part.to;
+                last.swing = last.swing.max(part.swing);
+                last.pulses += pulses(&part);
+            }
+            _ => all.push(part),
+        }
+    }
+    all
+}
+
+/// The least quiet between shots: where the quiet between pulses grows most from
+/// one to the next longer one, if it grows enough.
+fn division(pulses: &[Burst]) -> Option<usize> {
+    let quiet = pulses.windows(2).map(|pair| pair[1].from - pair[0].to);
+    let mut quiet: Vec<usize> = quiet.collect();
+    quiet.sort_unstable();
+    let growth = |pair: &&[usize]| pair[1] as f64 / pair[0] as f64;
+    let most = quiet
+        .windows(2)
+        .max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
+    (most[1] >= QUIET * most[0]).then_some(most[1])
+}
+
+/// Where shots of equal length begin and end, with a margin before the first
+/// pulse and after the longest shot's last.
+fn ranges(bursts: &[Burst], quiet: usize, samples: usize) -> Vec<(usize, usize)> {
+    let longest = bursts.iter().map(|burst| burst.to - burst.from + 1).max();
+    let longest = longest.unwrap_or(1);
+    let margin = longest.min(quiet / 2);
+    let range = |burst: &Burst| {
+        let from = burst.from.saturating_sub(margin) * BLOCK;
+        (from, (from + (longest + 2 * margin) * BLOCK).min(samples))
+    };
+    bursts.iter().map(range).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Passing, wall, returning at these moments, `incident` apart, and noise by a formula.
+    fn recording(shots: &[(usize, f64)], samples: usize) -> Vec<f64> {
+        let bell = |at: usize, i: usize| (-((i as f64 - at as f64) / 25.0).powi(2)).exp();
+        let sample = |i: usize| {
+            let noise = 1e-3 * (((i * 7919 + i * i * 31) % 23) as f64 - 11.0) / 11.0;
+            let pulses = shots.iter().map(|(at, height)| {
+                height * (bell(*at, i) + 1.6 * bell(at + 700, i) + 0.5 * bell(at + 1420, i))
+            });
+            noise + pulses.sum::<f64>()
+        };
+        (0..samples).map(sample).collect()
+    }
+
+    /// One channel.
+    fn one(shots: &[(usize, f64)]) -> Content {
+        of(&[recording(shots, 60_000)])
+    }
+
+    #[test]
+    fn shots_with_quiet_between_are_plain() {
+        let shots = [(1000, 1.0), (21_000, 0.9), (41_000, 1.0)];
+        let Content::Plain(ranges) = one(&shots) else {
+            unreachable!("three shots are plain")
+        };
+        assert_eq!(ranges.len(), 3);
+        for ((from, to), (at, _)) in ranges.iter().zip(shots) {
+            assert!(*from + 100 < at && at + 1600 < *to, "{from}..{to} of {at}");
+        }
+    }
+
+    #[test]
+    fn one_shot_is_one_whatever_follows_it() {
+        assert_eq!(one(&[(1000, 1.0)]), Content::One);
+        // The wave comes back weaker, again and again.
+        assert_eq!(one(&[(1000, 1.0), (4000, 0.5), (7000, 0.3)]), Content::One);
+        // A second, weak one long after.
+        assert_eq!(one(&[(1000, 1.0), (40_000, 0.3)]), Content::One);
+        assert_eq!(one(&[]), Content::One);
+        assert_eq!(of(&[vec![1.0; 5]]), Content::One);
+        assert_eq!(of(&[]), Content::One);
+    }
+
+    #[test]
+    fn the_walls_channel_counts_too() {
+        let bell = |at: usize, i: usize| (-((i as f64 - at as f64) / 25.0).powi(2)).exp();
+        let channel = |first: usize| -> Vec<f64> {
+            let at = |i| bell(first, i) + bell(first + 30_000, i);
+            (0..60_000).map(at).collect()
+        };
+        let both = [channel(1000), channel(1700)];
+        assert!(matches!(of(&both), Content::Plain(ranges) if ranges.len() == 2));
+        // One sensor alone: its pulses may be those of one shot.
+        assert_eq!(of(&both[..1]), Content::One);
+    }
+
+    #[test]
+    fn shots_of_very_unlike_heights_are_not_plain() {
+        let shots = [(1000, 1.0), (21_000, 0.2), (41_000, 1.0)];
+        assert_eq!(one(&shots), Content::Mixed);
+    }
+}

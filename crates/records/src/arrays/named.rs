@@ -1,0 +1,233 @@
+//! Several arrays by name: samples, and what else is named as what it is.
+
+use crate::channels::{chosen, interval_s, list, seconds_taken};
+use crate::error::RecordError;
+use crate::options::{ReadOptions, Rows};
+use crate::read::Raw;
+use crate::record::Record;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Names of numbers that are an interval in s.
+pub(crate) const INTERVALS: &[&str] = &[
+    "dt",
+    "interval",
+    "interval_s",
+    "sampling_interval",
+    "sampling_interval_s",
+];
+/// Names of numbers that are a rate in Hz.
+pub(crate) const RATES: &[&str] = &[
+    "fs",
+    "rate",
+    "rate_hz",
+    "sample_rate",
+    "sampling_rate",
+    "samplerate",
+];
+/// Names of arrays of times that name no unit.
+const TIMES: &[&str] = &["t", "time", "times"];
+/// Names of arrays of times in s.
+const TIMES_S: &[&str] = &["time_s", "t_s"];
+/// Names of arrays of speeds in m/s, one a shot.
+const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
+/// Arrays that are called so, and a number, are shots.
+const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg"];
+
+/// A file of named arrays. Names may be paths.
+pub(crate) trait Arrays {
+    fn file(&self) -> &Path;
+
+    /// Names of all arrays of numbers.
+    fn names(&self) -> Vec<String>;
+
+    /// Number of axes.
+    fn axes(&self, name: &str) -> Result<usize, RecordError>;
+
+    /// All numbers of a small array.
+    fn values(&self, name: &str) -> Result<Vec<f64>, RecordError>;
+
+    /// The records of an array of samples.
+    fn records(
+        &self,
+        name: &str,
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Raw, RecordError>;
+
+    /// Sampling interval in s that the file states beside its arrays.
+    fn stated_s(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// The records of a file of named arrays.
+///
+/// One array is shots or channels by its axes. Several are shots if they are
+/// called so, else channels.
+pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let file = arrays.file();
+    let names = arrays.names();
+    let of = |known: &[&str]| names.iter().find(|name| known.contains(&last(name)));
+    let values = |known| of(known).map(|name| arrays.values(name)).transpose();
+    let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
+    let nameless_s = times
+        .and_then(step)
+        .map(|step| step * options.time_unit_s.unwrap_or(1.0));
+    let first = |values: Option<Vec<f64>>| values?.first().copied();
+    let stated_s = first(values(INTERVALS)?)
+        .or(first(values(RATES)?).map(f64::recip))
+        .or_else(|| arrays.stated_s())
+        .or(times_s.and_then(step));
+    let note = match stated_s {
+        Some(_) => None,
+        None => of(TIMES).and_then(|name| seconds_taken(name, None, options)),
+    };
+    let interval_s = interval_s(file, stated_s.or(nameless_s), options)?;
+    let speeds = values(SPEEDS)?.unwrap_or_default();
+    let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
+    let samples = names.iter().filter(|name| !known.contains(&last(name)));
+    let samples: Vec<String> = samples.cloned().collect();
+    let records = of_samples(&arrays, samples, interval_s, options)?;
+    Ok(with_speeds(records, speeds, note))
+}
+
+/// The last part of a path.
+fn last(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
+}
+
+fn of_samples(
+    arrays: &Rc<dyn Arrays>,
+    samples: Vec<String>,
+    interval_s: f64,
+    options: &ReadOptions,
+) -> Result<Raw, RecordError> {
+    let file = arrays.file();
+    // Columns of an array that is itself chosen are not chosen from.
+    let free = ReadOptions {
+        channels: Vec::new(),
+        ..options.clone()
+    };
+    if let [one] = samples.as_slice() {
+        let named = options.channels.contains(one);
+        let options = if named { &free } else { options };
+        return arrays.records(one, interval_s, options);
+    }
+    let are_shots = samples.iter().all(|name| is_shot(last(name)));
+    if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
+        return Ok(one_by_one(arrays.clone(), samples, interval_s, free));
+    }
+    let chosen = chosen(file, &samples, options)?;
+    let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
+    if options.channels.is_empty() {
+        // Tables may as well be of different chains.
+        for name in &chosen {
+            if arrays.axes(name)? > 1 {
+                return Err(RecordError::WhichChannel {
+                    file: crate::error::name(file),
+                    count: samples.len(),
+                    there: list(&samples),
+                });
+            }
+        }
+    }
+    side_by_side(arrays, &chosen, interval_s, &free)
+}
+
+/// The even step of times.
+fn step(times: Vec<f64>) -> Option<f64> {
+    let steps = times.len().checked_sub(1).filter(|steps| *steps > 0)?;
+    Some((times.last()? - times.first()?) / steps as f64)
+}
+
+fn is_shot(name: &str) -> bool {
+    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let word = stem.trim_end_matches(['_', '-', ' ']).to_lowercase();
+    stem.len() < name.len() && SHOTS.contains(&word.as_str())
+}
+
+/// Arrays of which each holds one channel of every shot.
+fn side_by_side(
+    arrays: &Rc<dyn Arrays>,
+    names: &[&String],
+    interval_s: f64,
+    options: &ReadOptions,
+) -> Result<Raw, RecordError> {
+    let open = |name: &&String| {
+        let records = arrays.records(name, interval_s, options)?;
+        Ok((name.to_string(), records))
+    };
+    let opened: Result<Vec<(String, Raw)>, RecordError> = names.iter().map(open).collect();
+    let (mut opened, file) = (opened?, arrays.file().to_owned());
+    Ok(Box::new(std::iter::from_fn(move || {
+        let next = opened
+            .iter_mut()
+            .map(|(name, records)| Some((name, records.next()?)));
+        let next: Vec<_> = next.collect();
+        if next.iter().all(Option::is_none) {
+            return None;
+        }
+        Some(joined(&file, next))
+    })))
+}
+
+/// One shot of channels that came one by one.
+fn joined(
+    file: &Path,
+    channels: Vec<Option<(&mut String, Result<Record, RecordError>)>>,
+) -> Result<Record, RecordError> {
+    let unlike = |detail: String| RecordError::malformed(file, "arrays", detail);
+    let mut joined: Option<Record> = None;
+    for channel in channels {
+        let (name, record) =
+            channel.ok_or_else(|| unlike("not every channel has as many shots".to_owned()))?;
+        let mut record = record?;
+        let (Some(mut channel), true) = (record.channels.pop(), record.channels.is_empty()) else {
+            return Err(unlike(format!(
+                "{name:?} has columns of its own: choose it alone"
+            )));
+        };
+        channel.name.clone_from(name);
+        joined.get_or_insert(record).channels.push(channel);
+    }
+    joined.ok_or_else(|| unlike("without channels".to_owned()))
+}
+
+/// The records of one array after the other.
+fn one_by_one(
+    arrays: Rc<dyn Arrays>,
+    samples: Vec<String>,
+    interval_s: f64,
+    options: ReadOptions,
+) -> Raw {
+    let mut shot = 0;
+    let records = samples.into_iter().flat_map(move |name| {
+        let opened = arrays.records(&name, interval_s, &options);
+        opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
+    });
+    Box::new(records.map(move |record| {
+        shot += 1;
+        record.map(|record| Record {
+            shot: Some(shot),
+            ..record
+        })
+    }))
+}
+
+/// Speeds in the order of the records.
+fn with_speeds(records: Raw, speeds: Vec<f64>, note: Option<String>) -> Raw {
+    let mut number = 0;
+    Box::new(records.map(move |record| {
+        let speed = match speeds.as_slice() {
+            [one] => Some(*one),
+            several => several.get(number).copied(),
+        };
+        number += 1;
+        record.map(|record| Record {
+            speed_m_s: speed.filter(|speed| speed.is_finite()),
+            notes: note.clone().into_iter().collect(),
+            ..record
+        })
+    }))
+}
