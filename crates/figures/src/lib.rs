@@ -8,6 +8,7 @@
 //! `\alpha` are set as in TeX; outside everything is literal apart from
 //! commands such as `\mu`. Equal input gives equal bytes.
 
+pub mod inference;
 pub mod paper;
 
 mod animation;

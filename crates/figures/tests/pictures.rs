@@ -5,6 +5,7 @@ mod covered;
 mod type_size;
 
 use covered::covered;
+use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_figures::{
     Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series, Verdict,
     VerdictMatrix,
@@ -52,6 +53,51 @@ fn every_kind() -> Vec<Figure> {
         rig.figure(),
         Figure::single_column(50.0),
         Figure::single_column(50.0).panel(Chart::new("", "")),
+    ]
+    .into_iter()
+    .chain(of_fits())
+    .collect()
+}
+
+/// Pictures of fits, also of next to nothing.
+fn of_fits() -> Vec<Figure> {
+    let samples = |count: u32| -> Vec<Vec<f64>> {
+        let wave = |k: f64| (0..count).map(move |i| (k * f64::from(i)).sin()).collect();
+        vec![wave(1.0), wave(1.7)]
+    };
+    let labels = [r"$\eta$ (Pa s)".to_owned(), "$B$".to_owned()];
+    let corner = |samples: &[Vec<f64>]| {
+        Corner {
+            labels: &labels,
+            samples,
+            marks: &[0.1, -0.2],
+            covariance: &[vec![0.3, -0.1], vec![-0.1, 0.2]],
+        }
+        .figure()
+    };
+    let profile = ProfileCurve {
+        label: "$B$",
+        values: &[60.0, 70.0, 80.0, 95.0],
+        rise: &[4.1, 0.7, 0.1, 4.4],
+        best: 76.0,
+        standard_error: Some(8.0),
+        levels: &[(1.0, "68 %"), (3.84, "95 %")],
+    };
+    let values = |values, directions| SingularValues {
+        names: &labels,
+        values,
+        directions,
+        floor: 1e-3,
+    };
+    vec![
+        corner(&samples(500)),
+        corner(&samples(1)),
+        corner(&[Vec::new(), Vec::new()]),
+        profile_figure(&[profile]),
+        profile_figure(&[profile, profile, profile]),
+        profile_figure(&[]),
+        values(&[100.0, 0.0], &[vec![0.8, 0.6], vec![-0.6, 0.8]]).figure(),
+        values(&[], &[]).figure(),
     ]
 }
 

@@ -213,7 +213,7 @@ pub(crate) struct Setting {
 
 impl Setting {
     /// For a plan whose shots are judged one by one.
-    fn of(plan: &Plan) -> Option<Self> {
+    pub(crate) fn of(plan: &Plan) -> Option<Self> {
         let (step, openings) = accuracy::equal_steps(plan)?;
         Some(Self {
             step,

@@ -20,6 +20,10 @@ const TIGHTER: f64 = 20.0;
 /// by more than the accuracy asked is judged by itself.
 const GUARD: f64 = 1.3;
 
+/// Judges take 2.36 times the force passes of a shot, a guard 1.77 times: with
+/// steps below this share of a judged shot's, pilots save nothing.
+const WORTHWHILE: f64 = 0.75;
+
 /// Pilots may use this share of the accuracy asked: between them others may
 /// be worse.
 const SHARE: f64 = 0.5;
@@ -60,7 +64,7 @@ impl Tuned {
     /// The cheapest setting with which times of flight of all pilots are within
     /// half of the accuracy asked and change by no more than that with steps 1.3
     /// times as long; `None` where there is none, or where pilots
-    /// are not alike or not for the ensemble loop.
+    /// are not alike or not for the ensemble loop, or where judges cost no more.
     ///
     /// Pilots should span what the plans span: speeds, coefficients of laws.
     #[must_use]
@@ -70,10 +74,12 @@ impl Tuned {
         if !pilots.iter().all(alike) {
             return None;
         }
+        let shortest = WORTHWHILE * Setting::of(first)?.step;
         let exact = exact(pilots, set)?;
         let plans: Vec<&Plan> = pilots.iter().collect();
         let loaded = load(&plans);
-        WAYS.iter().find_map(|&(precision, step, openings)| {
+        let mut ways = WAYS.iter().filter(|(_, step, _)| *step >= shortest);
+        ways.find_map(|&(precision, step, openings)| {
             let setting = Setting {
                 step,
                 precision: Some(precision),

@@ -75,6 +75,12 @@ fn a_tuned_shot_has_the_same_bits_in_any_company() {
 }
 
 #[test]
+fn pilots_that_would_cost_more_than_judges_are_none() {
+    let plans = plans("motor", 40, 1e-5);
+    assert_eq!(Tuned::new(&Tuned::pilots(&plans), SET()), None);
+}
+
+#[test]
 fn plans_that_are_not_alike_or_not_for_equal_steps_have_no_pilots() {
     let mut mixed = plans("dry", 4, 1e-4);
     mixed[2].accuracy = 1e-3;

@@ -93,7 +93,7 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
     folder.write("fit.csv", results::rows_csv(fitted).as_bytes())?;
     folder.write("parameters.csv", results::parameters_csv(fitted).as_bytes())?;
     folder.figure("fit", &pictures::fit(fitted))?;
-    folder.figure("singular-values", &pictures::singular_values(fitted))?;
+    folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
     match &fitted.more {
         More::Nothing => {}
         More::Profiles(profiles) => {

@@ -27,6 +27,8 @@ pub enum Panel {
     Matrix(VerdictMatrix),
     /// A drawing of the apparatus.
     Rig(Box<RigDrawing>),
+    /// A place left free.
+    Empty,
 }
 
 impl From<Chart> for Panel {
@@ -51,7 +53,7 @@ impl Panel {
     fn title(&self) -> &str {
         match self {
             Self::Chart(chart) => &chart.title,
-            Self::Matrix(_) | Self::Rig(_) => "",
+            Self::Matrix(_) | Self::Rig(_) | Self::Empty => "",
         }
     }
 }
@@ -198,6 +200,7 @@ impl Figure {
                 }
                 Panel::Matrix(matrix) => matrix.draw(&mut svg, &frame),
                 Panel::Rig(rig) => rig.draw(&mut svg, &frame),
+                Panel::Empty => {}
             }
         }
         svg.finish(self.size_mm(), &self.title, &self.caption)

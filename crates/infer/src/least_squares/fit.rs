@@ -148,7 +148,7 @@ impl Fit {
 ///
 /// # Errors
 /// A parameter that cannot be free, fewer numbers than parameters, a model that
-/// fails at the first start, a parameter that changes nothing. A fit that did
+/// fails at every start, a parameter that changes nothing. A fit that did
 /// not converge is no error: see [`Fit::ending`].
 pub fn fit(problem: &dyn Problem, how: &Fitting) -> Result<Fit, FitError> {
     how.check()?;
@@ -160,9 +160,6 @@ pub fn fit(problem: &dyn Problem, how: &Fitting) -> Result<Fit, FitError> {
         .map(|start| Descent::new(merit.clone(), start.clone(), all.clone(), how.limits()))
         .collect();
     let driven = drive(problem, descents);
-    if let (Some(first), true) = (driven.reached.first(), how.starts == 1) {
-        started(first)?;
-    }
     let best = (driven.reached.iter()).min_by(|a, b| a.cost().total_cmp(&b.cost()));
     let best = best.ok_or(FitError::NothingFree)?;
     started(best)?;

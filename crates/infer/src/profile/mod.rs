@@ -65,7 +65,8 @@ pub enum End {
     Bound(f64),
     /// χ² did not rise to the level as far as it was followed: the data set no limit.
     Open(f64),
-    /// The model fails beyond this value, before χ² has risen to the level.
+    /// Beyond this value the others cannot be re-optimised, though χ² has not
+    /// risen to the level: the model fails there, or is computed too coarsely.
     ModelFails(f64),
 }
 
@@ -108,7 +109,8 @@ pub enum ProfileError {
 /// Fall of χ² below the optimum's that is more than noise of the model.
 const BETTER: f64 = 0.01;
 
-/// Profiles of some parameters, all walks and descents side by side.
+/// Profiles of those of some parameters that there are, all walks and descents
+/// side by side.
 ///
 /// From the optimum outward, each value is held and the others re-optimised from
 /// where the last two values' optima point; the ends are found on √(χ² rise),
@@ -116,9 +118,6 @@ const BETTER: f64 = 0.01;
 ///
 /// # Errors
 /// An unconverged fit, a better fit met on the way, unusable levels.
-///
-/// # Panics
-/// Never, for parameters that the problem has; others are left out.
 pub fn profile(
     problem: &dyn Problem,
     fit: &Fit,

@@ -85,23 +85,6 @@ fn with_curve(fitted: &Fitted, chart: Chart, of: Observable) -> Chart {
         .with(points.colour(colour).marker(marker))
 }
 
-/// Singular values of the Jacobian, each parameter in units of its scale.
-pub fn singular_values(fitted: &Fitted) -> Figure {
-    let found = &fitted.identifiability;
-    let shown = |value: &f64| value.max(found.floor).max(f64::MIN_POSITIVE);
-    let values: Vec<f64> = found.singular_values.iter().map(shown).collect();
-    let numbers: Vec<f64> = (1..=values.len()).map(|number| number as f64).collect();
-    let most = values.iter().copied().fold(1.0, f64::max);
-    let least = values.iter().copied().fold(1.0, f64::min);
-    let chart = Chart::new("Combination of parameters", "Singular value")
-        .y_log()
-        .x_range(0.5, values.len() as f64 + 0.5)
-        .y_range(0.3 * least, 3.0 * most)
-        .h_line(1.0, "not determined below");
-    let points = Series::points("", &numbers, &values);
-    Figure::single_column(60.0).panel(chart.with(points.colour(Colour::BLUE)))
-}
-
 /// Standardised residuals against speed.
 fn residuals(fitted: &Fitted) -> Chart {
     let data = fitted.problem.data();

@@ -1,0 +1,160 @@
+//! Lines of equal density.
+
+use std::collections::BTreeMap;
+
+/// Values at the middles of equal cells, row by row upward.
+pub(super) struct Field {
+    pub rows: Vec<Vec<f64>>,
+    /// Outer edges of the first and last column.
+    pub x: (f64, f64),
+    /// Outer edges of the first and last row.
+    pub y: (f64, f64),
+}
+
+/// An edge between neighbouring middles: the lower left one, and whether it goes up.
+type Edge = (usize, usize, bool);
+
+impl Field {
+    /// The value above which a share of the whole lies: where the densest
+    /// cells, taken together, first hold it.
+    pub fn level(&self, share: f64) -> f64 {
+        let mut all: Vec<f64> = self.rows.iter().flatten().copied().collect();
+        all.sort_by(|a, b| b.total_cmp(a));
+        let goal = share * all.iter().sum::<f64>();
+        let mut sum = 0.0;
+        let passes = |value: &f64| {
+            sum += value;
+            sum >= goal
+        };
+        all.into_iter().find(passes).unwrap_or(0.0)
+    }
+
+    fn value(&self, i: usize, j: usize) -> f64 {
+        self.rows[j][i]
+    }
+
+    /// Lines at a level by marching squares, joined end to end; pieces are
+    /// parted by a point that is not a number.
+    pub fn contour(&self, level: f64) -> (Vec<f64>, Vec<f64>) {
+        let mut links: BTreeMap<Edge, Vec<Edge>> = BTreeMap::new();
+        for (a, b) in self.segments(level) {
+            links.entry(a).or_default().push(b);
+            links.entry(b).or_default().push(a);
+        }
+        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        // Open lines first, from an end.
+        while let Some(start) = end(&links) {
+            for edge in walked(&mut links, start) {
+                let (x, y) = self.crossing(edge, level);
+                xs.push(x);
+                ys.push(y);
+            }
+            xs.push(f64::NAN);
+            ys.push(f64::NAN);
+        }
+        (xs, ys)
+    }
+
+    /// Pairs of edges that a line joins, square by square.
+    fn segments(&self, level: f64) -> Vec<(Edge, Edge)> {
+        let mut all = Vec::new();
+        for j in 1..self.rows.len() {
+            for i in 1..self.rows[j].len() {
+                let (left, low) = (i - 1, j - 1);
+                let edges = [
+                    (left, low, false),
+                    (i, low, true),
+                    (left, j, false),
+                    (left, low, true),
+                ];
+                let crossed: Vec<Edge> = (edges.into_iter())
+                    .filter(|edge| self.is_crossed(*edge, level))
+                    .collect();
+                // Saddles: two lines, each about one corner.
+                all.extend(crossed.chunks_exact(2).map(|pair| (pair[0], pair[1])));
+            }
+        }
+        all
+    }
+
+    fn ends(&self, (i, j, up): Edge) -> (f64, f64) {
+        let other = if up {
+            self.value(i, j + 1)
+        } else {
+            self.value(i + 1, j)
+        };
+        (self.value(i, j), other)
+    }
+
+    fn is_crossed(&self, edge: Edge, level: f64) -> bool {
+        let (a, b) = self.ends(edge);
+        (a > level) != (b > level)
+    }
+
+    /// Where a line crosses an edge, straight between its ends' values.
+    fn crossing(&self, edge: Edge, level: f64) -> (f64, f64) {
+        let (a, b) = self.ends(edge);
+        let share = (level - a) / (b - a);
+        let (i, j, up) = edge;
+        let (right, above) = if up { (0.0, share) } else { (share, 0.0) };
+        let place = |cell: f64, (from, to): (f64, f64), cells: usize| {
+            from + (to - from) * (cell + 0.5) / cells as f64
+        };
+        let columns = self.rows.first().map_or(0, Vec::len);
+        (
+            place(i as f64 + right, self.x, columns),
+            place(j as f64 + above, self.y, self.rows.len()),
+        )
+    }
+}
+
+/// An edge to start from: the end of a line if there is one.
+fn end(links: &BTreeMap<Edge, Vec<Edge>>) -> Option<Edge> {
+    let open = links.iter().find(|(_, next)| next.len() == 1);
+    open.or_else(|| links.iter().next()).map(|(edge, _)| *edge)
+}
+
+/// Follows a line to its end or round, and forgets it.
+fn walked(links: &mut BTreeMap<Edge, Vec<Edge>>, start: Edge) -> Vec<Edge> {
+    let mut line = vec![start];
+    let mut at = start;
+    while let Some(next) = links.get_mut(&at).and_then(Vec::pop) {
+        if let Some(back) = links.get_mut(&next) {
+            let own = back.iter().position(|edge| *edge == at);
+            own.map(|place| back.remove(place));
+        }
+        line.push(next);
+        at = next;
+    }
+    links.retain(|_, next| !next.is_empty());
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contour_of_a_bell_is_a_circle() {
+        let middle = |i: usize| -3.0 + 6.0 * (i as f64 + 0.5) / 60.0;
+        let bell = |x: f64, y: f64| (-0.5 * (x * x + y * y)).exp();
+        let field = Field {
+            rows: (0..60)
+                .map(|j| (0..60).map(|i| bell(middle(i), middle(j))).collect())
+                .collect(),
+            x: (-3.0, 3.0),
+            y: (-3.0, 3.0),
+        };
+        // The circle that holds half of a bell has radius √(2 ln 2); what lies
+        // outside of the field and its cells are worth a percent or two.
+        let level = field.level(0.5);
+        let radius = (2.0 * 2.0_f64.ln()).sqrt();
+        assert!((level - 0.5).abs() < 0.02, "{level}");
+        let (x, y) = field.contour(0.5);
+        let sizes: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect();
+        let (last, round) = sizes.split_last().unwrap();
+        // One closed line; straight pieces over a tenth.
+        assert!(last.is_nan() && round.iter().all(|r| (r - radius).abs() < 2e-3));
+        assert_eq!((x[0], y[0]), (x[x.len() - 2], y[y.len() - 2]));
+    }
+}
