@@ -4,10 +4,11 @@
 const BIBLIOGRAPHY: &str = include_str!("../../../references.bib");
 
 /// What the bibliography writes in LaTeX, and the same in letters.
-const LETTERS: [(&str, &str); 13] = [
+const LETTERS: [(&str, &str); 14] = [
     (r"{\'a}", "á"),
     (r"{\'e}", "é"),
     (r"{\'i}", "í"),
+    (r"{\'o}", "ó"),
     (r#"{\"a}"#, "ä"),
     (r#"{\"o}"#, "ö"),
     (r#"{\"u}"#, "ü"),

@@ -40,6 +40,9 @@ pub struct SpeedRow {
     pub incident_s: Summary,
     /// Reflected time of flight in s.
     pub reflected_s: Option<Summary>,
+    /// Incident and reflected time of flight in s at the mean speed, each shot's
+    /// taken there by its own measured speed: what power laws and ratios are made of.
+    pub at_mean_speed_s: [Option<Estimate>; 2],
     /// Wall's peak over passing peak.
     pub wall_over_passing: Summary,
     /// Returning peak over passing peak.
@@ -140,8 +143,8 @@ impl Case {
         Self {
             name: name.to_owned(),
             laws: Laws {
-                incident: law(&points(&rows, |row| Some(row.incident_s))),
-                reflected: law(&points(&rows, |row| row.reflected_s)),
+                incident: law(&points(&rows, 0)),
+                reflected: law(&points(&rows, 1)),
             },
             rows,
         }
@@ -176,8 +179,11 @@ fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
     };
     let exact = |value: f64| Estimate { value, sigma: 0.0 };
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
+    let speed_m_s = mean_speed(&speeds)?;
+    let moved = |time: usize| at_speed(&counted, speed_m_s, time);
     Some(SpeedRow {
-        speed_m_s: mean_speed(&speeds)?,
+        speed_m_s,
+        at_mean_speed_s: [moved(0), moved(1)],
         shots: (counted.len(), group.len() - counted.len()),
         incident_s: of(&|flight| Some(flight.incident_s))?,
         reflected_s: of(&|flight| flight.reflected_s),
@@ -206,15 +212,35 @@ fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
     })
 }
 
-fn points(rows: &[SpeedRow], of: impl Fn(&SpeedRow) -> Option<Summary>) -> Vec<Point> {
+/// Mean of times that are taken to one speed, with the error of what scatters besides
+/// measured speeds: their errors are the mean speed's, and count there. At least
+/// that of picking.
+fn at_speed(shots: &[&&Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Estimate> {
+    let moved = |shot: &&&Timed<'_>| {
+        let of = [Some(shot.flight.incident_s), shot.flight.reflected_s][time]?;
+        let factor = (speed_m_s.value / shot.speed.value).powf(EXPONENT);
+        Some(Estimate {
+            value: factor * of.value,
+            sigma: factor * of.sigma,
+        })
+    };
+    let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();
+    let summary = summary(&moved)?;
+    let squares: f64 = moved.iter().map(|one| one.sigma.powi(2)).sum();
+    let of_picking = squares / (summary.count as f64).powi(2);
+    let of_speed = EXPONENT * summary.mean * speed_m_s.sigma / speed_m_s.value;
+    let besides = summary.error.powi(2) - of_speed.powi(2);
+    Some(Estimate {
+        value: summary.mean,
+        sigma: besides.max(of_picking).sqrt(),
+    })
+}
+
+fn points(rows: &[SpeedRow], time: usize) -> Vec<Point> {
     let point = |row: &SpeedRow| {
-        let summary = of(row)?;
         Some(Point {
             speed: row.speed_m_s,
-            value: Estimate {
-                value: summary.mean,
-                sigma: summary.error,
-            },
+            value: row.at_mean_speed_s[time]?,
         })
     };
     rows.iter().filter_map(point).collect()
@@ -244,15 +270,15 @@ fn ratios(cases: &[Case], grouping: &Grouping) -> Vec<WetOverDry> {
     let Some(dry) = cases.iter().find(|case| case.name == grouping.reference) else {
         return Vec::new();
     };
-    let over = |case: &Case, of: fn(&SpeedRow) -> Option<Summary>| {
-        let (upper, lower) = (points(&case.rows, of), points(&dry.rows, of));
+    let over = |case: &Case, time: usize| {
+        let (upper, lower) = (points(&case.rows, time), points(&dry.rows, time));
         ratios_at_common(&upper, &lower, grouping.gap_m_s, EXPONENT)
     };
     let wet = cases.iter().filter(|case| case.name != grouping.reference);
     wet.map(|case| WetOverDry {
         case: case.name.clone(),
-        incident: over(case, |row| Some(row.incident_s)),
-        reflected: over(case, |row| row.reflected_s),
+        incident: over(case, 0),
+        reflected: over(case, 1),
     })
     .collect()
 }

@@ -24,4 +24,4 @@ pub use list::{ListError, ShotList};
 pub use refused::Refused;
 pub use run::{Cut, Measurement, Note, Options, measure};
 pub use shot::Shot;
-pub use table::{ratios_csv, shots_csv, speeds_csv};
+pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv};

@@ -1,7 +1,7 @@
 //! Results as CSV, in SI.
 
 use crate::{Curves, Shot, SpeedRow};
-use hertzchain_signal::{Estimate, Picked, Ratio, Summary};
+use hertzchain_signal::{Estimate, Picked, PowerLaw, Ratio, Summary};
 
 /// A number in a cell; empty where there is none.
 fn cell(value: Option<f64>) -> String {
@@ -107,6 +107,48 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain(summarised(Some(row.wall_over_passing)))
         .chain(summarised(row.returning_over_passing))
         .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))));
+    line(cells)
+}
+
+/// One line a power law: of each case incident and reflected times of flight.
+/// Errors follow from those of the points, as they are; where the law is not
+/// supported, they are too small by √(chi-square/degrees of freedom).
+#[must_use]
+pub fn laws_csv(curves: &Curves) -> String {
+    let mut text = "case,time,prefactor_s,prefactor_error_s,exponent,exponent_error,r_squared,\
+                    chi_square,degrees_of_freedom,probability,supported\n"
+        .to_owned();
+    for case in &curves.cases {
+        let laws = [
+            ("incident", &case.laws.incident),
+            ("reflected", &case.laws.reflected),
+        ];
+        for (time, law) in laws {
+            text.extend(law.iter().map(|law| law_line(&case.name, time, law)));
+        }
+    }
+    text
+}
+
+fn law_line(case: &str, time: &str, law: &PowerLaw) -> String {
+    let judged = law.chi_square.as_ref();
+    let fitted = [
+        law.prefactor,
+        law.prefactor_error,
+        law.exponent,
+        law.exponent_error,
+        law.r_squared,
+    ];
+    let cells = [quoted(case), time.to_owned()]
+        .into_iter()
+        .chain(fitted.map(|value| cell(Some(value))))
+        .chain([
+            cell(judged.map(|judged| judged.value)),
+            judged.map_or(String::new(), |judged| judged.freedom.to_string()),
+            cell(judged.map(|judged| judged.probability)),
+            law.is_supported()
+                .map_or(String::new(), |supported| supported.to_string()),
+        ]);
     line(cells)
 }
 

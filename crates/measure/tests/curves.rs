@@ -55,7 +55,7 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
             .push(&ShotRow {
                 shot,
                 programmed_speed_m_s: speed_m_s,
-                measured_speed_m_s: speed_m_s + 0.02 * (shot as f64 - 2.0),
+                measured_speed_m_s: speed_m_s + 0.002 * (shot as f64 - 2.0),
                 samples: &samples(incident, height, shot),
                 truth: &[],
             })
@@ -121,6 +121,30 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
 }
 
 #[test]
+fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
+    let folder = folder("explained");
+    let mut shots = measured(&[series(&folder, "dry", 0.5, 9000.0)]).shots;
+    // Speeds to which these very times belong.
+    for shot in &mut shots {
+        let time_s = shot.flight.as_ref().unwrap().incident_s.value;
+        let speed = shot.speed_m_s.as_mut().unwrap();
+        speed.value = (time_s / 630e-6).powf(-5.0);
+    }
+    let curves = Curves::of(&shots, &Grouping::default());
+    let row = &curves.cases[0].rows[0];
+    let at_mean = row.at_mean_speed_s[0].unwrap();
+    // Rounding: all times are one when taken to one speed, and that is the law's.
+    assert!((at_mean.value / (630e-6 * row.speed_m_s.value.powf(-0.2)) - 1.0).abs() < 1e-12);
+    let picking: f64 = shots
+        .iter()
+        .map(|shot| shot.flight.as_ref().unwrap().incident_s.sigma.powi(2))
+        .sum();
+    // Taking a time to the mean speed moves its sigma by 1e-3 of itself.
+    assert!((at_mean.sigma / (picking.sqrt() / 5.0) - 1.0).abs() < 1e-3);
+    assert!(at_mean.sigma < 0.3 * row.incident_s.error, "{row:?}");
+}
+
+#[test]
 fn wet_is_held_against_dry_with_both_errors() {
     let folder = folder("ratio");
     let files = [
@@ -134,7 +158,8 @@ fn wet_is_held_against_dry_with_both_errors() {
     let relative = |case: usize| {
         let row = &curves.cases[case].rows[0];
         let speed = 0.2 * row.speed_m_s.sigma / row.speed_m_s.value;
-        (row.incident_s.error / row.incident_s.mean).hypot(speed)
+        let time = row.at_mean_speed_s[0].unwrap();
+        (time.sigma / time.value).hypot(speed)
     };
     // Rounding.
     assert!((ratio.ratio.sigma - relative(0).hypot(relative(1))).abs() < 1e-15);

@@ -35,7 +35,6 @@ mod find;
 mod flight;
 mod level;
 mod measure;
-mod pick;
 mod picks;
 mod power_law;
 mod reduce;
@@ -45,20 +44,21 @@ mod zero_phase;
 
 pub use cutter::{Cutter, Cutting, Segment, Trigger};
 pub use delay::delay_by_cross_correlation;
-pub use droop::{droop, droop_shift_s, undroop};
+pub use droop::{droop, undroop};
 pub use error::SignalError;
 pub use find::{Channels, Doubt, Finding, Found, Place, Polarity, Pulse, Upright, pulses, upright};
 pub use flight::{Estimate, Flight};
 pub use level::{Level, level, median};
 pub use measure::{Measured, Measuring, measure};
-pub use pick::{Peak, largest_peak, onset_s};
 pub use picks::{
     Method, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
 };
-pub use power_law::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
+pub use power_law::{
+    FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,
+};
 pub use reduce::{
-    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups,
-    power_law_both_errors, ratios_at_common, summary,
+    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups, ratios_at_common,
+    summary,
 };
 pub use saturation::{Rails, saturated_runs};
 pub use zero_phase::LowPass;

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use crate::error::SignalError;
-use crate::find::saturated_as_recorded;
+use crate::find::conditioned_pulses;
 use crate::{
-    Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, pick, pulses,
-    undroop, upright,
+    Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, pick, undroop,
+    upright,
 };
 
 /// What is done to a shot's samples, and how pulses are picked.
@@ -63,12 +63,8 @@ pub fn measure(
             }
         }
     };
+    let mut found = conditioned_pulses(channels, recorded, finding)?;
     let rails = finding.rails.filter(|_| !measuring.conditions());
-    let mut found = pulses(channels, &Finding { rails, ..*finding })?;
-    if measuring.conditions() {
-        let saturated = saturated_as_recorded(recorded, &found, finding);
-        found.doubt(saturated);
-    }
     let picks = pick(channels, interval_s, &found, &measuring.method, rails);
     let flight = picks.map(crate::Picks::flight);
     let lost = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());

@@ -1,5 +1,7 @@
 //! Power laws by least squares in the logarithms.
 
+use crate::reduce::{ChiSquare, Points, all_equal};
+
 /// y = `prefactor` · x^`exponent`, with how sure that is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerLaw {
@@ -17,7 +19,13 @@ pub struct PowerLaw {
     pub r_squared: f64,
     /// ln y − ln(prefactor · x^exponent), one a point: relative deviations, nearly.
     pub residuals: Vec<f64>,
+    /// Of the points against the law, in their own errors; none where these are not
+    /// known, or two points leave nothing to judge.
+    pub chi_square: Option<ChiSquare>,
 }
+
+/// Probability of chi-square below which points do not follow a law.
+const UNLIKELY: f64 = 0.01;
 
 impl PowerLaw {
     /// The law's value.
@@ -31,6 +39,36 @@ impl PowerLaw {
     pub fn largest_deviation(&self) -> f64 {
         let relative = self.residuals.iter().map(|r| r.exp_m1().abs());
         relative.fold(0.0, f64::max)
+    }
+
+    /// Whether the points follow the law within their errors: chance alone would
+    /// scatter them as widely once in a hundred times or more. `None` if nobody can tell.
+    #[must_use]
+    pub fn is_supported(&self) -> Option<bool> {
+        let judged = self.chi_square.as_ref();
+        judged.map(|chi_square| chi_square.probability >= UNLIKELY)
+    }
+
+    /// What the errors must be multiplied by to be as large as the points' scatter
+    /// about the law, √(χ²/degrees of freedom); 1 if they are large enough, or not judged.
+    #[must_use]
+    pub fn excess(&self) -> f64 {
+        let reduced = |c: &ChiSquare| c.value / c.freedom as f64;
+        self.chi_square
+            .as_ref()
+            .map_or(1.0, |c| reduced(c).sqrt().max(1.0))
+    }
+
+    /// With errors of points that are `variance` times as large, squared, and found
+    /// from the points themselves.
+    fn scattered(self, variance: f64) -> Self {
+        Self {
+            prefactor_error: self.prefactor_error * variance.sqrt(),
+            exponent_error: self.exponent_error * variance.sqrt(),
+            covariance: self.covariance * variance,
+            chi_square: None,
+            ..self
+        }
     }
 }
 
@@ -70,19 +108,53 @@ pub fn power_law(
     values: &[f64],
     sigmas: Option<&[f64]>,
 ) -> Result<PowerLaw, FitError> {
-    check(abscissas, values, sigmas)?;
-    let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
-    let y: Vec<f64> = values.iter().map(|y| y.ln()).collect();
-    let weights: Vec<f64> = match sigmas {
-        Some(sigmas) => values
-            .iter()
-            .zip(sigmas)
-            .map(|(y, s)| (y / s).powi(2))
-            .collect(),
-        None => vec![1.0; x.len()],
+    let exact = vec![0.0; abscissas.len()];
+    // Without sigmas relative errors of 1 give all points one weight.
+    let law = power_law_both_errors(abscissas, &exact, values, sigmas.unwrap_or(values))?;
+    if sigmas.is_some() {
+        return Ok(law);
+    }
+    let left: f64 = law.residuals.iter().map(|r| r * r).sum();
+    let variance = match law.residuals.len() - 2 {
+        0 => f64::NAN,
+        freedom => left / freedom as f64,
     };
-    let line = Line::through(&x, &y, &weights).ok_or(FitError::TooFew)?;
-    Ok(line.power_law(&x, &y, &weights, sigmas.is_some()))
+    Ok(law.scattered(variance))
+}
+
+/// Fits y = a x^b with standard deviations of both x and y.
+///
+/// York's method for a straight line through points with independent errors
+/// \[York2004\], in ln y against ln x with errors σ_y/y and σ_x/x: it makes
+/// Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²) least. That sum is the fit's
+/// chi-square. Errors follow from the σ alone; `r_squared` and residuals are
+/// those of ln y. Errors of x may be 0.
+///
+/// # Errors
+/// See [`FitError`].
+pub fn power_law_both_errors(
+    abscissas: &[f64],
+    abscissa_sigmas: &[f64],
+    values: &[f64],
+    sigmas: &[f64],
+) -> Result<PowerLaw, FitError> {
+    check(abscissas, values, Some(sigmas))?;
+    check_not_negative(abscissas, abscissa_sigmas)?;
+    let variances = |of: &[f64], sigmas: &[f64]| -> Vec<f64> {
+        let pairs = of.iter().zip(sigmas);
+        pairs.map(|(x, s)| (s / x).powi(2)).collect()
+    };
+    let points = Points {
+        x: logarithms(abscissas),
+        y: logarithms(values),
+        x_variance: variances(abscissas, abscissa_sigmas),
+        y_variance: variances(values, sigmas),
+    };
+    points.fit().ok_or(FitError::TooFew)
+}
+
+fn logarithms(of: &[f64]) -> Vec<f64> {
+    of.iter().map(|x| x.ln()).collect()
 }
 
 /// How far a fitted law can be off because of errors of its values alone.
@@ -105,21 +177,16 @@ pub struct Uncertainty {
 /// See [`FitError`]; relative errors may be 0.
 pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, FitError> {
     check(abscissas, abscissas, None)?;
-    if relative.len() != abscissas.len() {
-        return Err(FitError::Lengths {
-            abscissas: abscissas.len(),
-            values: relative.len(),
-        });
+    check_not_negative(abscissas, relative)?;
+    let x = logarithms(abscissas);
+    let n = x.len() as f64;
+    let mean = x.iter().sum::<f64>() / n;
+    let spread: f64 = x.iter().map(|x| (x - mean).powi(2)).sum();
+    if all_equal(&x) {
+        return Err(FitError::TooFew);
     }
-    let bad = relative.iter().position(|e| !(*e >= 0.0 && e.is_finite()));
-    if let Some(index) = bad {
-        return Err(FitError::NotPositive { index });
-    }
-    let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
-    let weights = vec![1.0; x.len()];
-    let line = Line::through(&x, &x, &weights).ok_or(FitError::TooFew)?;
-    let slope = |x: &f64| (x - line.mean_x) / line.spread_x;
-    let level = |x: &f64| line.weight.recip() - line.mean_x * slope(x);
+    let slope = |x: &f64| (x - mean) / spread;
+    let level = |x: &f64| n.recip() - mean * slope(x);
     let bound = |part: &dyn Fn(&f64) -> f64| {
         let parts = x.iter().zip(relative);
         parts.map(|(x, error)| part(x).abs() * error).sum()
@@ -130,11 +197,7 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, F
     })
 }
 
-pub(crate) fn check(
-    abscissas: &[f64],
-    values: &[f64],
-    sigmas: Option<&[f64]>,
-) -> Result<(), FitError> {
+fn check(abscissas: &[f64], values: &[f64], sigmas: Option<&[f64]>) -> Result<(), FitError> {
     for slice in [Some(values), sigmas].into_iter().flatten() {
         if slice.len() != abscissas.len() {
             return Err(FitError::Lengths {
@@ -155,66 +218,14 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// A weighted straight line y = intercept + slope · x, about the weighted means.
-struct Line {
-    weight: f64,
-    mean_x: f64,
-    mean_y: f64,
-    spread_x: f64,
-    slope: f64,
-}
-
-impl Line {
-    fn through(x: &[f64], y: &[f64], weights: &[f64]) -> Option<Self> {
-        let weight: f64 = weights.iter().sum();
-        let mean = |of: &[f64]| weighted(of, weights) / weight;
-        let (mean_x, mean_y) = (mean(x), mean(y));
-        let (mut spread_x, mut together) = (0.0, 0.0);
-        for ((x, y), w) in x.iter().zip(y).zip(weights) {
-            spread_x += w * (x - mean_x).powi(2);
-            together += w * (x - mean_x) * (y - mean_y);
-        }
-        // Equal abscissas leave nothing but rounding.
-        let differ = x.iter().any(|other| *other != x[0]);
-        (differ && spread_x > 0.0).then(|| Self {
-            weight,
-            mean_x,
-            mean_y,
-            spread_x,
-            slope: together / spread_x,
-        })
+/// Errors that may be 0, one an abscissa.
+fn check_not_negative(abscissas: &[f64], errors: &[f64]) -> Result<(), FitError> {
+    if errors.len() != abscissas.len() {
+        return Err(FitError::Lengths {
+            abscissas: abscissas.len(),
+            values: errors.len(),
+        });
     }
-
-    fn power_law(&self, x: &[f64], y: &[f64], weights: &[f64], known_errors: bool) -> PowerLaw {
-        let residual = |(x, y): (&f64, &f64)| (y - self.mean_y) - self.slope * (x - self.mean_x);
-        let residuals: Vec<f64> = x.iter().zip(y).map(residual).collect();
-        let squares: Vec<f64> = residuals.iter().map(|r| r * r).collect();
-        let left = weighted(&squares, weights);
-        let spread_y: Vec<f64> = y.iter().map(|y| (y - self.mean_y).powi(2)).collect();
-        let all = weighted(&spread_y, weights);
-        let variance = match (known_errors, x.len() - 2) {
-            (true, _) => 1.0,
-            (false, 0) => f64::NAN,
-            (false, freedom) => left / freedom as f64,
-        };
-        let prefactor = (self.mean_y - self.slope * self.mean_x).exp();
-        let log_variance =
-            variance * (self.weight.recip() + self.mean_x * self.mean_x / self.spread_x);
-        PowerLaw {
-            prefactor,
-            exponent: self.slope,
-            prefactor_error: prefactor * log_variance.sqrt(),
-            exponent_error: (variance / self.spread_x).sqrt(),
-            covariance: -variance * self.mean_x / self.spread_x,
-            r_squared: if all > 0.0 { 1.0 - left / all } else { 1.0 },
-            residuals,
-        }
-    }
-}
-
-fn weighted(of: &[f64], weights: &[f64]) -> f64 {
-    of.iter()
-        .zip(weights)
-        .map(|(value, weight)| value * weight)
-        .sum()
+    let bad = errors.iter().position(|s| !(*s >= 0.0 && s.is_finite()));
+    bad.map_or(Ok(()), |index| Err(FitError::NotPositive { index }))
 }

@@ -9,12 +9,14 @@ mod common;
 #[path = "common/dry.rs"]
 mod dry;
 
-use common::{Scene, channels};
+use common::{Scene, channels, normal};
 use dry::Dry;
 use hertzchain_signal::{
-    Channels, Estimate, Flight, LowPass, Measuring, Method, Rails, Shape, SignalError, Template,
-    coverage, cramer_rao_s, droop, measure,
+    Channels, Doubt, Estimate, Flight, LowPass, Measuring, Method, Place, Rails, Shape,
+    SignalError, Template, coverage, cramer_rao_s, droop, measure,
 };
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 fn bell() -> Shape {
     Shape::cos_power(6.0)
@@ -179,6 +181,82 @@ fn rounding_by_a_digitiser_is_part_of_the_stated_error() {
     let found = coverage(&pulls, 1.0).unwrap();
     // Rounding is not quite white, and the steep flanks' is alike from shot to shot.
     assert!((0.7..1.4).contains(&found.scale), "{found:?}");
+}
+
+/// Doubts and pulls of the default method on bells without noise, in steps of so
+/// many to the passing pulse's height.
+fn in_steps(steps: f64) -> (Vec<Doubt>, Vec<f64>) {
+    let (mut doubts, mut pulls) = (Vec::new(), Vec::new());
+    for k in 0..100 {
+        let part = |prime: f64| (f64::from(k) * prime).fract();
+        let mut scene = Scene {
+            // Anywhere between steps and between samples.
+            offset: part(0.618_034) / steps,
+            ..Scene::default()
+        };
+        scene.pulses[0].0 += 1e-6 * part(0.414_214);
+        scene.pulses[1].0 += 1e-6 * part(0.732_051);
+        scene.pulses[2].0 += 1e-6 * part(0.236_068);
+        let digits = |x: &f64| (x * steps).round() / steps;
+        let samples: Vec<f64> = scene.summed().iter().map(digits).collect();
+        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+        doubts.extend(shot.found.doubts);
+        let found = shot.flight.unwrap();
+        let pull = |of: Estimate, truth: f64| (of.value - truth) / of.sigma;
+        pulls.push(pull(found.incident_s, scene.incident_s()));
+        pulls.push(pull(found.reflected_s.unwrap(), scene.reflected_s()));
+    }
+    (doubts, pulls)
+}
+
+#[test]
+fn coarse_steps_without_noise_are_doubted_and_within_the_stated_error() {
+    for steps in [12.0, 20.0, 50.0, 200.0] {
+        let (doubts, pulls) = in_steps(steps);
+        let doubted = doubts.contains(&Doubt::CoarseSteps(Place::Passing));
+        assert_eq!(doubted, steps < 32.0, "{steps}");
+        for (factor, least) in [(1.0, 0.6), (2.0, 0.9)] {
+            let found = coverage(&pulls, factor).unwrap();
+            // Rounding has no normal distribution; where samples change steps, times are well known.
+            assert!(found.share > least, "{steps}: {found:?}");
+        }
+    }
+}
+
+/// Pulls of the default method on a computed, skewed shot in noise.
+fn pulls_on_a_dry_shot(noise: f64) -> [Vec<f64>; 2] {
+    let dry = Dry::load();
+    let [passing, wall, returning] = Dry::MAXIMA_S;
+    let (mut incident, mut reflected) = (Vec::new(), Vec::new());
+    for seed in 0..250 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let lead_s = 0.5e-3 + 1e-6 * (seed as f64 * 0.618_034).fract();
+        let sample = |i: i32| dry.summed(f64::from(i) * 1e-6 - lead_s) + noise * normal(&mut rng);
+        let samples: Vec<f64> = (0..2600).map(sample).collect();
+        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+        let found = shot.flight.unwrap();
+        let pull = |of: Estimate, truth: f64| (of.value - truth) / of.sigma;
+        incident.push(pull(found.incident_s, wall - passing));
+        reflected.extend(found.reflected_s.map(|of| pull(of, returning - wall)));
+    }
+    [incident, reflected]
+}
+
+#[test]
+fn stated_errors_cover_what_skewness_does_at_30_and_at_60_db() {
+    for noise in [0.03, 0.001] {
+        let [incident, reflected] = pulls_on_a_dry_shot(noise);
+        for factor in [1.0, 1.96] {
+            let found = coverage(&incident, factor).unwrap();
+            let chance = 4.0 * found.chance;
+            // Four standard deviations of chance.
+            let off = (found.share - found.expected).abs();
+            assert!(off < chance, "{noise}: {found:?}");
+            // What lies under the returning pulse is stated as its largest shift.
+            let found = coverage(&reflected, factor).unwrap();
+            assert!(found.share > found.expected - chance, "{noise}: {found:?}");
+        }
+    }
 }
 
 #[test]

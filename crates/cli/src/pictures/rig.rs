@@ -1,6 +1,6 @@
 //! Figures of the claims about the rig.
 
-use hertzchain_figures::{Chart, Colour, Figure, Marker, Series, Verdict, VerdictMatrix};
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
 use hertzchain_rig::claims::{
     AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
 };
@@ -39,26 +39,32 @@ fn symbol(judged: Option<&Judged>) -> Verdict {
     }
 }
 
-/// Spreads of times of flight against each factor, the others as usual.
+/// Spreads of times of flight against each factor, the others as usual; beside
+/// them what the striker's own irregularity adds.
 fn spreads(evidence: &Evidence) -> Figure {
     let kinds: [(&str, Colour, Marker, Of); 3] = [
-        (
-            "incident, without taps",
-            Colour::VERMILION,
-            Marker::Triangle,
-            |at| spread_s(&at.loose, Branch::Incident),
-        ),
-        ("incident, with taps", Colour::BLUE, Marker::Circle, |at| {
-            spread_s(&at.tapped, Branch::Incident)
-        }),
         (
             "reflected, with taps",
             Colour::GREEN,
             Marker::OpenSquare,
             |at| spread_s(&at.tapped, Branch::Reflected),
         ),
+        ("incident, with taps", Colour::BLUE, Marker::Circle, |at| {
+            spread_s(&at.tapped, Branch::Incident)
+        }),
+        (
+            "incident, without taps",
+            Colour::VERMILION,
+            Marker::Triangle,
+            |at| spread_s(&at.loose, Branch::Incident),
+        ),
     ];
-    let mut figure = Figure::double_column(120.0).columns(2).letters().share_y();
+    let added_ns = evidence.rigs.first().map_or(f64::NAN, |usual| {
+        let scatter = usual.with_scatter_s(Branch::Incident);
+        let added_s: Vec<f64> = scatter.map(|(_, scatter_s)| scatter_s).collect();
+        1e9 * typical(&added_s).value.exp()
+    });
+    let mut figure = Figure::double_column(120.0).columns(2).letters();
     for (at, factor) in FACTORS.iter().enumerate() {
         let rigs = one_at_a_time(evidence, at);
         let label = match factor.unit {
@@ -66,20 +72,31 @@ fn spreads(evidence: &Evidence) -> Figure {
             unit => format!("{} ({})", factor.name, unit.trim()),
         };
         let mut chart = Chart::new(&label, "spread of ToF (ns)").y_log();
+        chart = chart.y_range(SPREADS_NS.0, SPREADS_NS.1);
         if rigs.iter().all(|(value, _)| *value > 0.0) {
             chart = chart.x_log();
         }
         for (name, colour, marker, of) in kinds {
-            chart = chart.with(
-                spread(&rigs, factor.si, name, of)
-                    .colour(colour)
-                    .marker(marker),
-            );
+            let points = spread(&rigs, factor.si, name, of);
+            chart = chart.with(points.colour(colour).marker(marker));
         }
-        figure = figure.panel(chart);
+        let first = at == 0;
+        chart = chart.h_line(
+            added_ns,
+            if first {
+                "by the striker\u{2019}s ± 3 mm/s"
+            } else {
+                ""
+            },
+        );
+        let legend = if first { Legend::Auto } else { Legend::Off };
+        figure = figure.panel(chart.legend(legend));
     }
     figure
 }
+
+/// Range of spreads in ns, the same in all panels.
+const SPREADS_NS: (f64, f64) = (50.0, 5e5);
 
 /// What a series has.
 type Of = fn(&AtSpeed) -> f64;
@@ -137,10 +154,18 @@ fn shown(evidence: &Evidence) -> Vec<&Observed> {
 }
 
 /// Gaps after the fastest shots and after the taps that follow, contact by
-/// contact, on the three rigs that are left loosest.
+/// contact, on the three rigs that are left loosest, no two of the same friction
+/// and push.
 fn gaps(evidence: &Evidence) -> Figure {
     let mut rigs: Vec<&Observed> = evidence.rigs.iter().collect();
     rigs.sort_by(|one, other| left_m(other).total_cmp(&left_m(one)));
+    let held = |observed: &Observed| [observed.rig.values[0], observed.rig.values[1]];
+    let mut seen = Vec::new();
+    rigs.retain(|observed| {
+        let new = !seen.contains(&held(observed));
+        seen.push(held(observed));
+        new
+    });
     let mut figure = Figure::double_column(65.0).columns(3).letters();
     for observed in rigs.into_iter().take(3) {
         if let Some(at) = observed.speeds.last() {
@@ -177,7 +202,9 @@ fn row(observed: &Observed, at: &AtSpeed) -> Chart {
         };
         let gaps_um: Vec<f64> = (0..contacts).map(gap_um).collect();
         let numbers: Vec<f64> = (1..=contacts).map(|contact| contact as f64).collect();
-        let name = format!("{name}: {:.0} µm in all", gaps_um.iter().sum::<f64>());
+        let sum_um = gaps_um.iter().sum::<f64>();
+        let decimals = if sum_um > 0.0 && sum_um < 10.0 { 2 } else { 0 };
+        let name = format!("{name}: {sum_um:.decimals$} µm in all");
         let points = Series::points(&name, &numbers, &gaps_um);
         chart = chart.with(points.colour(colour).marker(marker));
     }

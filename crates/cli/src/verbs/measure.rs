@@ -12,8 +12,8 @@ use crate::{input, print};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows};
 use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Note, Options, ShotList, ratios_csv, shots_csv,
-    speeds_csv,
+    Curves, Cut, Grouping, Level, Measurement, Note, Options, ShotList, laws_csv, ratios_csv,
+    shots_csv, speeds_csv,
 };
 use hertzchain_signal::{Finding, LowPass, Measuring, Method, Polarity, Shape, Template};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -255,6 +255,7 @@ fn write(
     }
     if !curves.cases.is_empty() {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
+        folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
         folder.figure("times-of-flight", &pictures::times(curves))?;
     }
     if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {

@@ -75,9 +75,13 @@ impl Factor {
     /// A value in SI as it is shown: `friction 0.2`.
     #[must_use]
     pub fn text(&self, value: f64) -> String {
+        format!("{} {}", self.name, self.amount(value))
+    }
+
+    fn amount(&self, value: f64) -> String {
         // Ten digits: products with units are not exact.
         let shown = (value / self.si * 1e10).round() / 1e10;
-        format!("{} {shown}{}", self.name, self.unit)
+        format!("{shown}{}", self.unit)
     }
 }
 
@@ -111,13 +115,14 @@ impl Rig {
         rig
     }
 
-    /// With every factor at its lowest or highest level.
+    /// With every factor at its lowest or highest level; the name has them in the
+    /// order of [`FACTORS`].
     #[must_use]
     pub fn corner(high: [bool; 4]) -> Self {
         let value = |at: usize| FACTORS[at].levels[if high[at] { 2 } else { 0 }];
         let values = [0, 1, 2, 3].map(value);
         let names = FACTORS.iter().zip(values);
-        let names: Vec<String> = names.map(|(factor, value)| factor.text(value)).collect();
+        let names: Vec<String> = names.map(|(factor, value)| factor.amount(value)).collect();
         Self {
             name: names.join(", "),
             values,

@@ -77,10 +77,13 @@ pub fn each(shots: &[Shot], of: impl Fn(&Shot) -> f64) -> Vec<f64> {
 /// taken to be smaller.
 const SURE_S: f64 = 0.2e-9;
 
-/// Standard deviation in s of a time of flight of shots of equal speed.
+/// Standard deviation in s of a time of flight of shots of equal speed; not a
+/// number where fewer than two shots have one.
 #[must_use]
 pub fn spread_s(shots: &[Shot], branch: Branch) -> f64 {
-    deviation(&each(shots, |shot| tof_s(shot, branch))).max(SURE_S)
+    let spread_s = deviation(&each(shots, |shot| tof_s(shot, branch)));
+    // Not `max`, which prefers any number to none.
+    if spread_s < SURE_S { SURE_S } else { spread_s }
 }
 
 impl Observed {

@@ -16,7 +16,7 @@ pub use design::{Design, FACTORS, Factor, Rig};
 pub use evidence::{AtSpeed, Evidence, Observed, mean, rebound_m_s, spread_s};
 pub use observe::observe;
 pub use report::{RigClaims, series_csv};
-pub use spread::{Estimate, typical};
+pub use spread::{Estimate, root_mean_square, typical};
 
 use hertzchain_study::claims::{ClaimError, Judge, read};
 

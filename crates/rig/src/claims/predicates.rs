@@ -1,7 +1,7 @@
 //! Predicates: code that decides a claim on what rigs have shown, by name.
 
 use super::evidence::{AtSpeed, Evidence, Observed, each, largest_m, rebound_m_s, spread_s, tof_s};
-use super::spread::{Estimate, deviation, mean_of, typical};
+use super::spread::{Estimate, deviation, mean_of, root_mean_square, typical};
 use crate::shot::Shot;
 use hertzchain_study::claims::{Branch, Claim, Finding, Needs, Predicate, Tally, Worst};
 
@@ -25,14 +25,15 @@ pub(super) fn find(name: &str) -> Option<Predicate<Evidence>> {
     row.map(|(_, predicate)| *predicate)
 }
 
-/// Slower spreads of a rebound are taken for this one, in m/s: less than any
-/// threshold, and more than the arithmetic's.
+/// A spread of rebounds that is no spread, in m/s.
 const LEAST_M_S: f64 = 1e-9;
 
+/// Strikers that all stay have a spread of 0: hence a root mean square.
 fn rebounds_differ(claim: &Claim, evidence: &Evidence) -> Finding {
-    let spread = |at: &AtSpeed| deviation(&each(&at.loose, rebound_m_s)).max(LEAST_M_S);
+    let spread = |at: &AtSpeed| deviation(&each(&at.loose, rebound_m_s));
     a_rig_each(claim, evidence, |observed| {
-        within(claim, observed).map(spread).collect()
+        let of_series: Vec<f64> = within(claim, observed).map(spread).collect();
+        root_mean_square(&of_series, LEAST_M_S)
     })
 }
 
@@ -40,14 +41,14 @@ fn spread_beside_scatter(claim: &Claim, evidence: &Evidence) -> Finding {
     a_rig_each(claim, evidence, |observed| {
         let series = observed.with_scatter_s(Branch::Incident);
         let ratio = |(at, scatter_s): (&AtSpeed, f64)| incident_s(&at.loose) / scatter_s;
-        series.map(ratio).collect()
+        typical(&series.map(ratio).collect::<Vec<f64>>())
     })
 }
 
 fn taps_shrink_own(claim: &Claim, evidence: &Evidence) -> Finding {
     a_rig_each(claim, evidence, |observed| {
         let ratio = |at: &AtSpeed| incident_s(&at.loose) / incident_s(&at.tapped);
-        within(claim, observed).map(ratio).collect()
+        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
     })
 }
 
@@ -57,14 +58,14 @@ fn taps_shrink_seen(claim: &Claim, evidence: &Evidence) -> Finding {
         let ratio = |(at, scatter_s): (&AtSpeed, f64)| {
             incident_s(&at.loose).hypot(scatter_s) / incident_s(&at.tapped).hypot(scatter_s)
         };
-        series.map(ratio).collect()
+        typical(&series.map(ratio).collect::<Vec<f64>>())
     })
 }
 
 fn return_spreads_own(claim: &Claim, evidence: &Evidence) -> Finding {
     a_rig_each(claim, evidence, |observed| {
         let ratio = |at: &AtSpeed| spread_s(&at.tapped, Branch::Reflected) / incident_s(&at.tapped);
-        within(claim, observed).map(ratio).collect()
+        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
     })
 }
 
@@ -74,7 +75,8 @@ fn return_spreads_seen(claim: &Claim, evidence: &Evidence) -> Finding {
             let series = observed.with_scatter_s(branch);
             series.map(move |(at, scatter_s)| spread_s(&at.tapped, branch).hypot(scatter_s))
         });
-        reflected.zip(incident).map(|(r, i)| r / i).collect()
+        let ratios = reflected.zip(incident).map(|(r, i)| r / i);
+        typical(&ratios.collect::<Vec<f64>>())
     })
 }
 
@@ -118,16 +120,15 @@ fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a
     series.filter(move |at| speeds.contains(&at.speed_m_s))
 }
 
-/// One comparison a rig: the geometric mean of what its series have. Compared
-/// and counted are logarithms.
+/// One comparison a rig, of the logarithm of what its series have together.
 fn a_rig_each(
     claim: &Claim,
     evidence: &Evidence,
-    of_series: impl Fn(&Observed) -> Vec<f64>,
+    log_of: impl Fn(&Observed) -> Estimate,
 ) -> Finding {
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
     for observed in &evidence.rigs {
-        let log = typical(&of_series(observed));
+        let log = log_of(observed);
         let margin = log.value - claim.threshold.ln();
         tally.margin(margin, log.error);
         let value = log.value.exp();

@@ -86,12 +86,12 @@ fn about(design: &Design, evidence: &Evidence) -> String {
     let end = |at: Option<&AtSpeed>| at.map_or(f64::NAN, |at| at.speed_m_s);
     format!(
         "Computed on {} virtual rigs: {}, then others in what the paper does not tell, friction with the track, push on \
-         bead 1, gaps as the chain is laid and unlike radii. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
+         bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
          without taps and once with {} taps before every shot; {} shots of a series count, after {} that do not. All \
          shots of a series have exactly the same speed, so that spreads are the chain's own; times of flight are \
          those of the true peaks, without noise.\n\n\
          Errors (±) are for 95 %. Spreads are standard deviations within a series; of a rig, the geometric mean of those \
-         at all speeds, with an error by bootstrap: whole series are drawn with replacement, because shots of one \
+         at all speeds that have pulses (of rebounds, which may all be 0, the root mean square), with an error by bootstrap: whole series are drawn with replacement, because shots of one \
          series hang together and series do not. Errors of means are 1.96 standard errors of the shots of a series. \
          A claim on spreads is one comparison a rig, any other one a series.",
         evidence.rigs.len(),

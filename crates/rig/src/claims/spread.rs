@@ -31,7 +31,8 @@ pub struct Estimate {
 pub fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    (square / (values.len() as f64 - 1.0)).sqrt()
+    // 0/0 of one value and of none.
+    (square / values.len().saturating_sub(1) as f64).sqrt()
 }
 
 /// Mean of what shots have, with its error.
@@ -43,21 +44,36 @@ pub fn mean_of(values: &[f64]) -> Estimate {
     }
 }
 
-/// ln of the geometric mean of a number that every series has, with its error.
-///
-/// One series alone tells no error: not a number then.
+/// ln of the geometric mean of a number that series have, with its error. Series
+/// whose number is none, having no pulses, tell nothing.
 #[must_use]
 pub fn typical(of_series: &[f64]) -> Estimate {
-    let logs: Vec<f64> = of_series.iter().map(|v| v.ln()).collect();
+    let logs = of_series.iter().map(|v| v.ln());
+    let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
+    bootstrap(&logs, mean)
+}
+
+/// ln of the root mean square of a number that series have, with its error, and
+/// not below that of `least`: for numbers that may all be 0.
+#[must_use]
+pub fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
+    bootstrap(of_series, |drawn| {
+        let squares: Vec<f64> = drawn.iter().map(|v| v * v).collect();
+        mean(&squares).sqrt().max(least).ln()
+    })
+}
+
+/// One series alone tells no error: it is not a number then.
+fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
     let mut chance = Chance::new(SEED, 0, Purpose::Resampling);
     let mut drawn = || {
-        let any = |_| logs[(chance.uniform() * logs.len() as f64) as usize];
-        mean(&logs.iter().map(any).collect::<Vec<f64>>())
+        let any = |_| of_series[(chance.uniform() * of_series.len() as f64) as usize];
+        statistic(&of_series.iter().enumerate().map(any).collect::<Vec<f64>>())
     };
     let draws: Vec<f64> = (0..DRAWS).map(|_| drawn()).collect();
-    let alone = logs.len() < 2;
+    let alone = of_series.len() < 2;
     Estimate {
-        value: mean(&logs),
+        value: statistic(of_series),
         error: if alone {
             f64::NAN
         } else {

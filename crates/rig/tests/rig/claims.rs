@@ -172,9 +172,39 @@ fn what_was_not_seen_is_not_decidable() {
         let verdict = judge.decide(&nothing).verdict;
         assert_eq!(verdict, Verdict::NotDecidable, "{}", judge.claim.id);
     }
-    for id in ["loose-spread", "taps-shrink-own", "return-longer"] {
+    // Missing pulses are not a spread of nothing.
+    for id in [
+        "loose-spread",
+        "taps-shrink-own",
+        "return-spreads-own",
+        "return-longer",
+    ] {
         assert_eq!(decide(id, &blind).verdict, Verdict::NotDecidable, "{id}");
     }
+}
+
+#[test]
+fn series_without_pulses_do_not_count_beside_those_that_have_them() {
+    let mut evidence = agreeing();
+    let before = decide("loose-spread", &evidence);
+    for shot in &mut evidence.rigs[0].speeds[2].loose {
+        shot.incident_s = f64::NAN;
+    }
+    let after = decide("loose-spread", &evidence);
+    assert_eq!(after.verdict, Verdict::Holds);
+    // All series spread three times as much as the striker adds.
+    assert!((after.value / before.value - 1.0).abs() < 0.05, "{after:?}");
+}
+
+#[test]
+fn strikers_that_all_stay_do_not_rebound_differently() {
+    let mut evidence = agreeing();
+    for at in &mut evidence.rigs[0].speeds {
+        at.loose
+            .iter_mut()
+            .for_each(|shot| shot.rebound_m_s = f64::NAN);
+    }
+    assert_eq!(decide("rebounds-differ", &evidence).verdict, Verdict::Fails);
 }
 
 /// Of numbers e^±1 the logarithm's mean is 0, its standard error by theory

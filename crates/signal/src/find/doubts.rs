@@ -2,8 +2,7 @@
 
 use super::smooth::Smooth;
 use super::track::Track;
-use super::{Doubt, Finding, Place, Pulse};
-use crate::{Rails, saturated_runs};
+use super::{Doubt, Place, Pulse};
 
 /// One pulse with the channel and the smoothed stretch it was found in.
 pub(super) struct Seen<'a, 'b> {
@@ -17,26 +16,16 @@ const LOW: f64 = 10.0;
 
 impl Seen<'_, '_> {
     /// Doubts about this pulse alone, given the samples between which it has no neighbour.
-    pub(super) fn doubts(&self, finding: &Finding, alone: (usize, usize)) -> Vec<Doubt> {
+    pub(super) fn doubts(&self, alone: (usize, usize)) -> Vec<Doubt> {
         let place = self.pulse.place;
         let noise = self.track.upright.level.noise;
         let checks = [
-            (self.saturated(finding), Doubt::Saturation(place)),
             (self.split(alone), Doubt::Split(place)),
             (self.pulse.height < LOW * noise, Doubt::LowSignal(place)),
             (self.cut_off(), Doubt::RecordTooShort),
         ];
         let raised = checks.into_iter().filter(|(raised, _)| *raised);
         raised.map(|(_, doubt)| doubt).collect()
-    }
-
-    fn saturated(&self, finding: &Finding) -> bool {
-        saturated(
-            self.track.samples,
-            self.track.extremes,
-            &self.pulse,
-            finding,
-        )
     }
 
     /// Another maximum within five widths, a quarter as high or more.
@@ -56,22 +45,6 @@ impl Seen<'_, '_> {
         let (from, to) = self.pulse.extent;
         from == 0 || to + 1 >= self.track.samples.len()
     }
-}
-
-/// Whether a pulse has a run of samples at the record's extremes, or any on a known rail.
-pub(super) fn saturated(
-    samples: &[f64],
-    (low, high): (f64, f64),
-    pulse: &Pulse,
-    finding: &Finding,
-) -> bool {
-    // A round top of a hundred steps has a run of a tenth of its width.
-    let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
-    let own = (Rails { low, high }, longest);
-    let (rails, shortest) = finding.rails.map_or(own, |rails| (rails, 1));
-    let (from, to) = pulse.extent;
-    let inside = samples.get(from..=to).unwrap_or_default();
-    !saturated_runs(inside, rails, shortest).is_empty()
 }
 
 /// Whether the signal between two pulses of one channel stays above a tenth of the lower.

@@ -4,6 +4,9 @@ use std::fmt;
 
 use crate::Level;
 
+/// Steps of the digitiser below which a pulse without noise is coarse.
+const COARSE: f64 = 32.0;
+
 /// One of the three pulses of a shot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Place {
@@ -45,6 +48,8 @@ pub enum Doubt {
     Order,
     /// A pulse was found, but the method could not tell its time.
     NotPicked(Place),
+    /// A pulse is few steps of the digitiser high, and no noise shakes them.
+    CoarseSteps(Place),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
@@ -60,6 +65,7 @@ impl fmt::Display for Doubt {
             Self::RecordTooShort => f.write_str("record too short"),
             Self::Order => f.write_str("order of pulses doubtful"),
             Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
+            Self::CoarseSteps(place) => write!(f, "{place} pulse in coarse steps"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
         }
     }
@@ -72,6 +78,8 @@ pub struct Upright {
     pub sign: f64,
     /// Offset and noise.
     pub level: Level,
+    /// The digitiser's step: the least difference of neighbouring samples of pulses as recorded.
+    pub step: f64,
 }
 
 impl Upright {
@@ -79,6 +87,21 @@ impl Upright {
     #[must_use]
     pub fn height(&self, sample: f64) -> f64 {
         self.sign * (sample - self.level.offset)
+    }
+
+    /// Whether a height is few steps of the digitiser. Noise of half a step shakes
+    /// samples over steps, and then rounding is noise too.
+    pub(crate) fn is_coarse(&self, height: f64) -> bool {
+        height < COARSE * self.step && self.level.noise < 0.5 * self.step
+    }
+
+    /// Standard deviation of rounding to the digitiser's steps in a pulse so high;
+    /// all of half a step in coarse ones, where neighbours are rounded alike.
+    pub(crate) fn rounding(&self, height: f64) -> f64 {
+        match self.is_coarse(height) {
+            true => 0.5 * self.step,
+            false => self.step / 12.0_f64.sqrt(),
+        }
     }
 }
 

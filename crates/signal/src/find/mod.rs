@@ -1,6 +1,7 @@
 //! Where a shot's pulses are, from the samples alone.
 
 mod choose;
+mod digitiser;
 mod doubts;
 mod found;
 mod options;
@@ -34,11 +35,22 @@ use track::Track;
 /// different lengths; options out of range. A missing wall or return is no
 /// error but a [`Doubt`].
 pub fn pulses(channels: Channels<'_>, finding: &Finding) -> Result<Found, SignalError> {
+    conditioned_pulses(channels, channels, finding)
+}
+
+/// As [`pulses`], of samples that were filtered after they were recorded.
+pub(crate) fn conditioned_pulses(
+    channels: Channels<'_>,
+    recorded: Channels<'_>,
+    finding: &Finding,
+) -> Result<Found, SignalError> {
     finding.check()?;
-    match channels {
+    let mut found = match channels {
         Channels::Summed(samples) => summed(samples, finding),
         Channels::Separate { sensor, wall } => separate(sensor, wall, finding),
-    }
+    }?;
+    digitiser::judge(&mut found, recorded, finding);
+    Ok(found)
 }
 
 /// Offset, noise and direction of one channel, without looking for all its pulses.
@@ -49,37 +61,12 @@ pub fn upright(samples: &[f64], polarity: Polarity) -> Result<Upright, SignalErr
     Track::new(samples, polarity).map(|track| track.upright)
 }
 
-/// Doubts about saturation, seen in samples as they were recorded: filters
-/// leave no rail behind.
-pub(crate) fn saturated_as_recorded(
-    recorded: Channels<'_>,
-    found: &Found,
-    finding: &Finding,
-) -> Vec<Doubt> {
-    let stands = |pulse: &&Pulse| {
-        let samples = match pulse.place {
-            Place::Wall => recorded.wall(),
-            Place::Passing | Place::Returning => recorded.sensor(),
-        };
-        doubts::saturated(samples, track::extremes(samples), pulse, finding)
-    };
-    let saturated = found.pulses().filter(stands);
-    saturated
-        .map(|pulse| Doubt::Saturation(pulse.place))
-        .collect()
-}
-
 fn summed(samples: &[f64], finding: &Finding) -> Result<Found, SignalError> {
     let track = Track::new(samples, finding.polarity)?;
     let end = choose::end_of_interest(&track, finding);
     let (smooth, maxima) = look(&track, end);
     let chosen = choose::summed(&maxima, &track, finding);
-    Ok(gather(
-        &chosen,
-        (&track, &smooth),
-        (&track, &smooth),
-        finding,
-    ))
+    Ok(gather(&chosen, (&track, &smooth), (&track, &smooth)))
 }
 
 fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Found, SignalError> {
@@ -98,7 +85,7 @@ fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Found, Si
     let (wall_smooth, wall_maxima) = look(&wall, end);
     let chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
     let (sensor, wall) = ((&track, &sensor_smooth), (&wall, &wall_smooth));
-    Ok(gather(&chosen, sensor, wall, finding))
+    Ok(gather(&chosen, sensor, wall))
 }
 
 /// Smoothes a track from before its first pulse on, and finds its maxima.
@@ -116,12 +103,7 @@ fn look(track: &Track<'_>, end: usize) -> (Smooth, Vec<Maximum>) {
 
 type Looked<'a, 'b> = (&'a Track<'b>, &'a Smooth);
 
-fn gather(
-    chosen: &Chosen,
-    sensor: Looked<'_, '_>,
-    wall: Looked<'_, '_>,
-    finding: &Finding,
-) -> Found {
+fn gather(chosen: &Chosen, sensor: Looked<'_, '_>, wall: Looked<'_, '_>) -> Found {
     let see = |(track, smooth), place, maximum: Option<Maximum>| {
         maximum.map(|maximum| seen(track, smooth, place, &maximum))
     };
@@ -132,7 +114,7 @@ fn gather(
     ];
     let [passing, at_wall, returning] = seen.each_ref().map(|s| s.as_ref().map(|s| s.pulse));
     let mut doubts: Vec<Doubt> = doubts::missing(&[passing, at_wall, returning]).collect();
-    doubts.extend(each(&seen, finding, std::ptr::eq(sensor.0, wall.0)));
+    doubts.extend(each(&seen, std::ptr::eq(sensor.0, wall.0)));
     if let (Some(first), Some(second), None) = (passing, at_wall, returning)
         && doubts::ends_early(&first, &second, sensor.0.samples.len())
     {
@@ -143,20 +125,20 @@ fn gather(
         .iter()
         .any(|t| t.upright.level.quiet_samples == 0);
     doubts.extend(rough.then_some(Doubt::FewQuietSamples));
-    doubts.sort_unstable();
-    doubts.dedup();
-    Found {
+    let mut found = Found {
         passing,
         wall: at_wall,
         returning,
-        doubts,
+        doubts: Vec::new(),
         sensor: sensor.0.upright,
         wall_channel: wall.0.upright,
-    }
+    };
+    found.doubt(doubts);
+    found
 }
 
 /// Doubts about each pulse and about neighbours.
-fn each(seen: &[Option<Seen<'_, '_>>; 3], finding: &Finding, one_channel: bool) -> Vec<Doubt> {
+fn each(seen: &[Option<Seen<'_, '_>>; 3], one_channel: bool) -> Vec<Doubt> {
     let seen: Vec<&Seen<'_, '_>> = seen.iter().flatten().collect();
     let mut doubts = Vec::new();
     for (i, here) in seen.iter().enumerate() {
@@ -165,7 +147,7 @@ fn each(seen: &[Option<Seen<'_, '_>>; 3], finding: &Finding, one_channel: bool) 
         let after = seen.get(i + 1);
         let from = before.map_or(0, |other| middle(other));
         let to = after.map_or(usize::MAX, |other| middle(other));
-        doubts.extend(here.doubts(finding, (from, to)));
+        doubts.extend(here.doubts((from, to)));
         if let Some(next) = after
             && one_channel
             && doubts::overlap(here, next)

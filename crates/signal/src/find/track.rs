@@ -1,5 +1,6 @@
 //! A first look at one channel: which way is up, where quiet ends.
 
+use super::digitiser::extremes;
 use super::{Polarity, Upright};
 use crate::Level;
 use crate::error::{SignalError, all_finite};
@@ -28,8 +29,6 @@ pub(super) struct Track<'a> {
     pub(super) first: usize,
     /// Rough full width at half maximum of the first pulse in samples.
     pub(super) width: f64,
-    /// Least and largest sample.
-    pub(super) extremes: (f64, f64),
 }
 
 impl<'a> Track<'a> {
@@ -52,11 +51,14 @@ impl<'a> Track<'a> {
         let level = quiet_level(&samples[..quiet], samples, offset)?;
         let track = Self {
             samples,
-            upright: Upright { sign, level },
+            upright: Upright {
+                sign,
+                level,
+                step: 0.0,
+            },
             blocks,
             first: cross * BLOCK,
             width: width * BLOCK as f64,
-            extremes: (low, high),
         };
         track.significant(swing).map(|()| track)
     }
@@ -95,22 +97,6 @@ fn blocks(samples: &[f64]) -> Result<Vec<f64>, SignalError> {
         all_finite(samples)?;
     }
     Ok(means)
-}
-
-/// Least and largest, eight lanes at a time.
-pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
-    let start = samples.first().copied().unwrap_or(0.0);
-    let (mut low, mut high) = ([start; 8], [start; 8]);
-    let (whole, rest) = samples.as_chunks::<8>();
-    for chunk in whole {
-        for (lane, x) in chunk.iter().enumerate() {
-            low[lane] = if *x < low[lane] { *x } else { low[lane] };
-            high[lane] = if *x > high[lane] { *x } else { high[lane] };
-        }
-    }
-    let low = low.iter().chain(rest).copied().fold(start, f64::min);
-    let high = high.iter().chain(rest).copied().fold(start, f64::max);
-    (low, high)
 }
 
 /// Sign of the larger swing, or of the one asked for, and that swing: as far as

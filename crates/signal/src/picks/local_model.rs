@@ -5,18 +5,17 @@ use super::{Picked, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
 
-/// Degrees and widths from smooth to close, in full widths.
-const SMOOTH: [(usize, f64); 2] = [(6, 0.8), (8, 0.8)];
-/// Closer still, in widths of the steeper flank: for pulses with a tail.
-const CLOSE: [(usize, f64); 2] = [(8, 0.8), (8, 0.55)];
 /// Degree and width tried, in this order, where noise leaves what was asked for
 /// without a maximum: wide, and at last a parabola.
 const IN_NOISE: [(usize, f64); 2] = [(4, 1.2), (2, 0.8)];
-/// Deviations by which the squares that a fit leaves may exceed those of noise.
-const ADEQUATE: f64 = 3.0;
 
-/// A polynomial and where on it the maximum is.
-type Top = (Polynomial, f64);
+/// A curve about its maximum, in units of u; shares are deviations for unit noise.
+pub(super) struct Top {
+    pub(super) height: f64,
+    pub(super) height_share: f64,
+    pub(super) slope_share: f64,
+    pub(super) bend: f64,
+}
 
 /// As [`pick`], for a height and a time that need not be free of bias.
 pub(super) fn roughly(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
@@ -31,57 +30,59 @@ pub(super) fn pick(
     width: f64,
 ) -> Result<Picked, SignalError> {
     let asked = fit(sight, pulse, degree, width * pulse.width_samples);
-    finish(sight, pulse, asked.or_else(|| in_noise(sight, pulse)))
+    asked
+        .map(|(fit, u)| picked(sight, pulse, &fit, u))
+        .map_or_else(|| in_noise(sight, pulse), Ok)
 }
 
-/// Time in samples, by the smoothest polynomial that leaves no more than noise.
-pub(super) fn maximum(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
-    let noise = sight.noise(pulse);
-    let mut best = None;
-    let wide = SMOOTH.map(|(degree, width)| (degree, width * pulse.width_samples));
-    let steep = pulse.steep_width_samples();
-    let close = CLOSE.map(|(degree, width)| (degree, width * steep));
-    for (degree, length) in wide.into_iter().chain(close) {
-        let Some((found, u)) = fit(sight, pulse, degree, length) else {
-            continue;
-        };
-        let freedom = found.freedom as f64;
-        let squares = (found.left / noise).powi(2);
-        best = Some((found, u));
-        if squares < 1.0 + ADEQUATE * (2.0 / freedom).sqrt() {
-            break;
-        }
-    }
-    finish(sight, pulse, best.or_else(|| in_noise(sight, pulse)))
-}
-
-fn in_noise(sight: &Sight<'_>, pulse: &Pulse) -> Option<Top> {
+/// Time in samples where noise hides the shape.
+pub(super) fn in_noise(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
     let mut tries = IN_NOISE.into_iter();
-    tries.find_map(|(degree, width)| fit(sight, pulse, degree, width * pulse.width_samples))
+    let (fit, u) = tries
+        .find_map(|(degree, width)| fit(sight, pulse, degree, width * pulse.width_samples))
+        .ok_or(SignalError::NoPick {
+            place: pulse.place,
+            what: "maximum",
+        })?;
+    Ok(picked(sight, pulse, &fit, u))
 }
 
-/// With p the polynomial and V the covariance of its coefficients, the top is
-/// at p' = 0 and its variance is var(p')/p''².
-fn finish(sight: &Sight<'_>, pulse: &Pulse, top: Option<Top>) -> Result<Picked, SignalError> {
-    let (fit, u) = top.ok_or(SignalError::NoPick {
-        place: pulse.place,
-        what: "maximum",
-    })?;
-    let top = fit.course(u);
+fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked {
+    let at = fit.course(u);
+    let top = Top {
+        height: at.value,
+        height_share: fit.value_variance(u).sqrt(),
+        slope_share: fit.slope_variance(u).sqrt(),
+        bend: at.bend,
+    };
+    finish(sight, pulse, fit, u, &top)
+}
+
+/// With s the slope and b the bend of the curve, the top is at s = 0 and its
+/// variance is var(s)/b²; what lies under the pulse adds its own slope's.
+pub(super) fn finish(
+    sight: &Sight<'_>,
+    pulse: &Pulse,
+    fit: &Polynomial,
+    u: f64,
+    top: &Top,
+) -> Picked {
     let noise = sight.broad_noise(pulse);
-    Ok(Picked {
-        time_s: fit.sample(u),
-        sigma_s: noise * fit.slope_variance(u).sqrt() / -top.bend * fit.half(),
-        height: top.value,
-        height_sigma: noise * fit.value_variance(u).sqrt(),
+    let time = fit.sample(u);
+    let slope = (noise * top.slope_share).hypot(sight.slope_under(pulse, time) * fit.half);
+    Picked {
+        time_s: time,
+        sigma_s: slope / -top.bend * fit.half,
+        height: top.height,
+        height_sigma: noise * top.height_share,
         width_s: pulse.width_samples,
         misfit: sight.misfit(pulse, fit.left),
-    })
+    }
 }
 
 /// The polynomial over so many samples, centred on its own maximum to half a
 /// sample, and where that is.
-fn fit(sight: &Sight<'_>, pulse: &Pulse, degree: usize, length: f64) -> Option<Top> {
+fn fit(sight: &Sight<'_>, pulse: &Pulse, degree: usize, length: f64) -> Option<(Polynomial, f64)> {
     let half = (0.5 * length).max(2.0);
     let reach = 2.0 * half + 2.0;
     let begun = pulse.at as f64;

@@ -1,6 +1,6 @@
 //! A shape fitted to the whole pulse.
 
-use super::normal::{MOST, Normal, Solution};
+use super::normal::{Descent, MOST, Normal, descend};
 use super::{Picked, Shape, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
@@ -16,8 +16,6 @@ struct Model {
 
 /// Parameters of a model.
 const PARAMETERS: usize = 4;
-/// Steps after which a fit is given up.
-const STEPS: usize = 60;
 
 /// Time in samples: Levenberg–Marquardt's least squares of four parameters;
 /// covariance noise² (JᵀJ)⁻¹. Samples on a rail tell nothing and are left out.
@@ -32,8 +30,9 @@ pub(super) fn pick(
         what: "fit of the shape",
     };
     let data = Data::about(sight, pulse, width);
-    let (model, left) = data.fit(pulse, shape).ok_or_else(no_fit)?;
-    let solution = data.normal(&model, shape).0.solve().ok_or_else(no_fit)?;
+    let found = data.fit(pulse, shape).ok_or_else(no_fit)?;
+    let solution = found.normal.solve().ok_or_else(no_fit)?;
+    let model = found.model;
     let noise = sight.broad_noise(pulse);
     let sigma = |k: usize| noise * solution.inverse[k][k].sqrt();
     let freedom = data.points.len().saturating_sub(PARAMETERS).max(1);
@@ -43,7 +42,7 @@ pub(super) fn pick(
         height: model.height,
         height_sigma: sigma(0),
         width_s: model.width,
-        misfit: sight.misfit(pulse, (left / freedom as f64).sqrt()),
+        misfit: sight.misfit(pulse, (found.left / freedom as f64).sqrt()),
     })
 }
 
@@ -67,35 +66,20 @@ impl Data {
         }
     }
 
-    /// The best model and its sum of squares.
-    fn fit(&self, pulse: &Pulse, shape: &Shape) -> Option<(Model, f64)> {
-        let mut model = Model {
+    /// The best model.
+    fn fit(&self, pulse: &Pulse, shape: &Shape) -> Option<Descent<Model>> {
+        let start = Model {
             height: pulse.height,
             time: pulse.at as f64,
             width: pulse.width_samples,
             offset: 0.0,
         };
-        let (mut normal, mut left) = self.normal(&model, shape);
-        let mut damping = 1e-3;
-        for _ in 0..STEPS {
-            let step = normal.damped(1.0 + damping).solve()?;
-            let next = model.moved(&step);
-            let tried = next.sound(pulse).then(|| self.normal(&next, shape));
-            if let Some((there, squares)) = tried.filter(|(_, squares)| *squares <= left) {
-                let done = (next.time - model.time).abs() < 1e-9 * pulse.width_samples;
-                (model, normal, left) = (next, there, squares);
-                damping *= 0.1;
-                if done {
-                    return Some((model, left));
-                }
-            } else if damping > 1e8 {
-                // No step makes it better: this is the least, to rounding.
-                return model.sound(pulse).then_some((model, left));
-            } else {
-                damping *= 10.0;
-            }
-        }
-        None
+        descend(
+            start,
+            |model| model.sound(pulse).then(|| self.normal(model, shape)),
+            Model::moved,
+            |before, after| (after.time - before.time).abs() < 1e-9 * pulse.width_samples,
+        )
     }
 
     /// Normal equations of a step from a model, and the model's sum of squares.
@@ -117,8 +101,8 @@ impl Data {
 }
 
 impl Model {
-    fn moved(&self, step: &Solution) -> Self {
-        let [height, time, width, offset, ..] = step.values;
+    fn moved(&self, step: &[f64; MOST]) -> Self {
+        let [height, time, width, offset, ..] = *step;
         Self {
             height: self.height + height,
             time: self.time + time,

@@ -1,7 +1,7 @@
 //! Least squares of a few parameters by the normal equations.
 
-/// Most parameters of one fit: a polynomial of degree 8.
-pub(crate) const MOST: usize = 9;
+/// Most parameters of one fit: a polynomial of degree 9.
+pub(crate) const MOST: usize = 10;
 
 /// Normal equations, gathered row by row.
 #[derive(Clone)]
@@ -9,6 +9,60 @@ pub(crate) struct Normal {
     matrix: [[f64; MOST]; MOST],
     right: [f64; MOST],
     size: usize,
+}
+
+/// Steps after which a descent is given up.
+const STEPS: usize = 60;
+
+/// Where a descent ended: the model, and the normal equations of a step from it.
+pub(crate) struct Descent<M> {
+    pub(crate) model: M,
+    pub(crate) normal: Normal,
+    /// Sum of squares left.
+    pub(crate) left: f64,
+}
+
+/// The model of least squares, by Levenberg and Marquardt's damped steps.
+///
+/// `equations` gives the normal equations of a step from a model and the model's
+/// sum of squares, or nothing where a model is out of bounds; `still` says
+/// whether two models are the same.
+pub(crate) fn descend<M>(
+    start: M,
+    equations: impl Fn(&M) -> Option<(Normal, f64)>,
+    moved: impl Fn(&M, &[f64; MOST]) -> M,
+    still: impl Fn(&M, &M) -> bool,
+) -> Option<Descent<M>> {
+    let (normal, left) = equations(&start)?;
+    let mut at = Descent {
+        model: start,
+        normal,
+        left,
+    };
+    let mut damping = 1e-3;
+    for _ in 0..STEPS {
+        let step = at.normal.damped(1.0 + damping).values()?;
+        let model = moved(&at.model, &step);
+        let tried = equations(&model).filter(|(_, left)| *left <= at.left);
+        if let Some((normal, left)) = tried {
+            let done = still(&at.model, &model);
+            at = Descent {
+                model,
+                normal,
+                left,
+            };
+            damping *= 0.1;
+            if done {
+                return Some(at);
+            }
+        } else if damping > 1e8 {
+            // No step makes it better: this is the least, to rounding.
+            return Some(at);
+        } else {
+            damping *= 10.0;
+        }
+    }
+    None
 }
 
 /// Parameters, and the inverse of the normal matrix: their covariance for unit noise.
@@ -38,12 +92,17 @@ impl Normal {
     }
 
     /// Multiplies the diagonal, as Marquardt's method does to shorten steps.
-    pub(crate) fn damped(&self, factor: f64) -> Self {
+    fn damped(&self, factor: f64) -> Self {
         let mut damped = self.clone();
         for j in 0..self.size {
             damped.matrix[j][j] *= factor;
         }
         damped
+    }
+
+    /// Parameters alone; `None` as in [`Self::solve`].
+    fn values(&self) -> Option<[f64; MOST]> {
+        Some(self.back(&self.cholesky()?, self.right))
     }
 
     /// `None` if the equations do not determine every parameter.

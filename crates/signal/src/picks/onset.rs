@@ -24,7 +24,7 @@ pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Pi
     let rough = rough(sight, pulse, top.time_s, threshold).ok_or_else(no_crossing)?;
     let (fit, u) = fit(sight, pulse, rough, threshold).ok_or_else(no_crossing)?;
     let noise = sight.broad_noise(pulse);
-    let slope = fit.course(u).slope / fit.half();
+    let slope = fit.course(u).slope / fit.half;
     let of_value = noise * noise * fit.value_variance(u);
     let of_height = (fraction * top.height_sigma).powi(2);
     Ok(Picked {

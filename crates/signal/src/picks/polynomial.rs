@@ -4,14 +4,16 @@ use super::normal::{MOST, Normal, Solution};
 
 /// A polynomial in u = (sample − centre)/half, fitted where |u| ≤ 1.
 pub(crate) struct Polynomial {
-    centre: f64,
-    half: f64,
-    degree: usize,
-    solution: Solution,
+    pub(crate) centre: f64,
+    /// Samples in one unit of u.
+    pub(crate) half: f64,
+    pub(crate) degree: usize,
+    /// Coefficients and their covariance for unit noise.
+    pub(crate) solution: Solution,
     /// Root mean square of what it leaves, over its degrees of freedom.
     pub(crate) left: f64,
-    /// Samples less coefficients.
-    pub(crate) freedom: usize,
+    /// Samples less what they determine.
+    pub(crate) freedom: f64,
 }
 
 /// Value, slope and bend of a polynomial at one place, in units of u.
@@ -51,11 +53,11 @@ impl Polynomial {
             degree,
             solution: normal.solve()?,
             left: 0.0,
-            freedom: part.len() - degree - 1,
+            freedom: (part.len() - degree - 1) as f64,
         };
         let miss = |(i, value): (usize, &f64)| (value - polynomial.course(at(i)).value).powi(2);
         let squares: f64 = part.iter().enumerate().map(miss).sum();
-        polynomial.left = (squares / polynomial.freedom as f64).sqrt();
+        polynomial.left = (squares / polynomial.freedom).sqrt();
         (degree > 0).then_some(polynomial)
     }
 
@@ -72,11 +74,6 @@ impl Polynomial {
     /// Sample at u.
     pub(crate) fn sample(&self, u: f64) -> f64 {
         self.centre + self.half * u
-    }
-
-    /// Samples in one unit of u.
-    pub(crate) fn half(&self) -> f64 {
-        self.half
     }
 
     /// Where the slope falls through 0, found from u = 0.
@@ -120,7 +117,8 @@ impl Polynomial {
     }
 }
 
-fn powers(u: f64) -> [f64; MOST] {
+/// 1, u, u² and so on.
+pub(crate) fn powers(u: f64) -> [f64; MOST] {
     let mut row = [1.0; MOST];
     for k in 1..MOST {
         row[k] = row[k - 1] * u;

@@ -20,7 +20,7 @@ pub struct ChiSquare {
 /// positive, or no degree of freedom is left.
 #[must_use]
 pub fn chi_square(measured: &[Estimate], expected: &[f64], fitted: usize) -> Option<ChiSquare> {
-    let freedom = measured.len().checked_sub(fitted).filter(|n| *n > 0)?;
+    let freedom = measured.len().checked_sub(fitted)?;
     let sound = measured.iter().all(|m| m.sigma > 0.0);
     if measured.len() != expected.len() || !sound {
         return None;
@@ -29,11 +29,18 @@ pub fn chi_square(measured: &[Estimate], expected: &[f64], fitted: usize) -> Opt
     let value: f64 = pairs
         .map(|(m, expected)| ((m.value - expected) / m.sigma).powi(2))
         .sum();
-    value.is_finite().then(|| ChiSquare {
-        value,
-        freedom,
-        probability: upper_gamma(0.5 * freedom as f64, 0.5 * value),
-    })
+    ChiSquare::of(value, freedom)
+}
+
+impl ChiSquare {
+    /// `None` if the value is not finite or no degree of freedom is left.
+    pub(crate) fn of(value: f64, freedom: usize) -> Option<Self> {
+        (value.is_finite() && freedom > 0).then(|| Self {
+            value,
+            freedom,
+            probability: upper_gamma(0.5 * freedom as f64, 0.5 * value),
+        })
+    }
 }
 
 /// Regularised upper incomplete gamma function Q(a, x): the series of P below

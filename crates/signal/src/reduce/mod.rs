@@ -1,4 +1,4 @@
-//! From shots to curves: groups of one speed, ratios, fits with errors in both
+//! From shots to curves: groups of one speed, ratios, lines with errors in both
 //! coordinates, and how far stated errors can be believed.
 
 mod chi_square;
@@ -13,4 +13,4 @@ pub use coverage::{Coverage, coverage};
 pub use groups::groups;
 pub use ratios::{Point, Ratio, ratios_at_common};
 pub use summary::{Summary, summary};
-pub use york::power_law_both_errors;
+pub(crate) use york::{Points, all_equal};

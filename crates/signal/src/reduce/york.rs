@@ -1,61 +1,22 @@
-//! Power laws with errors in both coordinates.
+//! A straight line through points with errors in both coordinates \[York2004\].
 
-use crate::power_law::{FitError, PowerLaw, check};
-
-/// Fits y = a x^b with standard deviations of both x and y.
-///
-/// York's method for a straight line through points with independent errors
-/// (York and others, Am. J. Phys. 72, 367, 2004), in ln y against ln x with
-/// errors σ_y/y and σ_x/x: it makes Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²) least. Errors follow
-/// from the σ alone; `r_squared` and residuals are those of ln y. Errors of
-/// x may be 0.
-///
-/// # Errors
-/// See [`FitError`].
-pub fn power_law_both_errors(
-    abscissas: &[f64],
-    abscissa_sigmas: &[f64],
-    values: &[f64],
-    sigmas: &[f64],
-) -> Result<PowerLaw, FitError> {
-    check(abscissas, values, Some(sigmas))?;
-    check_sigmas(abscissas, abscissa_sigmas)?;
-    let logarithms = |of: &[f64]| of.iter().map(|x| x.ln()).collect::<Vec<f64>>();
-    let variances = |of: &[f64], sigmas: &[f64]| -> Vec<f64> {
-        let pairs = of.iter().zip(sigmas);
-        pairs.map(|(x, s)| (s / x).powi(2)).collect()
-    };
-    let points = Points {
-        x: logarithms(abscissas),
-        y: logarithms(values),
-        x_variance: variances(abscissas, abscissa_sigmas),
-        y_variance: variances(values, sigmas),
-    };
-    if points.x.iter().all(|x| *x == points.x[0]) || points.x.is_empty() {
-        return Err(FitError::TooFew);
-    }
-    points.fit().ok_or(FitError::TooFew)
-}
-
-fn check_sigmas(abscissas: &[f64], sigmas: &[f64]) -> Result<(), FitError> {
-    if sigmas.len() != abscissas.len() {
-        return Err(FitError::Lengths {
-            abscissas: abscissas.len(),
-            values: sigmas.len(),
-        });
-    }
-    let bad = sigmas.iter().position(|s| !(*s >= 0.0 && s.is_finite()));
-    bad.map_or(Ok(()), |index| Err(FitError::NotPositive { index }))
-}
+use super::ChiSquare;
+use crate::PowerLaw;
 
 /// Iterations after which the slope is taken as it is.
 const ITERATIONS: usize = 200;
 
-struct Points {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    x_variance: Vec<f64>,
-    y_variance: Vec<f64>,
+/// Points in the logarithms.
+pub(crate) struct Points {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) x_variance: Vec<f64>,
+    pub(crate) y_variance: Vec<f64>,
+}
+
+/// Whether points have one abscissa, or there are none.
+pub(crate) fn all_equal(x: &[f64]) -> bool {
+    x.iter().all(|other| *other == x[0])
 }
 
 /// Weights, weighted means and York's adjusted departures for one slope.
@@ -101,7 +62,11 @@ impl Points {
         above / below
     }
 
-    fn fit(&self) -> Option<PowerLaw> {
+    /// `None` without two abscissas.
+    pub(crate) fn fit(&self) -> Option<PowerLaw> {
+        if all_equal(&self.x) {
+            return None;
+        }
         // Without errors of x the first step is ordinary weighted least squares.
         let mut slope = 0.0;
         for _ in 0..ITERATIONS {
@@ -124,7 +89,8 @@ impl Points {
         let centre = at.mean_x + shift;
         let level_variance = at.all.recip() + centre * centre / spread;
         let pairs = self.x.iter().zip(&self.y);
-        let residuals: Vec<f64> = pairs.map(|(x, y)| y - level - slope * x).collect();
+        let residual = |(x, y): (&f64, &f64)| (y - at.mean_y) - slope * (x - at.mean_x);
+        let residuals: Vec<f64> = pairs.map(residual).collect();
         let squares = |of: &mut dyn Iterator<Item = f64>| -> f64 {
             of.zip(&at.weights).map(|(d, w)| w * d * d).sum()
         };
@@ -137,6 +103,7 @@ impl Points {
             exponent_error: spread.recip().sqrt(),
             covariance: -centre / spread,
             r_squared: if total > 0.0 { 1.0 - left / total } else { 1.0 },
+            chi_square: ChiSquare::of(left, residuals.len() - 2),
             residuals,
         }
     }

@@ -105,6 +105,10 @@ fn law(of: &Result<PowerLaw, FitError>) -> Value {
             "exponent_error": law.exponent_error,
             "covariance": law.covariance,
             "r_squared": law.r_squared,
+            "chi_square": law.chi_square.map(|judged| judged.value),
+            "degrees_of_freedom": law.chi_square.map(|judged| judged.freedom),
+            "probability": law.chi_square.map(|judged| judged.probability),
+            "supported": law.is_supported(),
         }),
     }
 }

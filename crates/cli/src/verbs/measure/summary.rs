@@ -145,22 +145,47 @@ fn curve(case: &Case) -> String {
     )
 }
 
-/// A fit; too few speeds for one are plain to see.
+/// A fit, judged; too few speeds for one are plain to see. Errors are widened to
+/// the points' scatter where that is larger.
 fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;
-    let spread = |error: f64| if alike { 0.0 } else { error };
-    let (prefactor, error) = with_error(1e6 * law.prefactor, spread(1e6 * law.prefactor_error));
+    let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
     let exponent = match alike {
-        true => (law.exponent / ROUNDING).round() * ROUNDING,
+        // Without the sign of a zero.
+        true => (law.exponent / ROUNDING).round() * ROUNDING + 0.0,
         false => law.exponent,
     };
-    let (exponent, exponent_error) = with_error(exponent, spread(law.exponent_error));
+    let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));
     match law.exponent_error.is_finite() {
-        true => format!("{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error})\n"),
+        true => format!(
+            "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
+            judgement(law)
+        ),
         false => {
             format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
         }
+    }
+}
+
+/// Whether the points follow the law within their errors.
+fn judgement(law: &PowerLaw) -> String {
+    let Some(judged) = &law.chi_square else {
+        return String::new();
+    };
+    let squares = format!(
+        ", chi-square {} of {}, probability {}",
+        format::digits(judged.value, 3),
+        judged.freedom,
+        format::digits(judged.probability, 2)
+    );
+    match law.is_supported() {
+        Some(false) => format!(
+            "{squares}: NOT a power law within the errors; those given here are widened {} times, to the scatter about it",
+            format::digits(law.excess(), 2)
+        ),
+        _ => squares,
     }
 }

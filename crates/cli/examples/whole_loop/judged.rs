@@ -1,0 +1,186 @@
+//! Recordings of virtual campaigns: each shot's times as measured, as they were,
+//! and as the model of a compact chain has them.
+
+use hertzchain_experiment::Experiment;
+use hertzchain_measure::records::truth;
+use hertzchain_measure::{Options, Shot, measure};
+use hertzchain_rig::{Case, Plan, Shard, campaign};
+use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_study::{Settings, sweep};
+use std::collections::HashMap;
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Incident and reflected, in this order, here and below.
+pub const TIMES: [&str; 2] = ["incident", "reflected"];
+
+/// A row of −1/5 nearly: what an error of the speed does to a time \[Nesterenko1983\].
+const EXPONENT: f64 = 0.2;
+
+/// One shot.
+pub struct Judged {
+    /// The case of the campaign.
+    pub case: String,
+    /// Speed that the striker was told, in m/s.
+    pub programmed_m_s: f64,
+    /// Speed by the photogate in m/s.
+    pub speed_m_s: Estimate,
+    /// Times of flight in s, as measured.
+    pub measured_s: [Option<Estimate>; 2],
+    /// The recorded shot's own in s.
+    pub true_s: [f64; 2],
+    /// Those of the same chain, laid compact, at the measured speed, in s.
+    pub model_s: [f64; 2],
+}
+
+impl Judged {
+    /// Measured less true time, with the stated error of picking.
+    pub fn error(&self, time: usize) -> Option<Estimate> {
+        self.less(time, self.true_s[time], 0.0)
+    }
+
+    /// Measured time less the model's, with all stated errors: of picking and of the speed.
+    pub fn departure(&self, time: usize) -> Option<Estimate> {
+        let relative = self.speed_m_s.sigma / self.speed_m_s.value;
+        self.less(
+            time,
+            self.model_s[time],
+            EXPONENT * relative * self.model_s[time],
+        )
+    }
+
+    fn less(&self, time: usize, other_s: f64, sigma: f64) -> Option<Estimate> {
+        let measured = self.measured_s[time]?;
+        let value = measured.value - other_s;
+        value.is_finite().then(|| Estimate {
+            value,
+            sigma: measured.sigma.hypot(sigma),
+        })
+    }
+}
+
+/// Shots of one speed: mean departure from the model, by stated errors.
+pub struct Speed {
+    /// Programmed speed in m/s.
+    pub speed_m_s: f64,
+    /// How many shots.
+    pub count: usize,
+    /// Mean departure in s, with the error that the shots state.
+    pub departure_s: Estimate,
+    /// Standard error in s by the shots' scatter.
+    pub scatter_s: f64,
+}
+
+/// Means a speed of one case, and their chi-square against no departure at all.
+pub fn by_speed(shots: &[&Judged], time: usize) -> (Vec<Speed>, Option<ChiSquare>) {
+    let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let rows: Vec<Speed> = speeds
+        .into_iter()
+        .filter_map(|speed_m_s| {
+            let of_speed = shots.iter().filter(|s| s.programmed_m_s == speed_m_s);
+            let found: Vec<Estimate> = of_speed.filter_map(|shot| shot.departure(time)).collect();
+            mean(speed_m_s, &found)
+        })
+        .collect();
+    let means: Vec<Estimate> = rows.iter().map(|row| row.departure_s).collect();
+    let judged = chi_square(&means, &vec![0.0; means.len()], 0);
+    (rows, judged)
+}
+
+fn mean(speed_m_s: f64, found: &[Estimate]) -> Option<Speed> {
+    let summary = hertzchain_signal::summary(found)?;
+    let squares: f64 = found.iter().map(|one| one.sigma.powi(2)).sum();
+    Some(Speed {
+        speed_m_s,
+        count: summary.count,
+        departure_s: Estimate {
+            value: summary.mean,
+            sigma: squares.sqrt() / summary.count as f64,
+        },
+        scatter_s: summary.error,
+    })
+}
+
+/// Runs a campaign file once a seed, each into a folder of its own.
+pub fn run(text: &str, seeds: u64, under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let experiment = Experiment::from_text("campaign.toml", text)?;
+    (1..=seeds)
+        .map(|seed| {
+            let folder = under.join(seed.to_string());
+            let plan = Plan::new(&experiment, Some(seed))?;
+            campaign(&plan, &folder, Shard::WHOLE, &|_| {})?;
+            Ok(folder)
+        })
+        .collect()
+}
+
+/// Measures the recordings of a campaign's folder, and holds every shot against
+/// its true values and the model.
+pub fn judge(folder: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
+    let text = fs::read_to_string(folder.join("campaign.toml"))?;
+    let plan = Plan::new(&Experiment::from_text("campaign.toml", &text)?, None)?;
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        files.push(entry?.path());
+    }
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
+    files.sort();
+    let shots = measure(&files, &Options::default(), &mut |_| {}).shots;
+    let mut judged = Vec::new();
+    for case in &plan.cases {
+        judged.extend(of_case(case, &shots)?);
+    }
+    Ok(judged)
+}
+
+fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
+    let own: Vec<&Shot> = shots.iter().filter(|shot| shot.case == case.name).collect();
+    let speeds: Vec<Estimate> = own.iter().filter_map(|shot| shot.speed_m_s).collect();
+    let models = models(&case.experiment, &speeds)?;
+    let mut known = HashMap::new();
+    let mut judged = Vec::new();
+    for ((shot, speed_m_s), model_s) in own.into_iter().zip(speeds).zip(models) {
+        if !known.contains_key(&shot.file) {
+            let columns: HashMap<String, Vec<f64>> = truth(&shot.file)?.into_iter().collect();
+            known.insert(shot.file.clone(), columns);
+        }
+        let row = shot.shot.unwrap_or_default() as usize;
+        let true_of = |name: &str| known[&shot.file][name][row];
+        let flight = shot.flight.as_ref().ok();
+        judged.push(Judged {
+            case: case.name.clone(),
+            programmed_m_s: shot.programmed_speed_m_s.unwrap_or_default(),
+            speed_m_s,
+            measured_s: [
+                flight.map(|flight| flight.incident_s),
+                flight.and_then(|flight| flight.reflected_s),
+            ],
+            true_s: [true_of("incident_tof_s"), true_of("reflected_tof_s")],
+            model_s,
+        });
+    }
+    Ok(judged)
+}
+
+/// The model's incident and reflected times at every speed, in s.
+fn models(experiment: &Experiment, speeds: &[Estimate]) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+    let speeds: Vec<f64> = speeds.iter().map(|speed| speed.value).collect();
+    let settings = Settings {
+        adjust: &|plan| *plan = plan.clone().for_flights(),
+        ..Settings::default()
+    };
+    let points = sweep(experiment, &speeds, &settings).points;
+    points
+        .into_iter()
+        .map(|point| {
+            let flight = point
+                .shot?
+                .flight
+                .ok_or("the wave does not reach the wall")?;
+            Ok([flight.incident_s, flight.reflected_s.unwrap_or(f64::NAN)])
+        })
+        .collect()
+}

@@ -1,0 +1,134 @@
+//! The whole loop: campaign, recordings, times of flight; against the true values
+//! of the same shots, and against the model's own curve. What docs/measuring.md shows.
+//!
+//! `cargo run --release -p hertzchain --example whole_loop` fires on the chain of the
+//! paper laid compact before every shot; `… -- FOLDER` judges the recordings that
+//! `hertzchain campaign --out FOLDER` has made.
+
+mod judged;
+
+use hertzchain_signal::{Coverage, coverage, median};
+use judged::{Judged, Speed, TIMES, by_speed, judge, run};
+use std::error::Error;
+use std::path::PathBuf;
+
+const PAPER: &str = include_str!("../../../../experiments/paper.toml");
+
+/// One shot a speed on a chain just laid without gaps, recorded until the wave is back.
+const COMPACT: [(&str, &str); 4] = [
+    ("shots = 20", "shots = 1"),
+    ("taps = 40", "taps = 0"),
+    ("gap_scatter = \"5 um\"", "gap_scatter = \"0 um\""),
+    ("record = \"0.1 s\"", "record = \"30 ms\""),
+];
+/// Seeds, that is shots a speed.
+const SEEDS: u64 = 20;
+/// Ends of the ranges of speed that coverage is told for, in m/s.
+const RANGES_M_S: [(f64, f64); 4] = [(0.0, 0.2), (0.2, 0.5), (0.5, 2.5), (0.0, 2.5)];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folders = match std::env::args().nth(1) {
+        Some(folder) => vec![PathBuf::from(folder)],
+        None => compact()?,
+    };
+    let mut shots = Vec::new();
+    for folder in &folders {
+        shots.extend(judge(folder)?);
+    }
+    let mut cases: Vec<&str> = shots.iter().map(|shot| shot.case.as_str()).collect();
+    cases.dedup();
+    cases.sort_unstable();
+    cases.dedup();
+    against_truth(&shots, &cases);
+    against_model(&shots, &cases);
+    Ok(())
+}
+
+fn compact() -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let mut text = PAPER.to_owned();
+    for (from, to) in COMPACT {
+        assert!(text.contains(from), "the preset has no {from}");
+        text = text.replace(from, to);
+    }
+    let under = std::env::temp_dir().join(format!("hertzchain-loop-{}", std::process::id()));
+    run(&text, SEEDS, &under)
+}
+
+/// Bias, spread and coverage of measured times against those of the same shots.
+fn against_truth(shots: &[Judged], cases: &[&str]) {
+    println!("Measured less true times of the same shots\n");
+    println!(
+        "| time | case | m/s | shots | bias ± error, ns | spread, ns | stated, ns | within 1 σ, % | within 1.96 σ, % |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (time, name) in TIMES.iter().enumerate() {
+        for case in cases {
+            for (from, to) in RANGES_M_S {
+                let inside = |shot: &&Judged| {
+                    shot.case == *case && (from..to).contains(&shot.programmed_m_s)
+                };
+                let own: Vec<&Judged> = shots.iter().filter(inside).collect();
+                if let Some(row) = truth_row(&own, time) {
+                    println!("| {name} | {case} | {from} to {to} | {row}");
+                }
+            }
+        }
+    }
+}
+
+fn truth_row(shots: &[&Judged], time: usize) -> Option<String> {
+    let found: Vec<_> = shots.iter().filter_map(|shot| shot.error(time)).collect();
+    let errors: Vec<f64> = found.iter().map(|e| 1e9 * e.value).collect();
+    let stated: Vec<f64> = found.iter().map(|e| 1e9 * e.sigma).collect();
+    let pulls: Vec<f64> = found.iter().map(|e| e.value / e.sigma).collect();
+    let bias = median(&errors)?;
+    let off: Vec<f64> = errors.iter().map(|e| (e - bias).abs()).collect();
+    let spread = 1.4826 * median(&off)?;
+    // Of a median: √(π/2) of that of a mean.
+    let error = 1.25 * spread / (errors.len() as f64).sqrt();
+    let covered = [1.0, 1.96].map(|factor| coverage(&pulls, factor).map(share));
+    let [one, two] = covered.map(Option::unwrap_or_default);
+    Some(format!(
+        "{} | {bias:+.0} ± {error:.0} | {spread:.0} | {:.0} | {one} | {two} |",
+        errors.len(),
+        median(&stated)?
+    ))
+}
+
+/// A share with its binomial error, in percent.
+fn share(of: Coverage) -> String {
+    let error = (of.share * (1.0 - of.share) / of.count as f64).sqrt();
+    format!("{:.1} ± {:.1}", 100.0 * of.share, 100.0 * error)
+}
+
+/// Means a speed against the model of a compact chain.
+fn against_model(shots: &[Judged], cases: &[&str]) {
+    println!("\nMeasured times less the model's, means a speed\n");
+    for (time, name) in TIMES.iter().enumerate() {
+        for case in cases {
+            let own: Vec<&Judged> = shots.iter().filter(|shot| shot.case == *case).collect();
+            let (rows, judged) = by_speed(&own, time);
+            let told = judged.map_or(String::new(), |c| {
+                format!(
+                    "chi-square {:.1} of {}, p = {:.2}",
+                    c.value, c.freedom, c.probability
+                )
+            });
+            println!("{name}, {case}: {told}");
+            println!("{}", rows.iter().map(speed_row).collect::<String>());
+        }
+    }
+}
+
+fn speed_row(row: &Speed) -> String {
+    let departure = row.departure_s;
+    format!(
+        "  {:.4} m/s, {:3} shots: {:+8.0} ± {:.0} ns stated, ± {:.0} ns by scatter, {:+.1} σ\n",
+        row.speed_m_s,
+        row.count,
+        1e9 * departure.value,
+        1e9 * departure.sigma,
+        1e9 * row.scatter_s,
+        departure.value / departure.sigma
+    )
+}

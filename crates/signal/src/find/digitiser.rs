@@ -1,0 +1,63 @@
+//! What a digitiser does to pulses: ends of its range and its steps.
+
+use super::{Channels, Doubt, Finding, Found, Place, Pulse};
+use crate::{Rails, saturated_runs};
+
+/// Looks at the pulses as they were recorded: filters leave neither rails nor steps.
+pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding) {
+    let channels = [recorded.sensor(), recorded.wall()];
+    let own = channels.map(extremes);
+    let mut doubts = Vec::new();
+    let mut steps = [f64::INFINITY; 2];
+    for pulse in found.pulses() {
+        let which = usize::from(pulse.place == Place::Wall);
+        let (from, to) = pulse.extent;
+        let inside = channels[which].get(from..=to).unwrap_or_default();
+        let saturated = saturated(inside, own[which], pulse, finding);
+        doubts.extend(saturated.then_some(Doubt::Saturation(pulse.place)));
+        steps[which] = steps[which].min(step(inside));
+    }
+    if let Channels::Summed(_) = recorded {
+        steps = [steps[0].min(steps[1]); 2];
+    }
+    let steps = steps.map(|step| if step.is_finite() { step } else { 0.0 });
+    (found.sensor.step, found.wall_channel.step) = (steps[0], steps[1]);
+    let coarse = found
+        .pulses()
+        .filter(|pulse| found.upright(pulse.place).is_coarse(pulse.height));
+    doubts.extend(coarse.map(|pulse| Doubt::CoarseSteps(pulse.place)));
+    found.doubt(doubts);
+}
+
+/// Least difference of neighbours. Of samples that are not rounded, the least of some
+/// hundred is far below their noise.
+fn step(samples: &[f64]) -> f64 {
+    let differences = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let differ = differences.filter(|d| *d > 0.0);
+    differ.fold(f64::INFINITY, f64::min)
+}
+
+/// Whether a pulse has a run of samples at the record's extremes, or any on a known rail.
+fn saturated(inside: &[f64], (low, high): (f64, f64), pulse: &Pulse, finding: &Finding) -> bool {
+    // A round top of a hundred steps has a run of a tenth of its width.
+    let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
+    let own = (Rails { low, high }, longest);
+    let (rails, shortest) = finding.rails.map_or(own, |rails| (rails, 1));
+    !saturated_runs(inside, rails, shortest).is_empty()
+}
+
+/// Least and largest, eight lanes at a time.
+pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
+    let start = samples.first().copied().unwrap_or(0.0);
+    let (mut low, mut high) = ([start; 8], [start; 8]);
+    let (whole, rest) = samples.as_chunks::<8>();
+    for chunk in whole {
+        for (lane, x) in chunk.iter().enumerate() {
+            low[lane] = if *x < low[lane] { *x } else { low[lane] };
+            high[lane] = if *x > high[lane] { *x } else { high[lane] };
+        }
+    }
+    let low = low.iter().chain(rest).copied().fold(start, f64::min);
+    let high = high.iter().chain(rest).copied().fold(start, f64::max);
+    (low, high)
+}

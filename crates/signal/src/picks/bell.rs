@@ -1,0 +1,158 @@
+//! Maximum of a bell whose skewness and flatness are free.
+
+use super::local_model::{Top, finish};
+use super::normal::{Descent, MOST, Normal, descend};
+use super::polynomial::{Polynomial, powers};
+use super::{Picked, Sight};
+use crate::Pulse;
+
+/// Full width of the fit in widths of the steeper flank: down to a third of the maximum.
+const WIDTH: f64 = 1.2;
+/// Degree of the logarithm: pulses of computed dry and wet rows between 0.1 and
+/// 1.2 m/s are followed to 30 ns.
+const DEGREE: usize = MOST - 1;
+/// The first coefficient that makes a bell other than a Gaussian.
+const SHAPE: usize = 3;
+/// Deviations by which the squares that a fit leaves may exceed those of noise.
+const ADEQUATE: f64 = 3.0;
+
+/// Time in samples, by y = exp(Σ c_k u^k) with u from −1 to 1 across the fit.
+///
+/// The logarithm of a bell is nearly a parabola, so few coefficients tell much.
+/// Those beyond it are taken to be 0 ± 1 before the samples are looked at: noise
+/// leaves them there, a strong signal moves them. So one model goes all the way from smooth to
+/// close, and the stated error holds what it does not know of the shape.
+/// Where more is left than noise, the error grows by as much.
+pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
+    let half = (0.5 * WIDTH * pulse.steep_width_samples()).max(4.0);
+    let noise = sight.broad_noise(pulse);
+    let begun = pulse.at as f64;
+    let mut centre = begun;
+    for _ in 0..4 {
+        let (fit, u) = fit(sight, pulse, centre, half, noise)?;
+        let next = fit.sample(u).round();
+        if (next - begun).abs() > half {
+            return None;
+        }
+        if (next - centre).abs() <= 0.1 * half {
+            return Some(picked(sight, pulse, &fit, u));
+        }
+        centre = next;
+    }
+    None
+}
+
+/// At the top the logarithm's slope is 0, so slope and bend of the pulse itself
+/// are its height times those of the logarithm.
+fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked {
+    let at = fit.course(u);
+    let height = at.value.exp();
+    let noise = sight.noise(pulse);
+    let beyond = (fit.left / noise).powi(2) > 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt();
+    let excess = if beyond { fit.left / noise } else { 1.0 };
+    let top = Top {
+        height,
+        height_share: height * fit.value_variance(u).sqrt() * excess,
+        slope_share: height * fit.slope_variance(u).sqrt() * excess,
+        bend: height * at.bend,
+    };
+    finish(sight, pulse, fit, u, &top)
+}
+
+/// The bell's logarithm about a centre, and where its maximum is.
+fn fit(
+    sight: &Sight<'_>,
+    pulse: &Pulse,
+    centre: f64,
+    half: f64,
+    noise: f64,
+) -> Option<(Polynomial, f64)> {
+    let (first, heights) = sight.window(centre - half, centre + half);
+    let us = (0..heights.len()).map(|i| (first as f64 + i as f64 - centre) / half);
+    let points: Vec<(f64, f64)> = us.zip(heights).filter(|(u, _)| u.abs() <= 1.0).collect();
+    let data = Data {
+        degree: DEGREE.min(points.len().checked_sub(2)?),
+        points,
+        noise,
+    };
+    let mut start = [0.0; MOST];
+    start[0] = pulse.height.ln();
+    let widths = half / pulse.steep_width_samples();
+    start[2] = -4.0 * std::f64::consts::LN_2 * widths * widths;
+    let descent = descend(
+        start,
+        |bell| data.normal(bell),
+        |bell, step| std::array::from_fn(|k| bell[k] + step[k]),
+        |before, after| before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-7),
+    )?;
+    let polynomial = data.polynomial(&descent, centre, half)?;
+    let u = polynomial.top()?;
+    Some((polynomial, u))
+}
+
+/// Samples to be fitted, as (u, height).
+struct Data {
+    points: Vec<(f64, f64)>,
+    degree: usize,
+    noise: f64,
+}
+
+impl Data {
+    fn misses<'a>(
+        &'a self,
+        bell: &'a [f64; MOST],
+    ) -> impl Iterator<Item = (f64, f64, [f64; MOST])> + 'a {
+        self.points.iter().map(move |(u, height)| {
+            let row = powers(*u);
+            let logarithm: f64 = row.iter().zip(bell).map(|(r, c)| r * c).sum();
+            let value = logarithm.exp();
+            (value, height - value, row)
+        })
+    }
+
+    /// Normal equations of a step from a bell, and its sum of squares; what is
+    /// thought of the shape beforehand counts as further equations.
+    fn normal(&self, bell: &[f64; MOST]) -> Option<(Normal, f64)> {
+        let mut normal = Normal::new(self.degree + 1);
+        let mut squares = 0.0;
+        for (value, miss, row) in self.misses(bell) {
+            normal.add(&row.map(|r| r * value), miss);
+            squares += miss * miss;
+        }
+        for (k, coefficient) in bell.iter().enumerate().skip(SHAPE) {
+            let mut row = [0.0; MOST];
+            row[k] = self.noise;
+            let miss = -self.noise * coefficient;
+            normal.add(&row, miss);
+            squares += miss * miss;
+        }
+        squares.is_finite().then_some((normal, squares))
+    }
+
+    fn polynomial(
+        &self,
+        descent: &Descent<[f64; MOST]>,
+        centre: f64,
+        half: f64,
+    ) -> Option<Polynomial> {
+        let mut solution = descent.normal.solve()?;
+        solution.values = descent.model;
+        // What the samples, not the thought beforehand, determine.
+        let known: f64 = (SHAPE..=self.degree)
+            .map(|k| self.noise * self.noise * solution.inverse[k][k])
+            .sum();
+        let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
+        let squares: f64 = self
+            .misses(&descent.model)
+            .map(|(_, miss, _)| miss * miss)
+            .sum();
+        Some(Polynomial {
+            centre,
+            half,
+            degree: self.degree,
+            solution,
+            left: (squares / freedom).sqrt(),
+            freedom,
+        })
+    }
+}
