@@ -12,6 +12,8 @@ mod ours;
 mod picture;
 mod python;
 mod scan;
+#[cfg(test)]
+mod small;
 mod table;
 mod tool;
 mod watch;

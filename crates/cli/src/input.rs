@@ -2,8 +2,12 @@
 
 use crate::arguments::{How, Input, Pick, Solver};
 use crate::failure::{self, Failure};
+use crate::format::Style;
 use crate::given::Given;
-use hertzchain_experiment::{Experiment, Mistakes, OpenError, Warning, preset};
+use hertzchain_chain::System;
+use hertzchain_experiment::{
+    Experiment, Mistakes, OpenError, Units, Warning, longest_duration_s, preset,
+};
 use hertzchain_study as study;
 use hertzchain_study::{InstructionSet, Plan};
 use std::path::Path;
@@ -120,12 +124,24 @@ pub fn adjust(how: &How, plan: &mut Plan) {
     };
 }
 
-/// Refuses a step for a solver that chooses its own.
-pub fn check_step(how: &How, plan: &Plan) -> Result<(), Failure> {
-    match (&how.step, plan.solver) {
-        (Some(_), study::Solver::Adaptive) => Err(Failure::User(
+/// Refuses a step for a solver that chooses its own, and a duration without end.
+pub fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
+    if how.step.is_some() && plan.solver == study::Solver::Adaptive {
+        return Err(Failure::User(
             "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),
-        )),
-        _ => Ok(()),
+        ));
+    }
+    let longest_s = System::new(&plan.chain).map_or(f64::INFINITY, |it| longest_duration_s(&it));
+    match how
+        .duration
+        .as_ref()
+        .filter(|given| given.value() > longest_s)
+    {
+        Some(given) => Err(Failure::User(format!(
+            "--duration {}: expected at most {}: contacts take some ten steps each, and a billion steps take hours",
+            given.text(),
+            Style { digits: 3, units }.quantity(longest_s, "s")
+        ))),
+        None => Ok(()),
     }
 }

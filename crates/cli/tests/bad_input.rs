@@ -192,6 +192,11 @@ fn times_of_an_si_experiment_have_units_and_plain_speeds_are_in_metres_a_second(
         let message = refused(arguments);
         assert!(message.contains("has no unit"), "{message}");
     }
+    let endless = refused(&["shot", "--duration", "1e9 s"]);
+    assert!(
+        endless.contains("expected at most") && endless.contains("billion"),
+        "{endless}"
+    );
     let comma = refused(&["shot", "--duration", "0,002 s"]);
     assert!(comma.contains("write 0.002 s; expected a time"), "{comma}");
     let of =

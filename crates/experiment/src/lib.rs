@@ -71,6 +71,7 @@ mod view;
 pub mod reading;
 pub mod units;
 
+pub use effort::longest_duration_s;
 pub use experiment::{Experiment, OpenError};
 pub use finding::{Finding, Mistakes, Source, Warning};
 pub use laws::LawSpec;

@@ -68,6 +68,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
         product: Vec::new(),
         search: Vec::new(),
         flipped_by_rounding: vec![0, 1],
+        flipped_in_closest: Vec::new(),
     });
     paper::figures(computed).unwrap()
 }

@@ -129,7 +129,9 @@ fn study(
         ("profile", &profiles),
         ("posterior", &posteriors),
     ] {
-        println!("| {method} | {} | {} |", held.of, held.told());
+        if held.of > 0 {
+            println!("| {method} | {} | {} |", held.of, held.told());
+        }
     }
     Ok(())
 }

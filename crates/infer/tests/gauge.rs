@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::{Truth, speeds_m_s};
+use common::Truth;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
 
-const SPEEDS: usize = 4;
+const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
@@ -19,12 +19,12 @@ fn gauge(wet: Data, seed: u64) -> Gauge {
         free: &free,
         accuracy: 1e-5,
     };
-    let dry = Truth::of(&dry_model, &speeds_m_s(SPEEDS)).measured(seed);
+    let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
 
 fn wet(experiment: &Experiment, seed: u64) -> Data {
-    Truth::of(experiment, &speeds_m_s(SPEEDS)).measured(100 + seed)
+    Truth::of(experiment, &SPEEDS_M_S).measured(100 + seed)
 }
 
 #[test]
@@ -102,15 +102,6 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
         let contact = row.told.unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         let covariance = contact.covariance();
-        if !contact.others.is_empty() {
-            // Two pairs give the same times: one is the truth, to some percent.
-            let pairs = std::iter::once(contact.ln).chain(contact.others.clone());
-            let near = pairs
-                .map(|ln| (ln[1] - a.ln()).abs())
-                .fold(f64::INFINITY, f64::min);
-            assert!(near < 0.1, "{}: {contact:?}", row.speed_m_s);
-            continue;
-        }
         for (of, exact) in [k, a].into_iter().enumerate() {
             let pull = (contact.ln[of] - exact.ln()) / covariance[of][of].sqrt();
             // Sixteen numbers: of a hundred seeds one would fail.

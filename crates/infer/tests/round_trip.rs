@@ -9,6 +9,7 @@ use hertzchain_infer::{
     Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,
 };
 use hertzchain_signal::coverage;
+use hertzchain_study::{Plan, Solver, shoot};
 
 const SPEEDS: usize = 12;
 
@@ -130,4 +131,25 @@ fn one_speed_and_one_time_tell_one_number() {
             .to_string()
             .contains("1 measured values for 2 free parameters (K, A)")
     );
+}
+
+#[test]
+fn data_of_another_integrator_give_the_same_pair() {
+    // Classical Runge–Kutta with a step of 0.1 µs, as a reader of the paper would.
+    let dry = preset("dry").unwrap();
+    let speeds = speeds_m_s(6);
+    let mut truth = Truth::of(&dry, &speeds);
+    for (row, speed) in truth.curve.iter_mut().zip(&speeds) {
+        let (mut plan, _) = Plan::from_experiment(&dry, Some(*speed)).unwrap();
+        plan.solver = Solver::Rk4 { step_s: Some(1e-7) };
+        let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
+        (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
+    }
+    let problem = problem(&model(&dry, &["eta", "B"]), truth.measured(5));
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let covariance = Covariance::new(problem.parameters(), &best);
+    for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
+        let pull = (best.point[at] - exact) / covariance.sd[at];
+        assert!(pull.abs() < 3.0, "{at}: {pull}");
+    }
 }

@@ -120,6 +120,7 @@ fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
 pub(crate) fn fire_together(one: &Plan, other: &Plan) -> bool {
     one.accuracy == other.accuracy
         && one.sensor_bead == other.sensor_bead
+        && one.picks().eq(other.picks())
         && one.chain.beads.len() == other.chain.beads.len()
         && one.duration_s.is_none() == other.duration_s.is_none()
 }

@@ -7,9 +7,9 @@
 
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::{Reading, preset};
-use hertzchain_study::claims::{Branch, Evidence, Point, claims};
+use hertzchain_study::claims::{Branch, Evidence, Point, Verdict, claims};
 use hertzchain_study::readings::{Draw, DryPoisson, Prefactors, scan};
-use hertzchain_study::reproduce::{Cases, SPEEDS_M_S};
+use hertzchain_study::reproduce::{Cases, HELD, SPEEDS_M_S};
 use hertzchain_study::reproduce::{Effort, Gathering, Options, Silent, gather, oils_csv, tof_csv};
 use hertzchain_study::{Plan, shoot};
 
@@ -242,4 +242,23 @@ fn scan_tries_every_option_once_and_says_what_it_left_out() {
             switch.name
         );
     }
+}
+
+#[test]
+fn a_reading_that_holds_the_chain_itself_has_no_second_one_to_compare_with() {
+    let claims = claims().unwrap();
+    let loosening = claims.iter().find(|it| it.claim.id == "loosening").unwrap();
+    for (preload, held) in [("none", true), ("constant", false), ("spring", false)] {
+        let reading = Reading::default().with("preload", preload).unwrap();
+        let cases = Cases::new(&reading).unwrap();
+        assert_eq!(cases.get(HELD).is_some(), held, "{preload}");
+    }
+    let alone = Evidence::default();
+    let finding = loosening.decide(&alone);
+    assert_eq!(finding.verdict, Verdict::NotDecidable);
+    assert!(
+        finding.detail.contains("held together"),
+        "{}",
+        finding.detail
+    );
 }

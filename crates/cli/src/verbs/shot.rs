@@ -20,7 +20,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let planned = Plan::from_experiment(&experiment, speed);
     let (mut plan, warnings) = input::at_speed(given, planned)?;
     input::adjust(&arguments.how, &mut plan);
-    input::check_step(&arguments.how, &plan)?;
+    input::check_effort(&arguments.how, &plan, experiment.units())?;
     plan.budget = true;
     let folder = open_folder(arguments)?;
     let shot = match arguments.how.check {

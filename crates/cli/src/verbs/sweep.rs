@@ -58,7 +58,7 @@ fn adjusted(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
     input::check_times(how, experiment)?;
     let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
     input::adjust(how, &mut plan);
-    input::check_step(how, &plan)?;
+    input::check_effort(how, &plan, experiment.units())?;
     Ok(plan)
 }
 

@@ -109,6 +109,13 @@ impl CurveProblem {
         &self.data
     }
 
+    /// The same problem with curves of another relative accuracy.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.model = self.model.with_accuracy(accuracy);
+        self
+    }
+
     /// The same problem with other measured values at the same speeds, such as
     /// those of a simulated repetition.
     ///

@@ -18,6 +18,10 @@ const REACH: f64 = 6.0;
 /// Nodes a parameter, for one to four parameters: some hundreds of curves in all.
 const NODES: [usize; 4] = [11, 9, 7, 5];
 
+/// Accuracy of its curves over the problem's own: a polynomial through many nodes
+/// multiplies their errors.
+const FINER: f64 = 0.1;
+
 /// Points at which a surrogate is held against the model.
 const TRIALS: usize = 40;
 
@@ -72,7 +76,9 @@ impl Surrogate {
             .map(|(at, parameter)| side(parameter, fit.point[at], covariance.sd[at]))
             .collect::<Result<_, _>>()?;
         let mut surrogate = Self {
-            problem: problem.clone(),
+            problem: problem
+                .clone()
+                .with_accuracy(FINER * problem.model().accuracy),
             sides,
             nodes,
             table: Vec::new(),
@@ -81,7 +87,7 @@ impl Surrogate {
         let points: Vec<Vec<f64>> = (0..nodes.pow(count as u32))
             .map(|number| surrogate.node(number))
             .collect();
-        for curve in problem.all_curves(&points) {
+        for curve in surrogate.problem.all_curves(&points) {
             let curve = curve.map_err(SurrogateError::ModelFails)?;
             let ln = |row: &Predicted| row.map(|value| value.map(f64::ln));
             surrogate.table.push(curve.iter().map(ln).collect());

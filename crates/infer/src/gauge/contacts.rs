@@ -135,7 +135,7 @@ impl Gauge {
         })
     }
 
-    /// All that fit as well as the best, from several starts, the best first:
+    /// All that fit as well as the best, from several starts, the smallest A first:
     /// times of flight need not determine K and A uniquely.
     fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
         let [stiffness, relaxation] = self.dry_contact();
@@ -146,12 +146,7 @@ impl Gauge {
         let mut found: Vec<Solution> = Vec::new();
         let mut failed = None;
         for times in starts {
-            match self.solved(
-                row,
-                free,
-                &self.dry_fit.point,
-                [stiffness, times * relaxation],
-            ) {
+            match self.from(row, free, [stiffness, times * relaxation]) {
                 Ok(solution) => found.push(solution),
                 Err(error) => failed = Some(error),
             }
@@ -167,7 +162,18 @@ impl Gauge {
                 distinct.push(solution);
             }
         }
+        distinct.sort_by(|a, b| a.point[1].total_cmp(&b.point[1]));
         Ok(distinct)
+    }
+
+    /// The solution next to an A: first the K that suits it, then both.
+    fn from(&self, row: usize, free: Free, start: [f64; 2]) -> Result<Solution, FitError> {
+        let dry = &self.dry_fit.point;
+        let along = self.solved(row, Free::StiffnessAlone, dry, start)?;
+        match free {
+            Free::StiffnessAlone => Ok(along),
+            Free::Both => self.solved(row, free, dry, along.point),
+        }
     }
 
     /// K and A that one row asks for, with given numbers of the dry contacts.
@@ -262,7 +268,8 @@ impl Gauge {
         let several = told.into_iter().any(|contact| !contact.others.is_empty());
         several.then_some(
             "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
-             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Power laws leave these rows out.",
+             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Told first, and \
+             taken for power laws and the figure, is that of the smallest A.",
         )
     }
 
@@ -285,10 +292,10 @@ impl Gauge {
 }
 
 /// Iterations of one row's fit: two equations with two unknowns are solved in some ten.
-const ITERATIONS: usize = 60;
+const ITERATIONS: usize = 30;
 
 /// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
-const TIMES_DRY: [f64; 3] = [1.0, 4.0, 12.0];
+const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
 
 /// Difference of cost within which two solutions are equally good.
 const AS_GOOD: f64 = 1.0;

@@ -27,14 +27,14 @@ pub struct GaugeLaws {
 }
 
 impl GaugeLaws {
-    /// Through all rows that tell both, and one pair alone.
+    /// Through all rows that tell both.
     ///
     /// # Errors
     /// Fewer than three such rows.
     pub fn through(rows: &[WetRow]) -> Result<Self, FitError> {
         let both = |row: &WetRow| {
             let contact = row.told.as_ref().ok()?;
-            let both = contact.combination.is_none() && contact.others.is_empty();
+            let both = contact.combination.is_none();
             both.then(|| (row.speed_m_s, contact.clone()))
         };
         let known: Vec<(f64, Contact)> = rows.iter().filter_map(both).collect();

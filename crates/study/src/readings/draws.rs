@@ -11,20 +11,19 @@ use hertzchain_experiment::Reading;
 /// which side of a threshold a number lies.
 const ACCURACIES: [f64; 2] = [1e-6, 1e-7];
 
-/// Draws the printed constants anew and shoots all cases at all speeds of the tables
+/// Draws the printed constants anew and shoots, in a reading, all cases at all speeds of the tables
 /// for each draw, as accurately as the claims take to be decided on it.
 ///
 /// # Errors
 /// The first shot that can't be computed.
 pub fn rounded_evidence(
     judges: &[Judge],
-    seed: u64,
-    draws: usize,
+    reading: &Reading,
+    (seed, draws): (u64, usize),
     dry_poisson: DryPoisson,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Evidence>, ReproduceError> {
-    let reading = Reading::default();
-    let cases = Cases::new(&reading)?;
+    let cases = Cases::new(reading)?;
     let mut prefactors = Vec::new();
     for case in OILS {
         if let Some(experiment) = cases.get(case) {
@@ -39,7 +38,7 @@ pub fn rounded_evidence(
         };
         let evidence = sharpened(judges, &ACCURACIES, &|accuracy| {
             let how = Gathering {
-                reading,
+                reading: *reading,
                 speeds_m_s: &SPEEDS_M_S,
                 accuracy,
                 effort: Effort::Lean(judges),

@@ -10,6 +10,9 @@ use std::fmt::Write as _;
 /// constants alone flips.
 pub const FLIPPED: &str = "†";
 
+/// The same in the closest reading.
+const FLIPPED_IN_CLOSEST: &str = "‡";
+
 /// One row a reading: its switches, its score, the verdict of each claim.
 #[must_use]
 pub fn scan_csv(scan: &Scan) -> String {
@@ -147,6 +150,14 @@ fn closest(page: &mut String, scan: &Scan) {
         scan.default.score(),
         scan.claims.len()
     );
+    let _ = writeln!(
+        page,
+        "Without what rounding of the printed constants leaves open there ({FLIPPED_IN_CLOSEST} below, {} claims; \
+         {FLIPPED} in the default reading): {} against {}.\n",
+        scan.flipped_in_closest.len(),
+        row.score_without(&scan.flipped_in_closest),
+        scan.default.score_without(&scan.flipped_by_rounding),
+    );
     let equals: Vec<String> = scan
         .as_close()
         .iter()
@@ -188,7 +199,10 @@ fn side_by_side(page: &mut String, scan: &Scan) {
         format!("{verdict} | {value}")
     };
     for (i, claim) in scan.claims.iter().enumerate() {
-        let (one, other) = (cells(&scan.default, i, claim), cells(closest, i, claim));
+        let (one, mut other) = (cells(&scan.default, i, claim), cells(closest, i, claim));
+        if scan.flipped_in_closest.contains(&i) {
+            other = format!("{FLIPPED_IN_CLOSEST} {other}");
+        }
         let name = name(scan, i).unwrap_or_default();
         let _ = writeln!(page, "| {name} | {one} | {other} |");
     }
@@ -274,6 +288,7 @@ mod tests {
             single: vec![single],
             search: Vec::new(),
             flipped_by_rounding: vec![2],
+            flipped_in_closest: vec![0, 3],
             default,
             claims,
         }
@@ -290,6 +305,19 @@ mod tests {
         assert!(page.contains("† marks 1 "), "{page}");
         let other = format!("{}†", scan.claims[0].id);
         assert!(!page.contains(&other));
+    }
+
+    #[test]
+    fn the_closest_reading_is_scored_without_what_rounding_leaves_open_too() {
+        let scan = made_up(Vec::new());
+        let (page, all) = (scan_markdown(&scan), scan.claims.len());
+        // The default reading meets nothing, the closest everything but two.
+        let told = format!(
+            "(‡ below, 2 claims; † in the default reading): {} against 0.",
+            all - 2
+        );
+        assert!(page.contains(&told), "{page}");
+        assert_eq!(page.matches("| ‡ holds |").count(), 2);
     }
 
     #[test]

@@ -24,6 +24,13 @@ impl Row {
         self.verdicts.iter().map(|verdict| verdict.score()).sum()
     }
 
+    /// The same without claims that rounding of the printed constants leaves open.
+    #[must_use]
+    pub fn score_without(&self, flipped: &[usize]) -> f64 {
+        let lost = flipped.iter().filter_map(|&claim| self.verdicts.get(claim));
+        self.score() - lost.map(|verdict| verdict.score()).sum::<f64>()
+    }
+
     /// Claims met better, and worse, than in another reading, by index.
     #[must_use]
     pub fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
@@ -73,6 +80,8 @@ pub struct Scan {
     /// Claims, by index, whose verdict in the default reading rounding of the
     /// printed constants alone flips; a scan by itself looks at no rounding.
     pub flipped_by_rounding: Vec<usize>,
+    /// The same in the closest reading.
+    pub flipped_in_closest: Vec<usize>,
 }
 
 /// Tries readings: one switch at a time, then the full product of those that
@@ -121,6 +130,7 @@ pub fn scan(
         product,
         search,
         flipped_by_rounding: Vec::new(),
+        flipped_in_closest: Vec::new(),
     })
 }
 

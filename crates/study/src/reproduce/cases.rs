@@ -26,16 +26,24 @@ pub const HELD: &str = "dry-held";
 pub struct Cases(Vec<(&'static str, Experiment)>);
 
 impl Cases {
-    /// All of them, and the dry chain held together.
+    /// All of them, and the dry chain held together where the reading itself
+    /// does not hold it.
     ///
     /// # Errors
     /// A reading that leaves something outside a chain.
     pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
-        let held = reading
-            .with("preload", "constant")
-            .map_err(ReproduceError::Reading)?;
+        let held = match reading.get("preload") {
+            Some("none") => Some(
+                reading
+                    .with("preload", "constant")
+                    .map_err(ReproduceError::Reading)?,
+            ),
+            _ => None,
+        };
         let named = CASES.map(|case| (case, case, *reading));
-        let all = named.into_iter().chain([(HELD, "dry", held)]);
+        let all = named
+            .into_iter()
+            .chain(held.map(|held| (HELD, "dry", held)));
         let open = |(case, file, reading): (&'static str, &str, Reading)| {
             let experiment = preset(file).map_err(ReproduceError::Preset)?;
             Ok((case, experiment.with_reading(&reading)?))

@@ -111,13 +111,23 @@ pub fn reproduce(
     progress.advance();
     let films = films(&cases)?;
     progress.advance();
-    let verdicts = judged(options, DryPoisson::OneDigit, &evidence, progress)?;
+    let (one_digit, two_digits) = (DryPoisson::OneDigit, DryPoisson::TwoDigits);
+    let verdicts = judged(options, (&reading, one_digit), &evidence, progress)?;
     let (two_digits, scan) = match options.readings {
         0 => (None, None),
         most => {
-            let two_digits = judged(options, DryPoisson::TwoDigits, &evidence, progress)?;
+            let two_digits = judged(options, (&reading, two_digits), &evidence, progress)?;
             let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
             scan.flipped_by_rounding = flipped(&verdicts);
+            let closest = scan.closest().reading;
+            let how = Gathering {
+                reading: closest,
+                accuracy: SCAN_ACCURACY,
+                ..how
+            };
+            let evidence = gather(&how, &|_, _, _| {}, &|| {})?;
+            let rounded = judged(options, (&closest, one_digit), &evidence, progress)?;
+            scan.flipped_in_closest = flipped(&rounded);
             (Some(two_digits), Some(scan))
         }
     };
@@ -134,17 +144,18 @@ pub fn reproduce(
     })
 }
 
-/// The claims, decided on the tables and under rounding.
+/// The claims, decided on the tables and under rounding, in a reading.
 fn judged(
     options: &Options,
-    dry_poisson: DryPoisson,
+    (reading, dry_poisson): (&Reading, DryPoisson),
     evidence: &Evidence,
     progress: &dyn Progress,
 ) -> Result<Vec<Judged>, ReproduceError> {
     let judges = claims()?;
     progress.begin("rounding of the printed constants", options.draws as u64);
     let done = || progress.advance();
-    let draws = rounded_evidence(&judges, options.seed, options.draws, dry_poisson, &done)?;
+    let draws = (options.seed, options.draws);
+    let draws = rounded_evidence(&judges, reading, draws, dry_poisson, &done)?;
     Ok(judge_all_rounded(&judges, evidence, &draws))
 }
 

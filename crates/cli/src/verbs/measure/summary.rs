@@ -154,7 +154,8 @@ fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
     let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
     let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
     let exponent = match alike {
-        true => (law.exponent / ROUNDING).round() * ROUNDING,
+        // Without the sign of a zero.
+        true => (law.exponent / ROUNDING).round() * ROUNDING + 0.0,
         false => law.exponent,
     };
     let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));

@@ -165,11 +165,13 @@ fn plain() -> Table {
 fn closest(scan: &Scan) -> String {
     let (closest, claims) = (scan.closest(), scan.claims.len());
     format!(
-        "\nOf {} readings, closest to the paper: {}.\nIt scores {} of {claims}, the default reading {}; \
-         what it loses is in readings.md, all verdicts in readings.svg.\n",
+        "\nOf {} readings, closest to the paper: {}.\nWith the constants as printed it scores {} of {claims}, the default reading {}; \
+         without what their rounding leaves open, {} and {}.\nWhat it loses is in readings.md, all verdicts in readings.svg.\n",
         scan.rows().count(),
         closest.reading,
         closest.score(),
         scan.default.score(),
+        closest.score_without(&scan.flipped_in_closest),
+        scan.default.score_without(&scan.flipped_by_rounding),
     )
 }

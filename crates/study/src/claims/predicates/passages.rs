@@ -92,7 +92,9 @@ pub(super) fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
 pub(super) fn loosening_lengthens_return(claim: &Claim, evidence: &Evidence) -> Finding {
     let curves = curves(claim, evidence).unwrap_or_default();
     let [free, held] = curves[..] else {
-        return missing();
+        return Finding::without_numbers(
+            "no second chain, held together, was computed: a reading that holds the chain itself has none to compare with",
+        );
     };
     let ratio = |p: &Point| p.tof_reflected_s / p.tof_incident_s;
     let (mut tally, mut worst) = (Tally::default(), Worst::none());
