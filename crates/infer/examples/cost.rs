@@ -44,7 +44,10 @@ fn all() -> Result<(), Box<dyn Error>> {
     println!("| what | best | median |");
     told("25 shots at a fit's accuracy", || {
         let speeds = Speeds::of_rows(&speeds);
-        problem.model().curves(&[best.point.clone()], &speeds).len()
+        problem
+            .model()
+            .curves(std::slice::from_ref(&best.point), &speeds)
+            .len()
     });
     told("fit with covariance", || {
         let best = fit(&problem, &Fitting::default());

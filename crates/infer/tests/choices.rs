@@ -325,7 +325,7 @@ fn designs_say_what_would_determine_the_undetermined() {
     };
     assert_eq!(refused(&[], &[0]), DesignError::Nothing);
     assert_eq!(
-        refused(&[alone.clone()], &[2]),
+        refused(std::slice::from_ref(&alone), &[2]),
         DesignError::Target {
             number: 2,
             parameters: 2

@@ -114,12 +114,12 @@ fn chains_have_the_moments_and_the_memory_of_emcees() {
     let data = data();
     let Some(others) = others(&data) else { return };
     let (ours, acceptance) = posterior(&data);
-    for k in 0..2 {
-        let (mean, sd) = (others["mean"][k], others["sd"][k]);
+    let moments = others["mean"].iter().zip(&others["sd"]);
+    for (k, (mean, sd)) in moments.enumerate() {
         // Ours has n effective samples, some 160,000/30, emcee's half of them:
         // standard errors √(3/n) of a mean's and less of a deviation's difference.
         let chance = 4.0 * (3.0 / ours.diagnoses[k].effective).sqrt();
-        assert!((ours.mean[k] - mean).abs() < chance * sd);
+        assert!((ours.mean[k] - mean).abs() < chance * *sd);
         assert!((ours.sd(k) / sd - 1.0).abs() < chance);
         // A τ is uncertain by √(20 τ/samples), 6 and 9 %; emcee takes each
         // walker's mean off, which shortens it by another τ/2500.
