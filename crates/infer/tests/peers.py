@@ -32,7 +32,7 @@ found["covariance"] = list(covariance.flatten())
 
 np.random.seed(1)
 sampler = emcee.EnsembleSampler(32, 2, lambda p: -0.5 * np.sum(residuals(p) ** 2))
-sampler.run_mcmc(np.random.multivariate_normal(best, covariance, 32), 3000)
+sampler.run_mcmc(np.random.multivariate_normal(best, covariance, 32), 6000)
 chain = sampler.get_chain(discard=500)
 found["mean"] = list(chain.reshape(-1, 2).mean(axis=0))
 found["sd"] = list(chain.reshape(-1, 2).std(axis=0))
