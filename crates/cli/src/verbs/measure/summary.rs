@@ -8,6 +8,9 @@ use hertzchain_signal::{Estimate, FitError, PowerLaw, Summary};
 /// Shots that anybody reads one by one.
 const MOST_SHOTS: usize = 30;
 
+/// Relative errors below this are the arithmetic's.
+const ROUNDING: f64 = 1e-12;
+
 /// Tables and fits.
 pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
@@ -146,7 +149,15 @@ fn curve(case: &Case) -> String {
 /// the points' scatter where that is larger.
 fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
-    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * law.prefactor_error);
+    // Of equal shots, what the arithmetic rounds is no error.
+    let alike = law.prefactor_error < ROUNDING * law.prefactor;
+    let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
+    let exponent = match alike {
+        // Without the sign of a zero.
+        true => (law.exponent / ROUNDING).round() * ROUNDING + 0.0,
+        false => law.exponent,
+    };
     let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));
     match law.exponent_error.is_finite() {
         true => format!(
