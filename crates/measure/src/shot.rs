@@ -33,14 +33,9 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// Measures one record.
-    pub(crate) fn of(record: &Record, measuring: &Measuring) -> Self {
-        let volts: Vec<Vec<f64>> = record
-            .channels
-            .iter()
-            .map(|channel| channel.samples.volts())
-            .collect();
-        let channels = match volts.as_slice() {
+    /// Measures one record, given its channels in V.
+    pub(crate) fn of(record: &Record, volts: &[Vec<f64>], measuring: &Measuring) -> Self {
+        let channels = match volts {
             [sensor, wall, ..] => Channels::Separate { sensor, wall },
             one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
         };

@@ -34,8 +34,8 @@ pub(super) struct Track<'a> {
 impl<'a> Track<'a> {
     pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, SignalError> {
         SignalError::enough(samples.len(), 16 * BLOCK)?;
-        let blocks = blocks(samples)?;
         let (low, high) = extremes(samples);
+        let blocks = blocks(samples, (low, high))?;
         if low == high {
             return Err(SignalError::Constant { value: low });
         }
@@ -82,7 +82,7 @@ impl<'a> Track<'a> {
 }
 
 /// Means of `BLOCK` samples each; what is left over at the end counts for nothing.
-fn blocks(samples: &[f64]) -> Result<Vec<f64>, SignalError> {
+fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, SignalError> {
     let (whole, rest) = samples.as_chunks::<BLOCK>();
     let scale = (BLOCK as f64).recip();
     let means: Vec<f64> = whole
@@ -90,7 +90,6 @@ fn blocks(samples: &[f64]) -> Result<Vec<f64>, SignalError> {
         .map(|[a, b, c, d]| ((a + b) + (c + d)) * scale)
         .collect();
     // A not finite sample makes its block's mean so; opposite giants would cancel.
-    let (low, high) = extremes(samples);
     if !(means.iter().all(|m| m.is_finite()) && all_finite(rest).is_ok())
         || all_finite(&[low, high]).is_err()
     {
