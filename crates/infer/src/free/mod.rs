@@ -99,7 +99,7 @@ pub struct FreeNumber {
 }
 
 impl FreeNumber {
-    /// The number of this name, as described [above](self).
+    /// The number of this name, as written on the command line.
     ///
     /// `start` is where a fit begins if the experiment gives no value.
     ///
