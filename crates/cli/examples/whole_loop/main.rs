@@ -10,7 +10,7 @@ mod judged;
 use hertzchain_signal::{Coverage, coverage, median};
 use judged::{Judged, Speed, TIMES, by_speed, judge, run};
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const PAPER: &str = include_str!("../../../../experiments/paper.toml");
 
@@ -31,13 +31,17 @@ const SEEDS: u64 = 20;
 const RANGES_M_S: [(f64, f64); 4] = [(0.0, 0.2), (0.2, 0.5), (0.5, 2.5), (0.0, 2.5)];
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let own = std::env::temp_dir().join(format!("hertzchain-loop-{}", std::process::id()));
     let folders = match std::env::args().nth(1) {
         Some(folder) => vec![PathBuf::from(folder)],
-        None => compact()?,
+        None => compact(&own)?,
     };
     let mut shots = Vec::new();
     for folder in &folders {
         shots.extend(judge(folder)?);
+    }
+    if own.exists() {
+        std::fs::remove_dir_all(own)?;
     }
     let mut cases: Vec<&str> = shots.iter().map(|shot| shot.case.as_str()).collect();
     cases.dedup();
@@ -48,14 +52,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn compact() -> Result<Vec<PathBuf>, Box<dyn Error>> {
+fn compact(under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut text = PAPER.to_owned();
     for (from, to) in COMPACT {
         assert!(text.contains(from), "the preset has no {from}");
         text = text.replace(from, to);
     }
-    let under = std::env::temp_dir().join(format!("hertzchain-loop-{}", std::process::id()));
-    run(&text, SEEDS, &under)
+    run(&text, SEEDS, under)
 }
 
 /// Bias, spread and coverage of measured times against those of the same shots.
