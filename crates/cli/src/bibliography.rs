@@ -4,7 +4,7 @@
 const BIBLIOGRAPHY: &str = include_str!("../../../references.bib");
 
 /// What the bibliography writes in LaTeX, and the same in letters.
-const LETTERS: [(&str, &str); 14] = [
+const LETTERS: [(&str, &str); 16] = [
     (r"{\'a}", "á"),
     (r"{\'e}", "é"),
     (r"{\'i}", "í"),
@@ -13,6 +13,8 @@ const LETTERS: [(&str, &str); 14] = [
     (r#"{\"o}"#, "ö"),
     (r#"{\"u}"#, "ü"),
     (r#"{\"U}"#, "Ü"),
+    (r"{\'c}", "ć"),
+    (r"{\v{s}}", "š"),
     (r"{\o}", "ø"),
     ("--", "–"),
     ("``", "“"),
