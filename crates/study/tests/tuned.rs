@@ -69,7 +69,24 @@ fn a_tuned_shot_has_the_same_bits_in_any_company() {
     let (tuned, shots) = tuned(&plans).unwrap();
     for at in [0, 17, 49] {
         let alone = shoot_tuned(&plans[at..=at], &tuned, SET(), &|| {});
-        assert_eq!(alone[0].as_ref().unwrap().flight, shots[at].flight);
+        assert_eq!(alone[0].as_ref().unwrap(), &shots[at]);
+    }
+}
+
+#[test]
+fn tuned_shots_have_the_same_bits_on_any_number_of_threads() {
+    let plans = plans("dry", 50, 1e-4);
+    let (tuned, shots) = tuned(&plans).unwrap();
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let again = pool.build().unwrap().install(|| {
+            // The setting is found on these threads too.
+            let found = Tuned::new(&Tuned::pilots(&plans), SET());
+            assert_eq!(found, Some(tuned), "{threads} threads");
+            shoot_tuned(&plans, &tuned, SET(), &|| {})
+        });
+        let again: Vec<Shot> = again.into_iter().map(Result::unwrap).collect();
+        assert_eq!(again, shots, "{threads} threads");
     }
 }
 
