@@ -29,6 +29,7 @@ mod gun;
 mod plan;
 mod shot;
 mod speeds;
+mod stop;
 mod sweep;
 mod tuned;
 
@@ -40,6 +41,7 @@ pub use hertzchain_chain::InstructionSet;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
+pub use stop::{Stop, stopped};
 pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep};
 pub use tuned::{PILOTS, Tuned};
 
