@@ -31,6 +31,18 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "py",
+        &[
+            "chain",
+            "experiment",
+            "study",
+            "rig",
+            "measure",
+            "infer",
+            "verbs",
+        ],
+    ),
+    (
         "cli",
         &[
             "chain",

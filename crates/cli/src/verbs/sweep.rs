@@ -104,7 +104,8 @@ fn show(
     swept: &Sweep,
 ) -> Result<(), Failure> {
     if arguments.json {
-        return print::print_json(&json::sweep(experiment, plan, swept));
+        let results = json::sweep(experiment, plan, swept);
+        return print::print_json(&table::named(results, experiment.units()));
     }
     print_warnings(experiment, swept);
     if swept.points.iter().all(|point| point.shot.is_err()) {
