@@ -16,7 +16,7 @@ def test_a_mistake_has_the_programs_report_with_file_line_and_key(tmp_path):
     with pytest.raises(hc.ExperimentError) as caught:
         hc.load(file)
     told = subprocess.run([program(), "check", file], capture_output=True, text=True, check=False)
-    assert str(caught.value) == told.stderr.strip()
+    assert str(caught.value) == told.stderr.rstrip()
     (finding,) = caught.value.findings
     line = file.read_text().splitlines()[finding.line - 1]
     assert finding.file == str(file) and finding.key == "radius" and line.startswith("radius")

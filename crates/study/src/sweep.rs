@@ -5,6 +5,7 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::plan::Plan;
 use crate::shot::Shot;
+use crate::stop::stopped;
 use crate::tuned::Tuned;
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, Warning};
@@ -137,7 +138,8 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
         }
         planned
     };
-    let planned: Vec<Planned> = speeds_m_s.par_iter().map(plan).collect();
+    let wanted = speeds_m_s.par_iter().take_any_while(|_| !stopped());
+    let planned: Vec<Planned> = wanted.map(plan).collect();
     let plans = planned.iter().filter_map(|plan| plan.as_ref().ok());
     let plans: Vec<Plan> = plans.map(|(plan, _)| plan.clone()).collect();
     let tuned = match settings.judges {
