@@ -209,12 +209,12 @@ def _ends(values: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _logarithmic(ax: Axes) -> None:
-    """Logarithmic axes with plain numbers at 1, 2 and 5."""
+    """Logarithmic axes with plain numbers."""
     ax.set(xscale="log", yscale="log")
     for axis in (ax.xaxis, ax.yaxis):
         formatter = ScalarFormatter()
         formatter.set_scientific(False)
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0, 7.0)))
         axis.set_major_formatter(formatter)
         axis.set_minor_formatter(NullFormatter())
 
@@ -267,7 +267,11 @@ def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     for ax, letter, (name, speed) in zip(made, "abcd", FIGURE_2.items(), strict=True):
         chain = preset(name)
         channel = f"bead_plus_wall_{chain.sensor_bead}"
-        signals(shoot(chain, speed, trace=[channel], interval_s=1e-6), ax=ax)
+        fired = shoot(chain, speed, trace=[channel], interval_s=1e-6)
+        signals(fired, ax=ax)
+        if (returning := fired.passage.get("reflected")) is not None:
+            # What comes later, until the striker is away for good, is no part of the figure.
+            ax.set_xlim(0.0, 1.6 * MICRO * returning["time_s"])
         ax.set_title(f"({letter}) {name}, {speed:.4f} m/s", loc="left")
     return made
 
