@@ -19,6 +19,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
+        "verbs",
+        &[
+            "chain",
+            "experiment",
+            "signal",
+            "study",
+            "rig",
+            "measure",
+            "infer",
+        ],
+    ),
+    (
         "cli",
         &[
             "chain",
@@ -29,6 +41,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "rig",
             "measure",
             "infer",
+            "verbs",
         ],
     ),
 ];
