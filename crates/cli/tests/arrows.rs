@@ -15,6 +15,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    ("shards", &["experiment", "study", "records"]),
     ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
@@ -38,6 +39,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "study",
             "figures",
             "rig",
+            "shards",
             "measure",
             "infer",
             "verbs",

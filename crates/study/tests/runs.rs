@@ -1,5 +1,4 @@
 //! Sweeps in parts: what a part is does not depend on how the whole is cut.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_study::{How, Judges, Rows, Run, Settings, Shard, parse_speeds, sweep};
