@@ -33,9 +33,7 @@ fn contacts(section: &SectionSpec) -> String {
         format!(" {}{given};", law.name())
     });
     let laws: String = laws.collect();
-    let SectionSpec {
-        from, to, wet, ..
-    } = section;
+    let SectionSpec { from, to, wet, .. } = section;
     let material = section.material;
     format!("{from} {to:?} {wet} {material:?}{laws}\n")
 }

@@ -1,7 +1,7 @@
 //! Points of the model in batches, for several machines.
 
-use crate::problem::{ModelError, Problem, Residuals};
 use crate::Parameter;
+use crate::problem::{ModelError, Problem, Residuals};
 use hertzchain_study::{Fingerprint, Inputs};
 use std::sync::OnceLock;
 
@@ -109,7 +109,10 @@ impl Problem for Spread<'_> {
     fn residuals(&self, points: &[Vec<f64>]) -> Outcomes {
         self.outcomes(points).unwrap_or_else(|why| {
             let why = self.lost.get_or_init(|| why);
-            points.iter().map(|_| Err(ModelError(why.clone()))).collect()
+            points
+                .iter()
+                .map(|_| Err(ModelError(why.clone())))
+                .collect()
         })
     }
 

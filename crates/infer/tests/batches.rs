@@ -82,7 +82,12 @@ fn a_batch_of_shots_has_the_bits_of_the_points_alone_and_a_name_of_its_inputs() 
     let one = problem(1, 1e-5);
     let starts: Vec<f64> = one.parameters().iter().map(|p| p.start).collect();
     let points: Vec<Vec<f64>> = (0..5)
-        .map(|i| starts.iter().map(|x| x * (1.0 + 0.02 * f64::from(i))).collect())
+        .map(|i| {
+            starts
+                .iter()
+                .map(|x| x * (1.0 + 0.02 * f64::from(i)))
+                .collect()
+        })
         .collect();
     let together = one.residuals(&points);
     let names = |of: &CurveProblem, points: &[Vec<f64>]| {

@@ -83,7 +83,10 @@ impl Table {
             .map_err(|_| Hdf5Error::InvalidState("its text is not UTF-8".to_owned()))?;
         let there = open.dataset_names();
         let mut read = Vec::new();
-        for name in columns.iter().filter(|name| there.iter().any(|n| n == *name)) {
+        for name in columns
+            .iter()
+            .filter(|name| there.iter().any(|n| n == *name))
+        {
             let rows = open.dataset(name)?.shape().iter().product();
             read.push(((*name).to_owned(), column::<f64>(&open, name, rows)?));
         }
@@ -100,5 +103,8 @@ fn beside(path: &Path) -> PathBuf {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     let nanoseconds = now.map_or(0, |now| now.as_nanos());
     let file = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{file}.{}-{nanoseconds:x}.part", std::process::id()))
+    path.with_file_name(format!(
+        ".{file}.{}-{nanoseconds:x}.part",
+        std::process::id()
+    ))
 }

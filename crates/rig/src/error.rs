@@ -99,7 +99,12 @@ pub enum RigError {
 const LISTED: usize = 12;
 
 fn first(names: &[String]) -> String {
-    let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    let listed = names
+        .iter()
+        .take(LISTED)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
     match names.len().saturating_sub(LISTED) {
         0 => listed,
         more => format!("{listed} and {more} more"),

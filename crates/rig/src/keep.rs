@@ -138,8 +138,12 @@ pub fn told_plan(path: &Path) -> Result<Plan, RigError> {
     let text = fs::read_to_string(&file).map_err(|error| RigError::folder(&file, error))?;
     let other = || RigError::OtherBuild(file.display().to_string());
     let (line, toml) = text.split_once('\n').ok_or_else(other)?;
-    let seed = line.split_once(SEED).and_then(|(_, rest)| rest.split_once(','));
-    let seed = seed.and_then(|(seed, _)| seed.parse().ok()).ok_or_else(other)?;
+    let seed = line
+        .split_once(SEED)
+        .and_then(|(_, rest)| rest.split_once(','));
+    let seed = seed
+        .and_then(|(seed, _)| seed.parse().ok())
+        .ok_or_else(other)?;
     let name = line.split('`').nth(1).unwrap_or(TOLD_IN);
     let plan = Plan::new(&Experiment::from_text(name, toml)?, Some(seed))?;
     match told(&plan) == text {

@@ -71,7 +71,10 @@ fn lines(texts: &[String]) -> String {
 fn array(missing: &[usize]) -> String {
     match missing.len() {
         0 | 1 => String::new(),
-        _ => format!(" and so on, or in a Slurm array --array={}", ranges(missing)),
+        _ => format!(
+            " and so on, or in a Slurm array --array={}",
+            ranges(missing)
+        ),
     }
 }
 

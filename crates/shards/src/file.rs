@@ -101,7 +101,10 @@ fn part(mut header: Header, table: Table) -> Result<Part, &'static str> {
     if header.format != FORMAT {
         return Err("it is of another format");
     }
-    let run = header.run.parse().map_err(|_| "its run has no fingerprint")?;
+    let run = header
+        .run
+        .parse()
+        .map_err(|_| "its run has no fingerprint")?;
     let shard = Shard::new(header.shard, header.of).map_err(|_| "there is no such shard")?;
     let mut rows = Rows {
         failed: header.failed.clone(),

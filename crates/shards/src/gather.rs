@@ -61,7 +61,11 @@ pub fn gather(folders: &[&Path]) -> Result<Part, ShardsError> {
     match fewest {
         Some(((_, of), found)) => whole(of, found, damaged),
         None if damaged.is_empty() => Err(ShardsError::Nothing(names(folders))),
-        None => Err(ShardsError::Nothing(format!("{}\n{}", names(folders), damaged.join("\n")))),
+        None => Err(ShardsError::Nothing(format!(
+            "{}\n{}",
+            names(folders),
+            damaged.join("\n")
+        ))),
     }
 }
 
@@ -113,7 +117,9 @@ fn equal(one: &Part, other: &Part) -> bool {
 }
 
 fn whole(of: usize, found: Found, damaged: Vec<String>) -> Result<Part, ShardsError> {
-    let missing: Vec<usize> = (1..=of).filter(|number| !found.contains_key(number)).collect();
+    let missing: Vec<usize> = (1..=of)
+        .filter(|number| !found.contains_key(number))
+        .collect();
     let parts: Vec<Part> = found.into_values().map(|(_, part)| part).collect();
     match parts.first() {
         Some(first) if missing.is_empty() => {

@@ -47,7 +47,10 @@ fn shards(sweep: &Run, folder: &Scratch, which: &[usize], of: usize) {
 fn told(part: &Part) -> (Vec<u64>, Vec<usize>) {
     let values = part.rows.columns.iter().flatten();
     let failed = part.rows.failed.iter().map(|failed| failed.place);
-    (values.map(|value| value.to_bits()).collect(), failed.collect())
+    (
+        values.map(|value| value.to_bits()).collect(),
+        failed.collect(),
+    )
 }
 
 #[test]
@@ -77,13 +80,25 @@ fn a_shard_is_the_same_file_anywhere_and_is_not_computed_twice() {
     };
     let first = run(&sweep, shard, &here.0, &count).unwrap();
     let again = run(&sweep, shard, &here.0, &count).unwrap();
-    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let other = one_thread.install(|| run(&sweep, shard, &there.0, &|| {})).unwrap();
+    let one_thread = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .unwrap();
+    let other = one_thread
+        .install(|| run(&sweep, shard, &there.0, &|| {}))
+        .unwrap();
     assert!(!first.kept && again.kept && !other.kept);
     assert_eq!(computed.into_inner(), 5);
-    assert_eq!(fs::read(&first.path).unwrap(), fs::read(&other.path).unwrap());
+    assert_eq!(
+        fs::read(&first.path).unwrap(),
+        fs::read(&other.path).unwrap()
+    );
     assert_eq!(told(&again.part), told(&first.part));
-    assert_eq!(fs::read_dir(&here.0).unwrap().count(), 1, "nothing stays beside it");
+    assert_eq!(
+        fs::read_dir(&here.0).unwrap().count(),
+        1,
+        "nothing stays beside it"
+    );
 }
 
 #[test]
@@ -98,7 +113,10 @@ fn a_damaged_shard_counts_as_missing_and_is_made_again() {
         fs::write(&path, &sound[..place]).unwrap();
         assert!(read(&path).is_err(), "cut at {place}");
         let error = gather(&[&folder.0]).unwrap_err();
-        let ShardsError::Missing { missing, damaged, .. } = &error else {
+        let ShardsError::Missing {
+            missing, damaged, ..
+        } = &error
+        else {
             panic!("{error}");
         };
         assert_eq!((missing.as_slice(), damaged.len()), (&[1][..], 1));
@@ -133,10 +151,16 @@ fn what_is_missing_or_another_runs_is_told() {
     shards(&small(1e-6), &folder, &[2, 4, 7], 8);
     let error = gather(&[&folder.0]).unwrap_err().to_string();
     assert!(error.contains("5 of 8 shards are missing"), "{error}");
-    assert!(error.contains("1,3,5-6,8") && error.contains("--shard 1/8"), "{error}");
+    assert!(
+        error.contains("1,3,5-6,8") && error.contains("--shard 1/8"),
+        "{error}"
+    );
     shards(&small(1e-5), &folder, &[1], 1);
     let error = gather(&[&folder.0]).unwrap_err().to_string();
-    assert!(error.contains("2 different runs") && error.contains("accuracy 1e-5"), "{error}");
+    assert!(
+        error.contains("2 different runs") && error.contains("accuracy 1e-5"),
+        "{error}"
+    );
     let empty = Scratch::new("empty");
     fs::create_dir_all(&empty.0).unwrap();
     let error = gather(&[&empty.0]).unwrap_err().to_string();

@@ -53,7 +53,9 @@ impl FromStr for Fingerprint {
         if digits.len() != 64 || text.chars().count() != 64 {
             return Err(refused());
         }
-        let pairs = digits.chunks_exact(2).map(|pair| (16 * pair[0] + pair[1]) as u8);
+        let pairs = digits
+            .chunks_exact(2)
+            .map(|pair| (16 * pair[0] + pair[1]) as u8);
         let bytes: Vec<u8> = pairs.collect();
         bytes.try_into().map(Self).map_err(|_| refused())
     }

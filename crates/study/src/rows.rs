@@ -164,7 +164,9 @@ impl Rows {
             [Column::Speed, Column::Incident, Column::Reflected].map(|of| self.column(of));
         let rows = speed.iter().zip(incident).zip(reflected);
         rows.filter(|((_, incident), _)| !incident.is_nan())
-            .map(|((speed, incident), back)| (*speed, *incident, Some(*back).filter(|b| !b.is_nan())))
+            .map(|((speed, incident), back)| {
+                (*speed, *incident, Some(*back).filter(|b| !b.is_nan()))
+            })
             .collect()
     }
 
@@ -173,16 +175,24 @@ impl Rows {
     #[must_use]
     pub fn law(&self, of: Column, asked: f64) -> Law {
         let times = self.column(of).iter();
-        let rows = times.zip(self.column(Column::Speed)).zip(self.column(Column::Accuracy));
+        let rows = times
+            .zip(self.column(Column::Speed))
+            .zip(self.column(Column::Accuracy));
         let seen = rows.filter(|((time_s, _), _)| !time_s.is_nan());
         let mut seen_at: [Vec<f64>; 3] = Default::default();
         for ((time_s, speed_m_s), reached) in seen {
             let accuracy = if reached.is_nan() { asked } else { *reached };
             let row = [*speed_m_s, *time_s, accuracy];
-            seen_at.iter_mut().zip(row).for_each(|(column, cell)| column.push(cell));
+            seen_at
+                .iter_mut()
+                .zip(row)
+                .for_each(|(column, cell)| column.push(cell));
         }
         let [speeds, times, accuracies] = seen_at;
-        (power_law(&speeds, &times, None), uncertainty(&speeds, &accuracies))
+        (
+            power_law(&speeds, &times, None),
+            uncertainty(&speeds, &accuracies),
+        )
     }
 }
 

@@ -192,14 +192,19 @@ impl Run {
             Pick::Peak | Pick::CrossCorrelation => f64::NAN,
         };
         let times = [steps, duration_s].map(|time_s| time_s.unwrap_or(f64::NAN));
-        let words = format!("{solver:?} {pick:?} {rebound} {checked} {judges:?} {}", set.name());
+        let words = format!(
+            "{solver:?} {pick:?} {rebound} {checked} {judges:?} {}",
+            set.name()
+        );
         let inputs = Inputs::of("sweep")
             .text("experiment", &self.experiment.understood())
             .text("how", &words)
             .numbers("how", &[accuracy, times[0], times[1], fraction])
             .numbers("speeds_m_s", &self.speeds_m_s);
         let numbers = self.numbers.iter();
-        let inputs = numbers.fold(inputs, |inputs, (path, values)| inputs.numbers(path, values));
+        let inputs = numbers.fold(inputs, |inputs, (path, values)| {
+            inputs.numbers(path, values)
+        });
         inputs.fingerprint()
     }
 
@@ -261,7 +266,11 @@ impl Run {
     fn about(&self) -> String {
         let ends = |pick: fn(f64, f64) -> f64| self.speeds_m_s.iter().copied().reduce(pick);
         let (least, most) = (ends(f64::min), ends(f64::max));
-        let numbers: String = self.numbers.iter().map(|(path, _)| format!(", {path}")).collect();
+        let numbers: String = self
+            .numbers
+            .iter()
+            .map(|(path, _)| format!(", {path}"))
+            .collect();
         let judges = match self.how.judges {
             Judges::Each => "each",
             Judges::Pilots => "pilots",

@@ -73,7 +73,10 @@ impl Sweep {
     }
 
     fn law(&self, of: Column) -> Law {
-        let shots = self.points.iter().filter_map(|point| point.shot.as_ref().ok());
+        let shots = self
+            .points
+            .iter()
+            .filter_map(|point| point.shot.as_ref().ok());
         let asked = shots.map(|shot| shot.accuracy_asked).fold(0.0, f64::max);
         Rows::of(&self.points).law(of, asked)
     }

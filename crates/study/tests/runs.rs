@@ -73,15 +73,17 @@ fn a_poisoned_shot_is_told_and_changes_no_other() {
     let dry = row("dry");
     let sound = vec![0.2, 0.4, 0.6, 0.8];
     let poisoned = vec![0.2, f64::NAN, 0.4, -1.0, 0.6, 1e300, 0.8];
-    let rows = |speeds: Vec<f64>, judges, of| {
-        cut(&Run::new(&dry, speeds, how(&dry, judges)).unwrap(), of)
-    };
+    let rows =
+        |speeds: Vec<f64>, judges, of| cut(&Run::new(&dry, speeds, how(&dry, judges)).unwrap(), of);
     for of in [1, 3] {
         let found = rows(poisoned.clone(), Judges::Each, of);
         let places: Vec<usize> = found.failed.iter().map(|failed| failed.place).collect();
         assert_eq!(places, [1, 3, 5]);
         assert!(found.failed.iter().all(|failed| !failed.why.is_empty()));
-        assert_eq!(found.flights(), rows(sound.clone(), Judges::Each, 1).flights());
+        assert_eq!(
+            found.flights(),
+            rows(sound.clone(), Judges::Each, 1).flights()
+        );
         let tuned = [1, 3].map(|of| bits(&rows(poisoned.clone(), Judges::Pilots, of)));
         assert_eq!(tuned[0], tuned[1]);
     }
@@ -102,7 +104,9 @@ fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own()
     }
     let refused = |path: &str, values: usize| {
         let run = Run::new(&dry, vec![0.5; 4], How::of(&dry)).unwrap();
-        run.with_number(path, vec![1.0; values]).unwrap_err().to_string()
+        run.with_number(path, vec![1.0; values])
+            .unwrap_err()
+            .to_string()
     };
     assert!(refused("young_modulus", 3).contains("3 values for 4 shots"));
     assert!(refused("yong_modulus", 4).contains("young_modulus"));
@@ -116,7 +120,10 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         run.name(Shard::new(1, 2).unwrap())
     };
     let plain = name(&dry, &[0.5, 1.0], How::of(&dry));
-    assert!(plain.starts_with("sweep-") && plain.ends_with("-1-of-2"), "{plain}");
+    assert!(
+        plain.starts_with("sweep-") && plain.ends_with("-1-of-2"),
+        "{plain}"
+    );
     let moved = Experiment::from_text("/elsewhere/row.toml", dry.text()).unwrap();
     let moved = moved.set(&[("beads[0].count", 12.0)]).unwrap();
     assert_eq!(name(&moved, &[0.5, 1.0], How::of(&dry)), plain);
@@ -125,17 +132,55 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(&row("hertz"), &[0.5, 1.0], how),
         name(&dry, &[1.0, 0.5], how),
         name(&dry, &[0.5, 1.0_f64.next_up()], how),
-        name(&dry, &[0.5, 1.0], How { accuracy: 1e-5, ..how }),
-        name(&dry, &[0.5, 1.0], How { rebound: true, ..how }),
-        name(&dry, &[0.5, 1.0], How { checked: true, ..how }),
-        name(&dry, &[0.5, 1.0], How { duration_s: Some(1e-3), ..how }),
-        name(&dry, &[0.5, 1.0], How { judges: Judges::Pilots, ..how }),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                accuracy: 1e-5,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                rebound: true,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                checked: true,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                duration_s: Some(1e-3),
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                judges: Judges::Pilots,
+                ..how
+            },
+        ),
     ];
     for (at, other) in others.iter().enumerate() {
         assert_ne!(other, &plain, "{at}");
         assert!(!others[..at].contains(other), "{at}");
     }
     let run = Run::new(&dry, vec![0.5, 1.0], how).unwrap();
-    let numbered = run.clone().with_number("poisson_ratio", vec![0.3, 0.3]).unwrap();
+    let numbered = run
+        .clone()
+        .with_number("poisson_ratio", vec![0.3, 0.3])
+        .unwrap();
     assert_ne!(numbered.fingerprint(), run.fingerprint());
 }

@@ -143,7 +143,10 @@ fn show(
 
 /// Why no speed has a time of flight.
 fn no_flight(swept: &Sweep, plan: &Plan, units: Units) -> String {
-    let first = swept.points.iter().find_map(|point| point.shot.as_ref().ok());
+    let first = swept
+        .points
+        .iter()
+        .find_map(|point| point.shot.as_ref().ok());
     match first.map(|shot| &shot.passage) {
         Some(Err(reason)) => {
             let reason = missing::reason(&plan.chain.far, units, reason);

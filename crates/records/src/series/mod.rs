@@ -10,5 +10,5 @@ pub(crate) use layout::SEPARATE;
 pub(crate) use read::{attribute_number, column, is_ours, open};
 pub use truth::truth;
 pub use verify::verify;
-pub(crate) use write::{describe, unit};
 pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+pub(crate) use write::{describe, unit};

@@ -8,7 +8,10 @@ use hertzchain_verbs::missing;
 
 /// A line for the incident and one for the reflected times of flight.
 pub fn lines(part: &Part) -> String {
-    let named = [("incident", Column::Incident), ("reflected", Column::Reflected)];
+    let named = [
+        ("incident", Column::Incident),
+        ("reflected", Column::Reflected),
+    ];
     let lines = named.map(|(name, column)| {
         let (fit, uncertainty) = part.rows.law(column, part.accuracy);
         line(name, &fit, uncertainty, part.units)

@@ -51,7 +51,11 @@ pub fn run(
 pub fn told(part: &Part) {
     let speed = |place: usize| {
         let at = place / part.shard.of();
-        part.rows.column(Column::Speed).get(at).copied().unwrap_or(f64::NAN)
+        part.rows
+            .column(Column::Speed)
+            .get(at)
+            .copied()
+            .unwrap_or(f64::NAN)
     };
     if let Some(odd) = &part.rows.odd {
         for line in &odd.lines {
@@ -63,6 +67,10 @@ pub fn told(part: &Part) {
         }
     }
     for failed in &part.rows.failed {
-        eprintln!("warning: no shot at {}: {}", speed(failed.place), failed.why);
+        eprintln!(
+            "warning: no shot at {}: {}",
+            speed(failed.place),
+            failed.why
+        );
     }
 }

@@ -104,7 +104,12 @@ fn csv(part: &Part) -> String {
         Units::Dimensionless => COLUMNS.map(table::without_unit),
     };
     let mut text = format!("{}\n", names.join(","));
-    let mut failed = part.rows.failed.iter().map(|failed| failed.place).peekable();
+    let mut failed = part
+        .rows
+        .failed
+        .iter()
+        .map(|failed| failed.place)
+        .peekable();
     for place in 0..part.rows.len() {
         if failed.next_if_eq(&place).is_some() {
             continue;
