@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(set.understood(), other.understood());
         let dry = crate::preset("dry").unwrap();
         let clipped = dry.with_reading(&crate::Reading {
-            tension: crate::reading::Tension::Clipped,
+            tension: crate::reading::TensionReading::Clipped,
             ..dry.reading()
         });
         assert_ne!(clipped.unwrap().understood(), dry.understood());
