@@ -15,6 +15,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    ("shards", &["experiment", "study", "records"]),
     ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
@@ -36,6 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "experiment",
             "study",
             "rig",
+            "shards",
             "measure",
             "infer",
             "verbs",
@@ -50,6 +52,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "study",
             "figures",
             "rig",
+            "shards",
             "measure",
             "infer",
             "verbs",

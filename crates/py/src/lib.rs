@@ -13,6 +13,7 @@ mod job;
 mod json;
 mod law;
 mod recordings;
+mod shards;
 mod shot;
 mod sweep;
 mod theory;
@@ -31,6 +32,8 @@ mod _hertzchain {
     use super::law::Force;
     #[pymodule_export]
     use super::recordings::{campaign, measure};
+    #[pymodule_export]
+    use super::shards::{Run, gather, shard};
     #[pymodule_export]
     use super::shot::shot;
     #[pymodule_export]

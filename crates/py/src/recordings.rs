@@ -55,6 +55,7 @@ pub fn campaign<'py>(
     told.set_item("run", done.run)?;
     told.set_item("shots", done.shots)?;
     told.set_item("bytes", done.bytes)?;
+    told.set_item("failed", done.failed)?;
     told.set_item("seed", seed)?;
     Ok(told)
 }

@@ -43,6 +43,8 @@ class Campaigned:
         Shots fired now.
     bytes : int
         Size of all recordings of this part.
+    failed : list of str
+        Series that can't be computed, each with the reason; the others are there.
     seed : int
         Of all that is random.
     """
@@ -52,6 +54,7 @@ class Campaigned:
     run: int
     shots: int
     bytes: int
+    failed: list[str]
     seed: int
 
     @property
