@@ -59,9 +59,11 @@ fn run(
         set: input::instruction_set()?,
     };
     let whole = hertzchain_study::Run::new(&experiment.inner, speeds_m_s.to_vec(), how);
-    numbers.iter().try_fold(whole.map_err(refused)?, |run, (name, values)| {
-        run.with_number(name, values.clone()).map_err(refused)
-    })
+    numbers
+        .iter()
+        .try_fold(whole.map_err(refused)?, |run, (name, values)| {
+            run.with_number(name, values.clone()).map_err(refused)
+        })
 }
 
 #[pymethods]
@@ -76,7 +78,12 @@ impl Run {
         asked: Asked,
     ) -> Result<Self, Failed> {
         let speeds_m_s = speeds_m_s.as_array().to_vec();
-        let values: Vec<Vec<f64>> = values.as_array().rows().into_iter().map(|row| row.to_vec()).collect();
+        let values: Vec<Vec<f64>> = values
+            .as_array()
+            .rows()
+            .into_iter()
+            .map(|row| row.to_vec())
+            .collect();
         let numbers: Vec<_> = names.iter().cloned().zip(values.iter().cloned()).collect();
         Ok(Self {
             inner: run(experiment, &speeds_m_s, &numbers, &asked)?,
@@ -88,7 +95,10 @@ impl Run {
         })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let class = py.get_type::<Self>().into_any();
         let asked = PyDict::new(py);
         asked.set_item("options", &self.asked.options)?;
@@ -98,7 +108,13 @@ impl Run {
         let values = self.values.concat().into_pyarray(py);
         let shape = (self.names.len(), self.speeds_m_s.len());
         let values = values.call_method1("reshape", (shape,))?;
-        let parts = (self.experiment.clone(), self.speeds(py), self.names.clone(), values, asked);
+        let parts = (
+            self.experiment.clone(),
+            self.speeds(py),
+            self.names.clone(),
+            values,
+            asked,
+        );
         Ok((class, parts.into_pyobject(py)?))
     }
 
@@ -115,7 +131,10 @@ impl Run {
 
     /// Values of the named numbers in SI, one array a name.
     fn values<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<f64>>> {
-        self.values.iter().map(|values| values.clone().into_pyarray(py)).collect()
+        self.values
+            .iter()
+            .map(|values| values.clone().into_pyarray(py))
+            .collect()
     }
 }
 
@@ -149,7 +168,11 @@ pub fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDi
     for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {
         columns.set_item(name, values.into_pyarray(py))?;
     }
-    let errors = whole.rows.failed.into_iter().map(|failed| (failed.place, failed.why));
+    let errors = whole
+        .rows
+        .failed
+        .into_iter()
+        .map(|failed| (failed.place, failed.why));
     let told = PyDict::new(py);
     told.set_item("columns", columns)?;
     told.set_item("errors", errors.collect::<Vec<_>>())?;
