@@ -15,7 +15,7 @@ use hertzchain_study::{
 };
 use hertzchain_verbs::arguments::How as Asked;
 use hertzchain_verbs::given::check_speeds;
-use hertzchain_verbs::{input, json, missing};
+use hertzchain_verbs::{input, json, missing, table};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 
