@@ -104,9 +104,7 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
             folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
         }
         More::Sampled(sampled) => {
-            let chain = serde_json::to_vec(&sampled.chain);
-            let chain = chain.map_err(|error| Failure::Ours(error.to_string()))?;
-            folder.write(more::CHAIN, &chain)?;
+            folder.write(more::CHAIN, &more::saved(&sampled.chain)?)?;
             if let Ok(posterior) = &sampled.posterior {
                 folder.figure("corner", &uncertainty::corner(fitted, posterior))?;
             }

@@ -3,6 +3,7 @@
 use super::Arguments;
 use crate::arguments::infer::{Against, Method};
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::inference::{self, user};
 use hertzchain_infer::{
     Chain, Compared, Comparison, Covariance, CrossValidation, CurveProblem, Fit, Fitting, Folding,
@@ -10,6 +11,8 @@ use hertzchain_infer::{
     compare, cross_validate, fit, profile,
 };
 use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// What a method tells beside the covariance.
 pub enum More {
@@ -51,9 +54,6 @@ pub fn more(
     }
 }
 
-/// Steps before convergence is looked at for the first time.
-const FIRST_STEPS: u64 = 300;
-
 /// Interpolated curves may be off by so many standard errors.
 const SURROGATE_ERROR: f64 = 0.1;
 
@@ -73,16 +73,13 @@ fn sampled(
         None => problem,
     };
     let mut chain = started(target, (fit, covariance), arguments)?;
-    let asked = Requirements::default();
-    let posterior = loop {
-        let left = arguments.steps.saturating_sub(chain.steps());
-        let more = match chain.posterior(&asked) {
-            Ok(posterior) => break Ok(posterior),
-            Err(unconverged) if left == 0 => break Err(unconverged),
-            Err(unconverged) => unconverged.more_steps().max(FIRST_STEPS),
-        };
-        chain.advance(target, more.min(left)).map_err(user)?;
-    };
+    let mut saving = Saving::new(arguments);
+    let posterior = chain.lead(
+        target,
+        &Requirements::default(),
+        arguments.steps,
+        &mut |chain| saving.seen(chain),
+    )?;
     Ok(More::Sampled(Box::new(Sampled {
         chain,
         posterior,
@@ -110,7 +107,9 @@ fn started(
         Failure::User(format!("--resume: {}: {error}", path.display()))
     };
     let text = fs::read(&path).map_err(|error| unread(&error))?;
-    serde_json::from_slice(&text).map_err(|error| unread(&error))
+    let chain: Chain = serde_json::from_slice(&text).map_err(|error| unread(&error))?;
+    chain.belongs_to(problem).map_err(|error| unread(&error))?;
+    Ok(chain)
 }
 
 /// Walkers of each ensemble, unless parameters are many.
@@ -118,6 +117,43 @@ const WALKERS: usize = 32;
 
 /// The chain's file in the output folder.
 pub const CHAIN: &str = "chain.json";
+
+/// Saves walkers on their way, so that a run that is broken off goes on with
+/// `--resume`.
+struct Saving<'a> {
+    folder: Option<&'a Path>,
+    saved: Instant,
+}
+
+/// Time between saved states: what a broken run loses.
+const SAVE_EVERY: Duration = Duration::from_secs(10);
+
+impl<'a> Saving<'a> {
+    fn new(arguments: &'a Arguments) -> Self {
+        Self {
+            folder: arguments.out.as_deref(),
+            saved: Instant::now(),
+        }
+    }
+
+    fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
+        let Some(folder) = self.folder else {
+            return Ok(());
+        };
+        if self.saved.elapsed() < SAVE_EVERY {
+            return Ok(());
+        }
+        Folder::open(folder)?.write(CHAIN, &saved(chain)?)?;
+        // From the end of writing: a long chain takes its time.
+        self.saved = Instant::now();
+        Ok(())
+    }
+}
+
+/// A chain as it lies in the output folder.
+pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
+    serde_json::to_vec(chain).map_err(|error| Failure::Ours(error.to_string()))
+}
 
 /// A model that was fitted to the same data.
 pub struct Rival {
