@@ -16,8 +16,8 @@ mod common;
 use common::{Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Chain, Covariance, Fit, Fitting, Problem, Profiling, Requirements, Sampling, SamplingError, Surrogate, fit,
-    profile,
+    Chain, Covariance, Fit, Fitting, Problem, Profiling, Requirements, Sampling, SamplingError,
+    Surrogate, fit, profile,
 };
 use rayon::prelude::*;
 use std::error::Error;

@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Files, and those of folders in order of their names; the table of shots may
 /// lie among them.
-fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
+pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let mut files = Vec::new();
     for path in given {
         match path.is_dir() {
@@ -151,7 +151,8 @@ fn open_rig(file: &Path) -> Result<Experiment, Failure> {
     })
 }
 
-fn list(file: &Path) -> Result<ShotList, Failure> {
+/// The table of shots.
+pub fn list(file: &Path) -> Result<ShotList, Failure> {
     let wrong = |error: &dyn std::error::Error| {
         Failure::User(format!("--shots {}: {error}", file.display()))
     };

@@ -56,7 +56,10 @@ impl Chain {
         self.matches(problem)?;
         let found = ln_densities(problem, self.loss(), self.places());
         let own = self.ln_densities().iter();
-        match own.zip(found).all(|(own, found)| (own - found).abs() <= SAME) {
+        match own
+            .zip(found)
+            .all(|(own, found)| (own - found).abs() <= SAME)
+        {
             true => Ok(()),
             false => Err(SamplingError::OtherProblem),
         }

@@ -35,11 +35,29 @@ pub struct Sampled {
     pub surrogate_error: Option<f64>,
 }
 
-/// As the method asks.
+/// As the method asks, by interpolated curves where that is as good.
 pub fn more(
     problem: &CurveProblem,
     fit: &Fit,
     covariance: &Covariance,
+    arguments: &Arguments,
+) -> Result<More, Failure> {
+    let surrogate = match (arguments.method, arguments.direct) {
+        (Method::Posterior, false) => Surrogate::new(problem, fit, covariance).ok(),
+        _ => None,
+    };
+    match surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR) {
+        None => more_of(problem, (fit, covariance), None, arguments),
+        Some(found) => more_of(&found, (fit, covariance), Some(found.error), arguments),
+    }
+}
+
+/// As the method asks, of any problem; `surrogate_error` tells how far its model
+/// is from the computed one.
+pub fn more_of(
+    problem: &dyn Problem,
+    (fit, covariance): (&Fit, &Covariance),
+    surrogate_error: Option<f64>,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
     match arguments.method {
@@ -50,42 +68,26 @@ pub fn more(
             let found = profile(problem, fit, covariance, &all, &how).map_err(user)?;
             Ok(More::Profiles(found))
         }
-        Method::Posterior => sampled(problem, fit, covariance, arguments),
+        Method::Posterior => {
+            let mut chain = started(problem, (fit, covariance), arguments)?;
+            let mut saving = Saving::new(arguments);
+            let posterior = chain.lead(
+                problem,
+                &Requirements::default(),
+                arguments.steps,
+                &mut |chain| saving.seen(chain),
+            )?;
+            Ok(More::Sampled(Box::new(Sampled {
+                chain,
+                posterior,
+                surrogate_error,
+            })))
+        }
     }
 }
 
 /// Interpolated curves may be off by so many standard errors.
 const SURROGATE_ERROR: f64 = 0.1;
-
-fn sampled(
-    problem: &CurveProblem,
-    fit: &Fit,
-    covariance: &Covariance,
-    arguments: &Arguments,
-) -> Result<More, Failure> {
-    let surrogate = match arguments.direct {
-        true => None,
-        false => Surrogate::new(problem, fit, covariance).ok(),
-    };
-    let surrogate = surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR);
-    let target: &dyn Problem = match &surrogate {
-        Some(surrogate) => surrogate,
-        None => problem,
-    };
-    let mut chain = started(target, (fit, covariance), arguments)?;
-    let mut saving = Saving::new(arguments);
-    let posterior = chain.lead(
-        target,
-        &Requirements::default(),
-        arguments.steps,
-        &mut |chain| saving.seen(chain),
-    )?;
-    Ok(More::Sampled(Box::new(Sampled {
-        chain,
-        posterior,
-        surrogate_error: surrogate.map(|surrogate| surrogate.error),
-    })))
-}
 
 /// A new chain, or the one that lies in the output folder.
 fn started(
