@@ -1,19 +1,13 @@
 //! The `hertzchain` program: one file a verb, no logic of its own.
 
 mod arguments;
-mod bibliography;
 mod failure;
 mod folder;
 mod format;
-mod given;
-mod inference;
-mod input;
-mod json;
-mod missing;
 mod pictures;
 mod print;
-mod table;
 mod verbs;
+mod words;
 
 use arguments::{Program, Verb};
 use clap::Parser;
@@ -28,7 +22,7 @@ fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => failure::report(&failure),
     }
 }
 

@@ -16,7 +16,9 @@ use hertzchain_infer::{
 };
 
 fn main() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build_global();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build_global();
     pool.unwrap();
     divan::main();
 }

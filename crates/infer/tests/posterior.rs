@@ -5,14 +5,12 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, decay, normals, regression, spaced, straight};
 use hertzchain_infer::{
     Chain, Covariance, Fit, Fitting, ModelError, Parameter, Prior, Problem, Requirements,
     Residuals, Sampling, SamplingError, autocorrelation_time, fit, split_r_hat,
 };
 use hertzchain_signal::coverage;
-use toys::{Curve, decay, normals, regression, spaced, straight};
 
 fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {
     let found = fit(problem, &Fitting::default()).unwrap();
@@ -324,12 +322,15 @@ fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
     for dies_at in [130, 500, 510] {
         assert!(dies_at < whole.steps());
         let mut part = begun.clone();
-        let killed = part.lead(&data, &asked, 20_000, &mut |chain| {
-            match chain.steps() == dies_at {
+        let killed = part.lead(
+            &data,
+            &asked,
+            20_000,
+            &mut |chain| match chain.steps() == dies_at {
                 true => Err(Broken::Killed(serde_json::to_string(chain).unwrap())),
                 false => Ok(()),
-            }
-        });
+            },
+        );
         let Err(Broken::Killed(saved)) = killed else {
             unreachable!("{killed:?}")
         };

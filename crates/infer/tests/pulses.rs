@@ -1,9 +1,6 @@
 //! Whole pulses: from known parameters to records and back.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::model;
+use crate::common::model;
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::preset;
 use hertzchain_infer::{

@@ -10,7 +10,7 @@ use hertzchain_chain::{InstructionSet, System};
 use std::fmt::{Display, Formatter, Result as Formatted};
 
 /// Pilots that are enough for plans between which little changes: the paper's
-/// chains at two thousand speeds (`docs/numerics.md`).
+/// chains at a thousand speeds (`docs/numerics.md`).
 pub const PILOTS: usize = 40;
 
 /// What pilots are compared with is this many times as right as asked.

@@ -2,9 +2,9 @@
 
 use crate::arguments::Campaign as Arguments;
 use crate::failure::Failure;
-use crate::input;
 use crate::print::print;
 use hertzchain_rig::{Done, Plan, Progress, RigError, campaign};
+use hertzchain_verbs::input;
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use std::io::IsTerminal;

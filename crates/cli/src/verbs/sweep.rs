@@ -2,21 +2,22 @@
 
 mod fits;
 
-use crate::arguments::{self, How, Sweep as Arguments};
+use crate::arguments::{self, Sweep as Arguments};
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::{self, Style};
-use crate::given::check_speeds;
 use crate::print::heading;
-use crate::table::cell;
-use crate::{input, json, missing, pictures, print, table};
+use crate::{pictures, print};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_study::{
     Judges, Plan, Point, PointError, Settings, Shot, Sweep, parse_speeds, sweep,
 };
+use hertzchain_verbs::arguments::How;
+use hertzchain_verbs::given::check_speeds;
+use hertzchain_verbs::table::cell;
+use hertzchain_verbs::{input, json, missing, table};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
-use serde_json::json;
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -103,14 +104,7 @@ fn show(
     swept: &Sweep,
 ) -> Result<(), Failure> {
     if arguments.json {
-        let results = json!({
-            "experiment": experiment.name(),
-            "pilots": swept.tuned.map(|tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()})),
-            "points": swept.points.iter().map(|point| json::point(point, experiment.units(), plan)).collect::<serde_json::Value>(),
-            "power_law_incident": json::fit(&swept.incident, swept.incident_uncertainty().ok()),
-            "power_law_reflected": json::fit(&swept.reflected, swept.reflected_uncertainty().ok()),
-        });
-        return print::print_json(&table::named(results, experiment.units()));
+        return print::print_json(&json::sweep(experiment, plan, swept));
     }
     print_warnings(experiment, swept);
     if swept.points.iter().all(|point| point.shot.is_err()) {

@@ -1,10 +1,10 @@
 //! The power laws of a sweep in words.
 
 use crate::format::{digits, r_squared, with_error};
-use crate::missing;
 use hertzchain_experiment::Units;
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_study::Sweep;
+use hertzchain_verbs::missing;
 
 /// A line for the incident and one for the reflected times of flight.
 pub fn lines(swept: &Sweep, units: Units) -> String {

@@ -3,13 +3,13 @@
 use super::Arguments;
 use crate::arguments::infer::{Against, Method};
 use crate::failure::Failure;
-use crate::folder::Folder;
 use crate::inference::{self, user};
 use hertzchain_infer::{
     Chain, Compared, Comparison, Covariance, CrossValidation, CurveProblem, Fit, Fitting, Folding,
     Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
     compare, cross_validate, fit, profile,
 };
+use hertzchain_study::reproduce::write_atomically;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -54,6 +54,9 @@ pub fn more(
 
 /// As the method asks, of any problem; `surrogate_error` tells how far its model
 /// is from the computed one.
+///
+/// # Errors
+/// What is in the way.
 pub fn more_of(
     problem: &dyn Problem,
     (fit, covariance): (&Fit, &Covariance),
@@ -145,7 +148,10 @@ impl<'a> Saving<'a> {
         if self.saved.elapsed() < SAVE_EVERY {
             return Ok(());
         }
-        Folder::open(folder)?.write(CHAIN, &saved(chain)?)?;
+        let ours = |error: &dyn std::fmt::Display| Failure::Ours(error.to_string());
+        fs::create_dir_all(folder).map_err(|error| ours(&error))?;
+        let path = folder.join(CHAIN);
+        write_atomically(&path, &saved(chain)?).map_err(|error| ours(&error))?;
         // From the end of writing: a long chain takes its time.
         self.saved = Instant::now();
         Ok(())
@@ -153,6 +159,9 @@ impl<'a> Saving<'a> {
 }
 
 /// A chain as it lies in the output folder.
+///
+/// # Errors
+/// Numbers that are none, of which JSON knows nothing.
 pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
     serde_json::to_vec(chain).map_err(|error| Failure::Ours(error.to_string()))
 }

@@ -4,10 +4,11 @@ use super::more::{More, Rival, Rivals};
 use super::{Fitted, Inferred};
 use crate::arguments::infer::Fit as Arguments;
 use crate::table::cell;
-use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Problem, Profile};
+use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Profile};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
+#[must_use]
 pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
     let data = fitted.problem.data();
     let confused = !fitted.inferred.identifiability.confused.is_empty();
@@ -25,6 +26,7 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
 }
 
 /// The entries of two objects in one.
+#[must_use]
 pub fn joined(mut one: Value, other: Value) -> Value {
     if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
         one.extend(other);
@@ -33,6 +35,7 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 }
 
 /// What any fit tells.
+#[must_use]
 pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     json!({
@@ -194,6 +197,7 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
 }
 
 /// One line a value of a profile.
+#[must_use]
 pub fn profiles_csv(fitted: &Inferred, profiles: &[Profile]) -> String {
     let mut text = "name,value,chi_square_rise\n".to_owned();
     for profile in profiles {
@@ -206,6 +210,7 @@ pub fn profiles_csv(fitted: &Inferred, profiles: &[Profile]) -> String {
 }
 
 /// One line a parameter.
+#[must_use]
 pub fn parameters_csv(fitted: &Inferred) -> String {
     let mut text = "name,unit,value,standard_error\n".to_owned();
     for (at, parameter) in fitted.parameters.iter().enumerate() {
@@ -222,6 +227,7 @@ pub fn parameters_csv(fitted: &Inferred) -> String {
 }
 
 /// One line a measured value.
+#[must_use]
 pub fn rows_csv(fitted: &Fitted) -> String {
     let mut text = "line,speed_m_s,observable,measured,error,fitted,residual\n".to_owned();
     let measured = fitted.problem.measured();
