@@ -4,6 +4,7 @@
 //! are computed for many points at once. [`CurveProblem`] is the one of this
 //! program: times of flight of an experiment.
 
+mod batch;
 mod chance;
 mod compare;
 mod covariance;
@@ -22,6 +23,7 @@ mod profile;
 mod pulses;
 mod sampler;
 
+pub use batch::{Batch, Compute, Outcomes, Spread};
 pub use compare::{
     CompareError, Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate,
 };

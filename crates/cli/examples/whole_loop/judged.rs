@@ -128,7 +128,7 @@ pub fn judge(folder: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
     }
     files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
     files.sort();
-    let shots = measure(&files, &Options::default(), &mut |_| {}).shots;
+    let shots = measure(&files, &Options::default(), &()).shots;
     let mut judged = Vec::new();
     for case in &plan.cases {
         judged.extend(of_case(case, &shots)?);

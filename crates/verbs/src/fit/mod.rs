@@ -5,7 +5,7 @@ pub mod pulses;
 mod results;
 
 pub use more::{CHAIN, More, Rival, Rivals, Sampled, saved};
-pub use results::{inferred, joined, json, parameters_csv, profiles_csv, rows_csv};
+pub use results::{inferred, joined, json, parameters_csv, profiles_csv, rows_csv, rows_json};
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;

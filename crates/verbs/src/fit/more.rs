@@ -10,6 +10,7 @@ use hertzchain_infer::{
     compare, cross_validate, fit, profile,
 };
 use hertzchain_study::reproduce::write_atomically;
+use hertzchain_study::{StudyError, stopped};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -123,8 +124,8 @@ const WALKERS: usize = 32;
 /// The chain's file in the output folder.
 pub const CHAIN: &str = "chain.json";
 
-/// Saves walkers on their way, so that a run that is broken off goes on with
-/// `--resume`.
+/// Looks at whether to break off, and saves walkers on their way, so that a run
+/// that is broken off or killed goes on with `--resume`.
 struct Saving<'a> {
     folder: Option<&'a Path>,
     saved: Instant,
@@ -142,6 +143,9 @@ impl<'a> Saving<'a> {
     }
 
     fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
+        if stopped() {
+            return Err(user(StudyError::Stopped));
+        }
         let Some(folder) = self.folder else {
             return Ok(());
         };
