@@ -42,11 +42,13 @@ const COMPACT: [(&str, &str); 6] = [
 fn judged(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec<Judged>> {
     let under = std::env::temp_dir().join(format!("hertzchain-{name}-{}", std::process::id()));
     let folders = run(text, seeds, &under).unwrap();
-    let each = |options| {
+    let each = |options: &Options| -> Vec<Judged> {
         let folders = folders.iter();
-        folders.flat_map(|folder| judge(folder, options).unwrap())
+        folders
+            .flat_map(|folder| judge(folder, options).unwrap())
+            .collect()
     };
-    let all = options.iter().map(|options| each(options).collect());
+    let all = options.iter().map(each);
     let all = all.collect();
     fs::remove_dir_all(&under).unwrap();
     all

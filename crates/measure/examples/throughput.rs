@@ -97,20 +97,36 @@ fn shot(seed: u64) -> Vec<i16> {
 /// Measures a file and tells how long it took.
 fn time(name: &str, path: &Path, options: &Options, threads: usize) -> Anyhow {
     let files: [PathBuf; 1] = [path.to_owned()];
-    let start = Instant::now();
+    let (start, before_s) = (Instant::now(), processor_s());
     let measured = measure(&files, options, &mut |_| {});
     let seconds = start.elapsed().as_secs_f64();
+    let own_s = processor_s()
+        .zip(before_s)
+        .map(|(after, before)| after - before);
     let whole = measured.shots.iter().filter(|shot| {
         let flight = shot.flight.as_ref();
         flight.is_ok_and(|flight| flight.reflected_s.is_some())
     });
-    let rate = 2e-6 * measured.samples as f64 / seconds;
+    let megabytes = 2e-6 * measured.samples as f64;
     println!(
-        "{name}: {} of {} shots in {seconds:.2} s, {rate:.0} MB/s on {threads} threads",
+        "{name}: {} of {} shots in {seconds:.2} s, {:.0} MB/s on {threads} threads; {:.0} MB in a second of one core",
         whole.count(),
-        measured.shots.len()
+        measured.shots.len(),
+        megabytes / seconds,
+        megabytes / own_s.unwrap_or(f64::NAN),
     );
     Ok(())
+}
+
+/// What all threads have had of processors so far, in s, where the system tells: on a
+/// machine with other work, time on the clock says little.
+fn processor_s() -> Option<f64> {
+    let line = fs::read_to_string("/proc/self/stat").ok()?;
+    // After the program's name in brackets; in hundredths of a second.
+    let (_, after) = line.rsplit_once(')')?;
+    let mut fields = after.split_whitespace().skip(11);
+    let mut next = || fields.next()?.parse::<f64>().ok();
+    Some(0.01 * (next()? + next()?))
 }
 
 fn bytes(samples: &[i16]) -> Vec<u8> {
