@@ -31,6 +31,12 @@ reference:
 bench-peers *options:
     bench/peers/run.sh {{options}}
 
+# Lints and a small instance of that comparison
+test-peers:
+    cargo fmt --manifest-path bench/peers/Cargo.toml --check
+    cargo clippy --manifest-path bench/peers/Cargo.toml --all-targets --locked -- -D warnings
+    cargo test --manifest-path bench/peers/Cargo.toml --locked
+
 # Documentation of all crates
 doc:
     cargo doc --workspace --no-deps --open

@@ -26,26 +26,38 @@ SOONEST, LATEST = 0.8, 3.0  # which comes between these many incident ToFs after
 LONGEST = 400.0  # in units of the shot; one that has not ended by then has gone wrong
 
 
-def coefficients(case, speed):
+hertz_same, relaxation = njit(rig.hertz_same), njit(rig.relaxation)
+DRY = rig.hertz_same()
+
+
+def law(case):
+    """A and B of dry contacts, and of wet ones Y and the factors and exponents of eta and nu; Y = 0 where none is wet."""
+    young, eta, nu = rig.OILS.get(case, (0.0, (0.0, 0.0), (0.0, 0.0)))
+    relax = 0.0 if case == "hertz" else rig.relaxation()
+    return relax, 0.0 if case.startswith("hertz") else rig.CUBIC, young, *eta, *nu
+
+
+@njit
+def coefficients(law, speed):
     """K, (3/2) A K and B of all contacts in SI units."""
-    stiff = np.full(CONTACTS, rig.hertz_same())
-    relax = np.full(CONTACTS, 0.0 if case == "hertz" else rig.relaxation())
-    cubic = np.full(CONTACTS, 0.0 if case.startswith("hertz") else rig.CUBIC)
-    if case in rig.OILS:
-        young, (eta, eta_power), (nu, nu_power) = rig.OILS[case]
+    relax, cubic, young, eta, eta_power, nu, nu_power = law
+    k, a, b = np.full(CONTACTS, DRY), np.full(CONTACTS, 1.5 * relax * DRY), np.full(CONTACTS, cubic)
+    if young > 0.0:
         eta, nu = eta * speed**eta_power, nu * speed**nu_power
-        stiff[SENSOR:], cubic[SENSOR:] = rig.hertz_same(young, nu), 0.0
-        relax[SENSOR:] = rig.relaxation(young, nu, eta, eta)
-    return stiff, 1.5 * relax * stiff, cubic
+        stiff = hertz_same(young, nu)
+        k[SENSOR:], b[SENSOR:] = stiff, 0.0
+        a[SENSOR:] = 1.5 * relaxation(young, nu, eta, eta) * stiff
+    return k, a, b
 
 
-def shot(case, speed):
+@njit
+def shot(law, speed):
     """K, (3/2) A K, B without units, and the unit of time in s."""
-    stiff, damping, cubic = coefficients(case, speed)
-    length = (rig.MASS * speed**2 / rig.hertz_same()) ** 0.4
+    k, a, b = coefficients(law, speed)
+    length = (rig.MASS * speed**2 / DRY) ** 0.4
     time = length / speed
     force = rig.MASS * length / time**2
-    return stiff * length**1.5 / force, damping * math.sqrt(length) * speed / force, cubic * speed**3 / force, time
+    return k * length**1.5 / force, a * math.sqrt(length) * speed / force, b * speed**3 / force, time
 
 
 @njit(inline="always")
@@ -62,11 +74,11 @@ ROW = 96
 K, A, B, FORCE, ROWS = 0, 48, 96, 144, 192
 
 
+@njit
 def work(k, a, b, rows):
     """A work array with `rows` rows."""
     w = np.zeros(ROWS + rows * ROW)
-    for place, values in ((K, k), (A, a), (B, b)):
-        w[place : place + CONTACTS] = values
+    w[K : K + CONTACTS], w[A : A + CONTACTS], w[B : B + CONTACTS] = k, a, b
     return w
 
 
@@ -256,6 +268,7 @@ def watch_step(watch, t0, y0, t1, y1, parts, w, k, a, b):
     return over(watch, t1, signal(y1, SENSOR - 1, SENSOR, k, a, b)[0])
 
 
+@njit
 def tofs(watch, time):
     """Incident and reflected ToF in s."""
     return (watch[WALL] - watch[INCIDENT]) * time, (watch[REFLECTED] - watch[WALL]) * time

@@ -33,7 +33,7 @@ def quiet(method):
 def box(lmp, beads, chains, case, step, squeeze=0.0):
     """Rows of `beads` + 2 touching spheres along x: striker, beads, and the half-bead at rest."""
     d, row = 2 * rig.RADIUS, beads + 2
-    stiff, damping, _ = p.coefficients(case, 0.5)
+    stiff, damping, _ = p.coefficients(p.law(case), 0.5)
     r_eff, m_eff = rig.RADIUS / 2, rig.MASS / 2
     kn = stiff[0] / np.sqrt(r_eff)
     gamma = damping[0] / (m_eff * np.sqrt(r_eff))
@@ -100,7 +100,7 @@ def sample(overlap, rate, k, a, past, watches, count, interval):
 
 def batch(lmp, case, speeds, step, every):
     """All shots of one box; sensors sampled every `every` steps. Times in the unit of the slowest shot."""
-    chains, row, unit = len(speeds), rig.BEADS + 2, p.shot(case, min(speeds))[3]
+    chains, row, unit = len(speeds), rig.BEADS + 2, p.shot(p.law(case), min(speeds))[3]
     lmp.command("clear")
     box(lmp, rig.BEADS, chains, case, step)
     order, x, v = views(lmp, chains * row)
@@ -108,7 +108,7 @@ def batch(lmp, case, speeds, step, every):
     v[index[:, 0], 0] = speeds
     left, right = index[:, WATCHED], index[:, WATCHED + 1]
     home = x[left, 0] - x[right, 0]
-    k, a, _ = p.coefficients(case, 0.5)
+    k, a, _ = p.coefficients(p.law(case), 0.5)
     watches, past = np.stack([p.new_watch() for _ in speeds]), np.zeros((chains, 2, 5))
     lmp.command("run 0 post no")
     count, over = 0, False
@@ -122,7 +122,7 @@ def batch(lmp, case, speeds, step, every):
 
 def run(method, case, setting, speeds):
     """`setting` is the step in units of the slowest shot's own time scale."""
-    unit, out = p.shot(case, min(speeds))[3], []
+    unit, out = p.shot(p.law(case), min(speeds))[3], []
     every = max(1, round(1.0 / (SAMPLES * setting)))
     with_lammps = quiet(method)
     for i in range(0, len(speeds), BATCH):

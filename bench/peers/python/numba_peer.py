@@ -120,12 +120,25 @@ def pair_shot(w, k, a, b, tolerance):
         h *= factor
 
 
-def run(method, case, setting, speeds):
-    """`setting` is the step in units of the shot's own time scale for RK4, the tolerance for the pair."""
+@njit
+def rk4_shots(law, h, speeds):
     out = []
     for v in speeds:
-        *laws, time = p.shot(case, v)
-        w = p.work(*laws, 13)
-        watch = rk4_shot(w, setting) if method == "rk4" else pair_shot(w, *laws, setting)
-        out.append(p.tofs(watch, time))
+        k, a, b, time = p.shot(law, v)
+        out.append(p.tofs(rk4_shot(p.work(k, a, b, 4), h), time))
     return out
+
+
+@njit
+def pair_shots(law, tolerance, speeds):
+    out = []
+    for v in speeds:
+        k, a, b, time = p.shot(law, v)
+        out.append(p.tofs(pair_shot(p.work(k, a, b, 13), k, a, b, tolerance), time))
+    return out
+
+
+def run(method, case, setting, speeds):
+    """`setting` is the step in units of the shot's own time scale for RK4, the tolerance for the pair."""
+    shots = rk4_shots if method == "rk4" else pair_shots
+    return shots(p.law(case), setting, np.array(speeds))

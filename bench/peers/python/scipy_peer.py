@@ -89,7 +89,7 @@ def by_compiled(name, fun, tolerance, laws):
 
 def shot(method, case, tolerance, speed):
     name, _, side = method.partition("/")
-    *laws, time = p.shot(case, speed)
+    *laws, time = p.shot(p.law(case), speed)
     fun = (numba_derivative if side == "numba" else numpy_derivative)(*laws)
     laws = (p.work(*laws, 4), *laws)
     if name in CLASSES:

@@ -6,10 +6,11 @@ import sys
 import time
 import traceback
 
+import lanes_peer
 import numba_peer
 import scipy_peer
 
-PEERS = {"scipy": scipy_peer, "numba": numba_peer}
+PEERS = {"scipy": scipy_peer, "numba": numba_peer, "lanes": lanes_peer}
 try:
     import lammps_peer
 

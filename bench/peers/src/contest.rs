@@ -44,9 +44,28 @@ pub struct Outcome {
     pub of_us: Answer,
     /// The peer's.
     pub of_them: Answer,
-    /// Our speed over theirs: the median over the rounds, each of which runs
-    /// both.
-    pub ratio: f64,
+    /// Our speed over theirs.
+    pub ratio: Ratio,
+}
+
+/// Our speed over a peer's, from rounds each of which runs both.
+#[derive(Clone, Copy, Debug)]
+pub struct Ratio {
+    /// Median over the rounds.
+    pub median: f64,
+    /// Least and most of any round.
+    pub range: [f64; 2],
+    /// Of both medians of shots per second.
+    pub of_medians: f64,
+}
+
+impl Ratio {
+    /// Ours over ours.
+    pub const ONE: Self = Self {
+        median: 1.0,
+        range: [1.0; 2],
+        of_medians: 1.0,
+    };
 }
 
 impl Question {
@@ -87,13 +106,21 @@ impl Question {
         let ratios = our_runs.iter().zip(&their_runs).map(|(ours, theirs)| {
             theirs.seconds / speeds.len() as f64 * our_speeds.len() as f64 / ours.seconds
         });
-        let ratio = median(ratios.collect());
+        let ratios: Vec<f64> = ratios.collect();
         let of_us = answer(("", 0.0), &our_runs, &converged.tofs_s(&our_speeds));
         let of_them = answer(
             (point.method, point.setting),
             &their_runs,
             &converged.tofs_s(&speeds),
         );
+        let ratio = Ratio {
+            range: [
+                ratios.iter().copied().fold(f64::INFINITY, f64::min),
+                ratios.iter().copied().fold(0.0, f64::max),
+            ],
+            of_medians: of_us.shots_per_s / of_them.shots_per_s,
+            median: median(ratios),
+        };
         Some(Outcome {
             of_us,
             of_them,

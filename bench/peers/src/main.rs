@@ -19,7 +19,7 @@ mod tool;
 mod watch;
 
 use case::{Case, speeds_m_s};
-use contest::{Outcome, Question, median};
+use contest::{Outcome, Question, Ratio, median};
 use converged::Converged;
 use python::Worker;
 use scan::{Patience, Point, candidates, scan};
@@ -158,7 +158,7 @@ impl Session {
             };
             self.our_speeds.push((case, accuracy, of_us.shots_per_s));
             println!(
-                "{} {accuracy:e}: {} {:.1}/s ({} {:.2e}, error {:.1e} {:.1e}), ours {:.1}/s, {ratio:.1} times",
+                "{} {accuracy:e}: {} {:.1}/s ({} {:.2e}, error {:.1e} {:.1e}), ours {:.1}/s, {:.1} times",
                 case.name(),
                 tool.name,
                 of_them.shots_per_s,
@@ -167,6 +167,7 @@ impl Session {
                 of_them.errors.0,
                 of_them.errors.1,
                 of_us.shots_per_s,
+                ratio.median,
             );
             let row = |name: &str, version, answer, ratio, setting: &str, instruction_set| Row {
                 tool: name.into(),
@@ -183,7 +184,7 @@ impl Session {
                 let version = env!("CARGO_PKG_VERSION").into();
                 let setting = ours::setting(case, accuracy);
                 self.rows
-                    .push(row("hertzchain", version, of_us, 1.0, &setting, set));
+                    .push(row("hertzchain", version, of_us, Ratio::ONE, &setting, set));
             }
             let version = tool.version(&self.worker)?;
             self.rows.push(row(

@@ -35,7 +35,7 @@ pub fn setting(case: Case, accuracy: f64) -> String {
 type Setting = (Precision, f64, bool);
 
 /// Settings to choose from, the cheapest first.
-const SETTINGS: [Setting; 23] = [
+const SETTINGS: [Setting; 25] = [
     (Precision::Single, 0.21, false),
     (Precision::Single, 0.2, false),
     (Precision::Single, 0.19, false),
@@ -57,7 +57,9 @@ const SETTINGS: [Setting; 23] = [
     (Precision::Double, 0.05, true),
     (Precision::Double, 0.04, true),
     (Precision::Double, 0.03, true),
+    (Precision::Double, 0.025, true),
     (Precision::Double, 0.02, true),
+    (Precision::Double, 0.015, true),
     (Precision::Double, 0.01, true),
 ];
 

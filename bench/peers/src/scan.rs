@@ -79,9 +79,16 @@ pub fn count_for(shots_per_s: f64, seconds: f64, fewest: usize, most: usize) -> 
         .unwrap_or(fewest)
 }
 
+/// How finely a rung of the ladder is divided between the last setting that
+/// missed an accuracy and the first that met it.
+const PARTS: u8 = 8;
+
+/// Met settings of which the rung before is divided.
+const DIVIDED: usize = 2;
+
 /// Settings worth a closer look for an accuracy, the cheapest first: those
-/// that met it, each preceded by half a rung coarser. If none met it, the most
-/// accurate one.
+/// that met it, each preceded by what is coarser by less than a rung. If none
+/// met it, the most accurate one.
 pub fn candidates(points: &[Point], accuracy: f64, ratio: f64) -> Vec<Point> {
     let mut met: Vec<Point> = points
         .iter()
@@ -96,12 +103,13 @@ pub fn candidates(points: &[Point], accuracy: f64, ratio: f64) -> Vec<Point> {
             .reduce(|a, b| if b.error < a.error { b } else { a });
         return best.into_iter().collect();
     }
-    let coarser = |p: Point| Point {
-        setting: p.setting / ratio.sqrt(),
-        ..p
+    let rung = |p: Point, parts: u8| {
+        (0..parts).rev().map(move |part| Point {
+            setting: p.setting / ratio.powf(f64::from(part) / f64::from(parts)),
+            ..p
+        })
     };
-    met.into_iter()
-        .take(6)
-        .flat_map(|p| [coarser(p), p])
+    let met = met.into_iter().take(6).enumerate();
+    met.flat_map(|(i, p)| rung(p, if i < DIVIDED { PARTS } else { 2 }))
         .collect()
 }

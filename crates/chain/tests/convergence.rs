@@ -1,8 +1,6 @@
 //! The order of every solver, on a smooth problem and on impact.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::wave::{Control, DormandPrince, Limits, Method, Rk4, Table, Verlet, run};
 use hertzchain_chain::*;
 

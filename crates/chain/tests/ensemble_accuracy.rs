@@ -1,9 +1,7 @@
 //! Asked and reached accuracy over random chains and speeds.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::ensemble::*;
-use common::random_shots::*;
+use crate::common::ensemble::*;
+use crate::common::random_shots::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::wave::{DormandPrince, Limits, run};

@@ -1,10 +1,8 @@
 //! Steps of the ensemble loop allocate nothing.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
+use crate::common::ensemble::*;
+use crate::common::*;
 use allocation_counter::{AllocationInfo, measure};
-use common::ensemble::*;
-use common::*;
 use hertzchain_chain::ensemble::{End, Precision, Settings};
 use hertzchain_chain::laws::{DampingPower, law};
 use hertzchain_chain::*;

@@ -5,9 +5,8 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
 use hertzchain_chain::laws::{DampingLinear, DampingPower, ElasticPlasticThornton, Law, law};
 use hertzchain_chain::*;

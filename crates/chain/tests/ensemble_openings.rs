@@ -1,9 +1,7 @@
 //! Openings that the ensemble loop follows between steps.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::observe::Passages;

@@ -1,9 +1,7 @@
 //! Times of flight of the ensemble loop against an independent integration.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::Settings;
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::*;

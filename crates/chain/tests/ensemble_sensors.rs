@@ -1,9 +1,7 @@
 //! What sensors of the ensemble loop show is what they show in the one-step loop.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::observe::Signal;
 use hertzchain_chain::wave::{DormandPrince, Limits, Observer, run};

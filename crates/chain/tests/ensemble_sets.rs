@@ -1,9 +1,7 @@
 //! Every instruction set gives the ensemble loop's numbers to rounding.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::{Flown, Precision, Settings};
 use hertzchain_chain::laws::{DampingTsuji, Law, law};
 use hertzchain_chain::observe::Passage;

@@ -5,9 +5,8 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod common;
-use common::ensemble::*;
-use common::*;
+use crate::common::ensemble::*;
+use crate::common::*;
 use hertzchain_chain::ensemble::{End, Flown, Precision, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::*;

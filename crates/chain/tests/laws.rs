@@ -1,8 +1,7 @@
 //! What every law of the registry must obey.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::close;
+use crate::common;
+use crate::common::close;
 use hertzchain_chain::InstructionSet;
 use hertzchain_chain::Pair;
 use hertzchain_chain::laws::{Closed, Columns, LAWS, Law, Nature, Parameter, Source};

@@ -1,8 +1,6 @@
 //! The paper's chain against numbers of two independent integrations.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::observe::Separation;
 use hertzchain_chain::wave::{DormandPrince, Limits, run};
 use hertzchain_chain::*;

@@ -1,8 +1,7 @@
 //! Random chains: no panic, finite motion, balanced energy.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::STEEL;
+use crate::common;
+use crate::common::STEEL;
 use hertzchain_chain::laws::{LAWS, Law, Source};
 use hertzchain_chain::wave::{DormandPrince, Limits, run};
 use hertzchain_chain::*;

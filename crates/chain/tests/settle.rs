@@ -1,8 +1,6 @@
 //! Between shots, one and two bodies: what is known without computing it.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::laws::{DampingLinear, DampingTsuji, Law, law};
 use hertzchain_chain::settle::{Rest, SettleError, SlowPhase, State, settle};
 use hertzchain_chain::wave::{DormandPrince, Limits, run};

@@ -1,9 +1,7 @@
 //! Steps of the slow phase allocate nothing.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
+use crate::common::*;
 use allocation_counter::{AllocationInfo, measure};
-use common::*;
 use hertzchain_chain::settle::{SlowPhase, State, settle};
 use hertzchain_chain::*;
 

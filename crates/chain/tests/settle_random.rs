@@ -1,8 +1,6 @@
 //! The slow phase of random small chains: no panic, and rest is rest.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::random_shots::random_shots;
+use crate::common::random_shots::random_shots;
 use hertzchain_chain::settle::{SettleError, SlowPhase, State, settle};
 use hertzchain_chain::*;
 use proptest::prelude::*;

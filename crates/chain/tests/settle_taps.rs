@@ -1,8 +1,7 @@
 //! Between shots, the paper's row: taps and shots until rest.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common;
+use crate::common::*;
 use hertzchain_chain::settle::{Rest, SlowPhase, State, settle};
 use hertzchain_chain::wave::Outcome;
 use hertzchain_chain::*;

@@ -1,11 +1,8 @@
 //! The exact lattice solitary wave against published digits, theorems and the lattice itself.
 
-#[path = "common/row.rs"]
-mod row;
-
+use crate::row::verlet_step;
 use hertzchain_chain::theory::TheoryError;
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave, kinetic_share_by_virial};
-use row::verlet_step;
 
 const EXPONENTS: [f64; 9] = [1.02, 1.2, 1.5, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0];
 

@@ -1,11 +1,8 @@
 //! The leading pulse of an equal striker: conservation, the exact wave and the lattice agree.
 
-#[path = "common/row.rs"]
-mod row;
-
+use crate::row::verlet_step;
 use hertzchain_chain::theory::solitary::SolitaryShape;
 use hertzchain_chain::theory::striker::{LeadingPulse, least_waves};
-use row::verlet_step;
 
 #[test]
 fn energy_share_of_an_equal_striker_fixes_the_known_speed_force_and_bead_speed() {

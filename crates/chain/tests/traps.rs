@@ -1,8 +1,6 @@
 //! Chains on which a solver, a window or a picker can fall into a trap.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::laws::{DampingCubic, DampingCubicUngated, DampingLinear, law};
 use hertzchain_chain::observe::{Apart, Signal};
 use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, Verlet, run};

@@ -1,8 +1,6 @@
 //! Beads that the wave has not reached cost nothing and change nothing.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use hertzchain_chain::observe::{Maximum, Signal};
 use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
 use hertzchain_chain::*;

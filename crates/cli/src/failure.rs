@@ -1,169 +1,37 @@
-//! What went wrong, told to people, with the exit code: 2 for the user's
-//! mistakes, 1 for ours.
+//! What went wrong, printed, with the exit code: 2 for the user's mistakes, 1
+//! for ours.
 
-use crate::arguments::How;
-use crate::given::has_unit;
-use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
-use hertzchain_study::{StudyError, parse_speed};
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
+use hertzchain_experiment::Warning;
+use hertzchain_verbs::failure;
+pub use hertzchain_verbs::failure::{Failure, of_speed};
+use hertzchain_verbs::given::Given;
+use hertzchain_verbs::input::option;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-/// Why a verb failed.
-#[derive(Debug)]
-pub enum Failure {
-    /// Mistakes in an experiment file.
-    Mistakes(Mistakes),
-    /// Another mistake of the user.
-    User(String),
-    /// Our fault, or the machine's.
-    Ours(String),
-    /// Nobody reads the output any more: no failure at all.
-    BrokenPipe,
+fn colour() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-impl From<Mistakes> for Failure {
-    fn from(mistakes: Mistakes) -> Self {
-        Self::Mistakes(mistakes)
+/// Prints why a verb failed and says how the program ends.
+pub fn report(failure: &Failure) -> ExitCode {
+    eprint!("{}", failure.report(colour()));
+    match failure {
+        Failure::Mistakes(_) | Failure::User(_) => ExitCode::from(2),
+        Failure::Ours(_) => ExitCode::from(1),
+        Failure::BrokenPipe => ExitCode::SUCCESS,
     }
 }
 
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        Self::User(error.to_string())
-    }
-}
-
-impl Failure {
-    /// What kept a shot from being computed, at the place in the experiment
-    /// that has to do with it; what the command line asks for has no place.
-    pub fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
-        let asked = how.solver.is_some() || how.step.is_some() || how.accuracy.is_some();
-        match &error {
-            _ if asked => error.into(),
-            StudyError::Solve(why) => experiment.unsolved(why).into(),
-            StudyError::NotConverged { .. } | StudyError::TooManySteps { .. } => {
-                experiment.unreached(&error.to_string()).into()
-            }
-            _ => error.into(),
-        }
-    }
-
-    /// Mistakes at a speed that an option gave: what would underline the speed
-    /// in the file is told of the option instead.
-    pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
-        match of_speed(&mistakes) {
-            Some(text) => Self::User(format!("{option}: {text}")),
-            None => mistakes.into(),
-        }
-    }
-
-    /// Prints itself and says how the program ends.
-    pub fn report(&self) -> ExitCode {
-        match self {
-            Self::Mistakes(mistakes) => {
-                print_findings(mistakes.findings(), "mistakes");
-                ExitCode::from(2)
-            }
-            Self::User(text) => {
-                eprintln!("error: {text}");
-                ExitCode::from(2)
-            }
-            Self::Ours(text) => {
-                eprintln!("error: {text}");
-                ExitCode::from(1)
-            }
-            Self::BrokenPipe => ExitCode::SUCCESS,
-        }
-    }
-}
-
-fn handler() -> GraphicalReportHandler {
-    let colour = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    let theme = match colour {
-        true => GraphicalTheme::unicode(),
-        false => GraphicalTheme::unicode_nocolor(),
-    };
-    GraphicalReportHandler::new_themed(theme).with_links(false)
-}
-
-/// Most reports that anybody reads at once.
-const MOST: usize = 20;
-
-fn print_findings(findings: &[Finding], kind: &str) {
-    findings.iter().take(MOST).for_each(print_finding);
-    let more = findings.len().saturating_sub(MOST);
-    if more > 0 {
-        eprintln!("… and {more} more {kind}");
-    }
-}
-
-/// Longest line that is shown with something underlined, in bytes; beyond the
-/// renderer's columns there is no place for marks.
-const LONGEST_LINE: usize = 2000;
-
-/// A report that underlines the offending text.
-fn print_finding(finding: &Finding) {
-    let mut text = String::new();
-    if fits(finding) && handler().render_report(&mut text, finding).is_ok() {
-        eprintln!("{}", text.trim_end());
-    } else {
-        let kind = match finding.severity() {
-            Some(Severity::Warning) => "warning",
-            _ => "error",
-        };
-        eprintln!("{kind}: {}", finding.one_line());
-    }
-}
-
-/// Whether all lines that a report would show are of readable length.
-fn fits(finding: &Finding) -> bool {
-    let shown = |label: miette::LabeledSpan| {
-        let source = finding.source_code()?;
-        let context = source.read_span(label.inner(), 1, 1).ok()?;
-        let mut lines = context.data().split(|byte| *byte == b'\n');
-        Some(lines.all(|line| line.len() <= LONGEST_LINE))
-    };
-    let mut labels = finding.labels().into_iter().flatten();
-    labels.all(|label| shown(label) == Some(true))
-}
-
-/// Message, expectation and advice, without a place.
-fn placeless(finding: &Finding) -> String {
-    let help = finding
-        .help()
-        .map_or(String::new(), |help| format!(" ({help})"));
-    format!("{finding}: {}{help}", finding.label())
-}
-
-/// A mistake that is the speed's own, without a place.
-pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
-    match mistakes.findings() {
-        [finding] if underlines_speed(finding) => Some(placeless(finding)),
-        _ => None,
-    }
-}
-
-/// A speed beyond all limits is reported at the striker as a whole.
-fn underlines_speed(finding: &Finding) -> bool {
-    let text = finding.text().rsplit('=').next().unwrap_or_default();
-    let asked = text == "[striker]" && finding.to_string().ends_with("was asked for");
-    let text = text.trim().trim_matches('"');
-    // Plain numbers may be anything.
-    asked || (has_unit(text) && parse_speed(text).is_ok())
-}
-
-/// Warnings at a speed that an option gave, as [`Failure::at_option`].
+/// Warnings at a speed that an option gave, told of the option.
 pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
-    let (line, file): (Vec<Warning>, Vec<Warning>) =
-        warnings.iter().cloned().partition(underlines_speed);
-    print_warnings(&file);
-    for warning in &line {
-        eprintln!("warning: {option}: {}", placeless(warning));
-    }
+    eprint!("{}", failure::option_warnings(option, warnings, colour()));
 }
 
-/// What is odd about an experiment, each with the odd text underlined.
-pub fn print_warnings(warnings: &[Warning]) {
-    print_findings(warnings, "warnings");
+/// What is odd about an experiment at the speed that may have been given.
+pub fn print_speed_warnings(given: Option<&Given>, warnings: &[Warning]) {
+    match given {
+        Some(given) => print_option_warnings(&option(given), warnings),
+        None => eprint!("{}", failure::warnings(warnings, colour())),
+    }
 }

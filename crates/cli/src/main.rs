@@ -1,19 +1,13 @@
 //! The `hertzchain` program: one file a verb, no logic of its own.
 
 mod arguments;
-mod bibliography;
 mod failure;
 mod folder;
 mod format;
-mod given;
-mod inference;
-mod input;
-mod json;
-mod missing;
 mod pictures;
 mod print;
-mod table;
 mod verbs;
+mod words;
 
 use arguments::{Program, Verb};
 use clap::Parser;
@@ -28,7 +22,7 @@ fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => failure::report(&failure),
     }
 }
 
@@ -37,6 +31,7 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Reproduce(arguments) => verbs::reproduce::run(&arguments),
         Verb::Shot(arguments) => verbs::shot::run(&arguments),
         Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
+        Verb::Merge(arguments) => verbs::merge::run(&arguments),
         Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
         Verb::Measure(arguments) => verbs::measure::run(&arguments),
         Verb::Fit(arguments) => verbs::fit::run(&arguments),

@@ -1,5 +1,4 @@
 //! ARCHITECTURE.md's arrows and what it says is absent, read from the crates.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use std::fs::{read_dir, read_to_string};
 use std::path::{Path, PathBuf};
@@ -16,8 +15,21 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    ("shards", &["experiment", "study", "records"]),
     ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
+    (
+        "verbs",
+        &[
+            "chain",
+            "experiment",
+            "signal",
+            "study",
+            "rig",
+            "measure",
+            "infer",
+        ],
+    ),
     (
         "cli",
         &[
@@ -27,8 +39,10 @@ const ARROWS: &[(&str, &[&str])] = &[
             "study",
             "figures",
             "rig",
+            "shards",
             "measure",
             "infer",
+            "verbs",
         ],
     ),
 ];
@@ -72,4 +86,20 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
     let deeper = folders.iter().flat_map(|folder| sources(folder));
     files.into_iter().chain(deeper).collect()
+}
+
+#[test]
+fn every_file_of_tests_is_part_of_its_crate_s_test_program() {
+    for folder in read_dir(crates()).unwrap() {
+        let tests = folder.unwrap().path().join("tests");
+        let Ok(all) = read_to_string(tests.join("all.rs")) else {
+            continue;
+        };
+        let files = read_dir(&tests).unwrap().map(|entry| entry.unwrap().path());
+        for file in files.filter(|path| path.extension().is_some_and(|end| end == "rs")) {
+            let name = file.file_stem().unwrap().to_str().unwrap();
+            let named = name == "all" || all.contains(&format!("mod {name};"));
+            assert!(named, "{} is never run: name it in all.rs", file.display());
+        }
+    }
 }

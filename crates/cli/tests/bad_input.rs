@@ -1,5 +1,4 @@
 //! Wrong files and arguments as a user meets them: one report each, exit code 2.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

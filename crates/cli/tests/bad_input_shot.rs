@@ -1,6 +1,5 @@
 //! Files with which no shot comes to a sensible end: every verb refuses them
 //! before anything runs, with one report that underlines the place, code 2.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

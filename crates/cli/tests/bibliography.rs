@@ -1,5 +1,4 @@
 //! Every source that is cited has an entry, and every entry is cited.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use std::collections::BTreeSet;
 use std::fs::{read_dir, read_to_string};

@@ -1,5 +1,4 @@
 //! `hertzchain campaign`: killed, resumed, dealt out, read by others.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 #[path = "../../records/tests/common/mod.rs"]
 mod records;

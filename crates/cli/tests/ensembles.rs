@@ -1,5 +1,4 @@
 //! Sweeps by the ensemble loop, and the instruction set it uses.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::process::{Command, Output};

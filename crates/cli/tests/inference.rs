@@ -1,5 +1,4 @@
 //! fit, gauge and design at the command line, and what they refuse.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::fs;

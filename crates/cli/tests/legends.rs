@@ -1,6 +1,5 @@
 //! Pictures of all presets and examples: legends that hide nothing, labels that
 //! fit the chain.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 #[path = "../../figures/tests/covered/mod.rs"]
 mod covered;

@@ -1,5 +1,4 @@
 //! From files of volts to times of flight, in one command.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::fs;

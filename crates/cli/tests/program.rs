@@ -1,5 +1,4 @@
 //! The program as a user meets it: what it prints, what it writes, how it ends.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::fs;

@@ -1,5 +1,4 @@
 //! Sweeps that have little to tell say so.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::process::{Command, Output};

@@ -1,5 +1,4 @@
 //! Result files: short numbers, names with the units that the numbers have.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use serde_json::Value;
 use std::fs;

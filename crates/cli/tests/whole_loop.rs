@@ -1,5 +1,4 @@
 //! Campaign, recordings, times of flight, and back to the model that made them.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 #[path = "../examples/whole_loop/judged.rs"]
 #[allow(dead_code, reason = "the example tells more")]

@@ -43,15 +43,17 @@ struct Effort<'a> {
     duration_s: f64,
     /// Longest duration that the wave loop is prepared for.
     longest_s: f64,
-    /// Longest duration that anybody would wait for.
-    bearable_s: f64,
 }
 
 /// Longest duration in s of a shot of a system: beyond, it would take more steps
 /// than hours have time for.
 #[must_use]
 pub fn longest_duration_s(system: &System) -> f64 {
-    MOST_STEPS / STEPS_A_CONTACT_TIME * system.scales().time_s
+    bearable_s(system.scales().time_s)
+}
+
+fn bearable_s(contact_time_s: f64) -> f64 {
+    MOST_STEPS / STEPS_A_CONTACT_TIME * contact_time_s
 }
 
 /// The first reason why a shot of this system would not end sensibly.
@@ -90,7 +92,6 @@ impl<'a> Effort<'a> {
             spec,
             chain,
             contact_time_s: scales.time_s,
-            bearable_s: longest_duration_s(system),
             duration_s: given_s.unwrap_or_else(|| bead_times(USUAL)),
             longest_s: given_s.unwrap_or_else(|| bead_times(LONGEST)),
         }
@@ -122,7 +123,7 @@ impl<'a> Effort<'a> {
 
     /// A shot of more contact times than can be stepped through.
     fn long_way(&self) -> Option<Problem> {
-        let most_s = self.bearable_s;
+        let most_s = bearable_s(self.contact_time_s);
         if self.duration_s <= most_s {
             return None;
         }

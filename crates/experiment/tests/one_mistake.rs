@@ -1,5 +1,4 @@
 //! One slip of the pen is one report.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::Experiment;
 

@@ -1,5 +1,4 @@
 //! Which K a damping law has that shares it with the elastic contact.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::laws::{LAWS, Nature, Source};
 use hertzchain_chain::wave::{DormandPrince, Limits, run};

@@ -1,10 +1,7 @@
 //! The paper's figures from a whole, coarse reproduction.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod covered;
-mod type_size;
-
-use covered::covered;
+use crate::covered::covered;
+use crate::type_size::smallest_type;
 use hertzchain_experiment::Reading;
 use hertzchain_figures::{Figure, paper};
 use hertzchain_study::claims::{Claim, Verdict, claims};
@@ -12,7 +9,6 @@ use hertzchain_study::readings::{Row, Scan};
 use hertzchain_study::reproduce::{Options, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
 use std::fs;
-use type_size::smallest_type;
 
 const TABLES: [&str; 8] = [
     "claims.json",

@@ -1,10 +1,8 @@
 //! What every picture must be: well-formed, complete on the page, the same
 //! every time, and not empty.
 
-mod covered;
-mod type_size;
-
-use covered::covered;
+use crate::covered::covered;
+use crate::type_size::smallest_type;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_figures::{
     Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series, Verdict,
@@ -12,7 +10,6 @@ use hertzchain_figures::{
 };
 use proptest::prelude::*;
 use resvg::usvg::{Group, Node, Options, Tree};
-use type_size::smallest_type;
 
 fn wave() -> Chart {
     let x: Vec<f64> = (0..300).map(|i| f64::from(i) * 4.0).collect();

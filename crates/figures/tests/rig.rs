@@ -1,5 +1,4 @@
 //! The drawing of the rig says what the experiment file says, and nothing else.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::Experiment;
 use hertzchain_figures::paper;

@@ -1,5 +1,6 @@
 //! Uncertainty from the curvature at the optimum.
 
+use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{combine, dot, norm, svd};
 use crate::{Fit, Loss, Parameter};
 
@@ -27,11 +28,6 @@ pub struct Covariance {
     axes: Vec<Vec<f64>>,
 }
 
-/// Least singular value, of unit columns, that double precision resolves.
-const ROUNDING: f64 = 1e-9;
-/// Share of the disagreement between two step sizes that the extrapolated
-/// Jacobian is taken to be wrong by.
-const EXTRAPOLATED: f64 = 0.03;
 /// Component of an unresolved direction, of unit columns, that leaves a parameter undetermined.
 const TAKES_PART: f64 = 1e-4;
 

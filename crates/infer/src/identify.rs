@@ -1,5 +1,6 @@
 //! Which combinations of parameters the data determine, and which not.
 
+use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{combine, svd};
 use crate::{Fit, Parameter};
 
@@ -37,10 +38,6 @@ pub struct Confusion {
 /// undetermined: its size is then not even known to a factor of about two, and a
 /// linear analysis means nothing any more.
 pub const UNDETERMINED: f64 = 1.0;
-/// Relative error of derivatives by rounding.
-const ROUNDING: f64 = 1e-9;
-/// Share of the disagreement of two step sizes that remains after extrapolation.
-const EXTRAPOLATED: f64 = 0.03;
 /// Parts of a combination below this share of the largest are not named.
 const NAMED: f64 = 0.02;
 

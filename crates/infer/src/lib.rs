@@ -4,6 +4,7 @@
 //! are computed for many points at once. [`CurveProblem`] is the one of this
 //! program: times of flight of an experiment.
 
+mod batch;
 mod chance;
 mod compare;
 mod covariance;
@@ -21,6 +22,7 @@ mod problem;
 mod profile;
 mod sampler;
 
+pub use batch::{Batch, Compute, Outcomes, Spread};
 pub use compare::{
     CompareError, Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate,
 };

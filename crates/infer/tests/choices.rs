@@ -5,13 +5,11 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
     Candidate, CompareError, Compared, Covariance, Criteria, DesignError, Fit, FitError, Fitting,
     Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate, design, fit,
 };
-use toys::{Curve, normals, spaced, straight};
 
 fn fitted(problem: &dyn Problem) -> Fit {
     fit(problem, &Fitting::default()).unwrap()

@@ -1,5 +1,4 @@
 //! Predicted curves and their residuals.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::{

@@ -1,5 +1,4 @@
 //! Tables of measured curves: what is read and what is refused, with its place.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_infer::{Data, Defaults, Observable, Selection};
 

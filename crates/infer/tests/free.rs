@@ -1,5 +1,4 @@
 //! Names of free numbers.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::preset;
 use hertzchain_infer::{Form, FreeError, FreeNumber, FreeNumbers, Model, Speeds};

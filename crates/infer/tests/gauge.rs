@@ -1,9 +1,6 @@
 //! The oil gauge on simulated oils.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::Truth;
+use crate::common::Truth;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
 use hertzchain_infer::{Data, Observable};

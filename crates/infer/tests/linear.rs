@@ -5,12 +5,10 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, regression, spaced, straight};
 use hertzchain_infer::{
     Covariance, Fitting, Goodness, Parameter, Prior, Profiling, RISE_OF_95_PERCENT, fit, profile,
 };
-use toys::{Curve, regression, spaced, straight};
 
 type Line = Curve<fn(&[f64], f64) -> f64>;
 

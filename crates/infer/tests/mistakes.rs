@@ -5,12 +5,10 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, spaced, straight};
 use hertzchain_infer::{
     Fit, FitError, Fitting, ModelError, Parameter, ParameterError, Prior, Problem, Residuals, fit,
 };
-use toys::{Curve, spaced, straight};
 
 type Line = Curve<fn(&[f64], f64) -> f64>;
 

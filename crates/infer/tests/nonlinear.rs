@@ -5,14 +5,12 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, decay, normals, spaced};
 use hertzchain_infer::{
     Covariance, End, Fit, Fitting, Interval, Parameter, Profile, ProfileError, Profiling, fit,
     profile,
 };
 use hertzchain_signal::{Coverage, coverage};
-use toys::{Curve, decay, normals, spaced};
 
 /// Residuals (a − 1)/0.3 and (b − a²)/0.01: a narrow, bent valley in which b = a²,
 /// a normal around 1.

@@ -1,17 +1,15 @@
 //! The same problem by SciPy and emcee, in a throw-away Python environment.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 #[path = "../../records/tests/common/python.rs"]
 mod python;
-mod toys;
 
+use crate::toys::{Curve, decay, spaced};
 use hertzchain_infer::{
     Chain, Covariance, Fitting, Loss, Parameter, Posterior, Requirements, Sampling, fit,
 };
 use python::Python;
 use std::collections::HashMap;
 use std::path::Path;
-use toys::{Curve, decay, spaced};
 
 static PYTHON: Python = Python::new(
     "python-for-infer",

@@ -5,14 +5,12 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod toys;
-
+use crate::toys::{Curve, decay, normals, regression, spaced, straight};
 use hertzchain_infer::{
     Chain, Covariance, Fit, Fitting, ModelError, Parameter, Prior, Problem, Requirements,
     Residuals, Sampling, SamplingError, autocorrelation_time, fit, split_r_hat,
 };
 use hertzchain_signal::coverage;
-use toys::{Curve, decay, normals, regression, spaced, straight};
 
 fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {
     let found = fit(problem, &Fitting::default()).unwrap();

@@ -1,9 +1,6 @@
 //! From known parameters to data and back, at the paper's noise.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::{Truth, model, problem, speeds_m_s};
+use crate::common::{Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
     Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,

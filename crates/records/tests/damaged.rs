@@ -1,9 +1,6 @@
 //! What is damaged is told, once, and the rest is still read; nothing panics.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::{folder, kept};
+use crate::common::{folder, kept};
 use hertzchain_records::{
     Channels, ReadOptions, Record, RecordError, SeriesInfo, SeriesWriter, ShotRow, read,
 };

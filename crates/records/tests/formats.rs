@@ -1,9 +1,6 @@
 //! Every format as another program writes it.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::{folder, kept, python};
+use crate::common::{folder, kept, python};
 use hertzchain_records::{Parts, ReadOptions, Record, RecordError, Rows, Samples, read};
 use std::path::Path;
 

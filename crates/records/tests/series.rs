@@ -1,9 +1,6 @@
 //! Series of ours: written whole or not at all, read back bit for bit.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::{folder, python};
+use crate::common::{folder, python};
 use hertzchain_records::{
     Channels, ReadOptions, Record, RecordError, Samples, SeriesInfo, SeriesWriter, ShotRow, read,
     truth,

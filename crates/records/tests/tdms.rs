@@ -1,10 +1,7 @@
 //! Parts of TDMS that LabVIEW writes and other writers do not, byte by byte
 //! after the format's description by its maker.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-mod common;
-
-use common::{folder, python};
+use crate::common::{folder, python};
 use hertzchain_records::{ReadOptions, Record, RecordError, read};
 use std::fs;
 

@@ -5,9 +5,7 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod common;
-
-use common::{Scene, channels};
+use crate::common::{Scene, channels};
 use hertzchain_signal::{
     Channels, Doubt, Finding, Found, Measuring, Place, Polarity, Rails, SignalError, measure,
     pulses,

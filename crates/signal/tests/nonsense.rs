@@ -1,8 +1,6 @@
 //! Nothing panics, whatever the samples.
 
-mod common;
-
-use common::Scene;
+use crate::common::Scene;
 use hertzchain_signal::{
     Channels, Cutter, Estimate, Finding, LowPass, Measuring, Method, Polarity, Rails, Shape,
     Template, Trigger, chi_square, coverage, groups, level, measure, power_law_both_errors,

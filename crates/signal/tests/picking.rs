@@ -5,11 +5,10 @@
     reason = "a test that cannot go on should fail"
 )]
 
-mod common;
 #[path = "common/dry.rs"]
 mod dry;
 
-use common::{Scene, channels, normal};
+use crate::common::{Scene, channels, normal};
 use dry::Dry;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Flight, LowPass, Measuring, Method, Place, Rails, Shape,

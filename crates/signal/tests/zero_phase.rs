@@ -1,5 +1,4 @@
 //! The zero-phase low-pass against scipy.signal.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_signal::{LowPass, SignalError};
 

@@ -31,7 +31,7 @@ pub fn shoot_all(
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Result<Shot, StudyError>> {
     in_blocks(plans, progress, |block| {
-        shoot_block(block, &judged(block, set), checked)
+        shoot_block(block, judged(block, set), checked)
     })
 }
 
@@ -52,7 +52,7 @@ pub fn shoot_tuned(
         let judged_alone = |plan: &&Plan| judged(&[*plan], set).pop().flatten();
         let fired = tuned.fired(block, set).into_iter().zip(block);
         let fired = fired.map(|(shot, plan)| shot.or_else(|| judged_alone(plan)));
-        shoot_block(block, &fired.collect::<Vec<_>>(), true)
+        shoot_block(block, fired.collect(), true)
     })
 }
 
@@ -63,7 +63,13 @@ pub fn shoot_tuned(
 pub fn shoot_unjudged(plans: &[Plan], set: InstructionSet) -> Vec<Result<Shot, StudyError>> {
     in_blocks(plans, &|| {}, |block| {
         let own = block.first().and_then(|plan| Setting::of(plan));
-        let once = |own: Setting| fire(block, &load(block), set, &own.longer(1.0));
+        let once = |own: Setting| {
+            let bare = Setting {
+                shapes: false,
+                ..own
+            };
+            fire(block, &load(block), set, &bare)
+        };
         let shots = own.map_or_else(|| vec![None; block.len()], once);
         let shots = block.iter().zip(shots);
         shots
@@ -150,7 +156,7 @@ const OF_CHANGE: [f64; 2] = [3.0, 1.5];
 /// and the rest by the wave loop.
 fn shoot_block(
     plans: &[&Plan],
-    fired: &[Option<Shot>],
+    fired: Vec<Option<Shot>>,
     checked: bool,
 ) -> Vec<Result<Shot, StudyError>> {
     // What was too hard for equal steps deserves a check in the wave loop too.
@@ -158,7 +164,7 @@ fn shoot_block(
         true => shoot_checked(plan),
         false => shoot(plan),
     };
-    let shots = plans.iter().zip(fired.iter().cloned());
+    let shots = plans.iter().zip(fired);
     shots
         .map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok))
         .collect()

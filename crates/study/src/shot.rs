@@ -126,9 +126,8 @@ pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
     Gun::load(plan)?.shoot(true)
 }
 
-/// Errors of peaks over the accuracy asked of times, at most: [`crate::reproduce`]
-/// takes the same.
-const OF_PEAKS: f64 = 50.0;
+/// Errors of peaks over the accuracy asked of times, at most.
+pub(crate) const OF_PEAKS: f64 = 50.0;
 
 /// Which pulse two maxima share that are as high as can be told: the next
 /// computation may pick the other.

@@ -10,7 +10,7 @@ use hertzchain_chain::{InstructionSet, System};
 use std::fmt::{Display, Formatter, Result as Formatted};
 
 /// Pilots that are enough for plans between which little changes: the paper's
-/// chains at two thousand speeds (`docs/numerics.md`).
+/// chains at a thousand speeds (`docs/numerics.md`).
 pub const PILOTS: usize = 40;
 
 /// What pilots are compared with is this many times as right as asked.
@@ -99,9 +99,14 @@ impl Tuned {
     /// Plans, evenly spread over those given in the order of what changes.
     #[must_use]
     pub fn pilots(plans: &[Plan]) -> Vec<Plan> {
-        let count = PILOTS.min(plans.len());
-        let at = |i: usize| i * (plans.len() - 1) / (count - 1).max(1);
-        (0..count).map(|i| plans[at(i)].clone()).collect()
+        let places = Self::pilot_places(plans.len());
+        places.map(|place| plans[place].clone()).collect()
+    }
+
+    /// Places from 0 of the pilots among so many plans, evenly spread.
+    pub(crate) fn pilot_places(plans: usize) -> impl Iterator<Item = usize> {
+        let count = PILOTS.min(plans);
+        (0..count).map(move |i| i * (plans - 1) / (count - 1).max(1))
     }
 
     /// Shots of plans by the ensemble loop, of those that are like the pilots.

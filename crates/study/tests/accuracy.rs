@@ -1,5 +1,4 @@
 //! The accuracy that is told is a bound on the error that is made.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::preset;
 use hertzchain_study::{Plan, shoot, shoot_checked};

@@ -1,5 +1,4 @@
 //! Many shots at once: as right as one by one, and the same bits always.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_study::reproduce::CASES;

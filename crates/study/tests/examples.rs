@@ -1,6 +1,5 @@
 //! Every example file against a published number or one that another program
 //! integrated (`bench/reference/numbers.json`), never against stored output.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::observe::{Maximum, Signal};
 use hertzchain_chain::wave::{DormandPrince, Limits, Observer, Outcome, run};

@@ -1,5 +1,4 @@
 //! Long chains that end at a wall: what they cost, counted, and what ends them.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::Experiment;
 use hertzchain_study::{Plan, Shot, shoot};

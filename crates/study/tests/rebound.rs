@@ -1,5 +1,4 @@
 //! One end of a shot: the striker's rebound is the same wherever it is asked for.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, Reading, preset};
 use hertzchain_study::reproduce::{CASES, Effort, Gathering, gather};

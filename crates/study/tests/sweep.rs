@@ -1,5 +1,4 @@
 //! Sweeps over speed.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::preset;
 use hertzchain_study::{Settings, Sweep, parse_speeds, sweep};

@@ -1,5 +1,4 @@
 //! Shots that pilots judge for all.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::preset;
 use hertzchain_study::{

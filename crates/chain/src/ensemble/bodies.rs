@@ -92,8 +92,13 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
 }
 
 #[inline(always)]
-fn chunks_of<N, const W: usize>(values: &[N], count: usize) -> &[[N; W]] {
-    values[..count * W].as_chunks().0
+fn chunks_of<N, const W: usize>(values: &[N], which: Range<usize>) -> &[[N; W]] {
+    values[which.start * W..which.end * W].as_chunks().0
+}
+
+#[inline(always)]
+fn chunks_of_mut<N, const W: usize>(values: &mut [N], which: Range<usize>) -> &mut [[N; W]] {
+    values[which.start * W..which.end * W].as_chunks_mut().0
 }
 
 /// Bodies that no force has moved of late: what [`sweep`] does to them, but for
@@ -107,11 +112,11 @@ fn fly<S: Simd, N: Number<W>, const W: usize>(
 ) {
     let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
     let drift = load(&scaled.drift);
-    let v = chunks_of::<N, W>(&motion.v, asleep.end);
-    let x = motion.x[..asleep.end * W].as_chunks_mut::<W>().0;
-    for i in asleep {
-        let (x0, v0) = (load(&x[i]), load(&v[i]));
-        (x0 + drift * v0).store_array(&mut x[i]);
+    let v = chunks_of::<N, W>(&motion.v, asleep.clone());
+    let x = chunks_of_mut::<N, W>(&mut motion.x, asleep);
+    for (x, v) in x.iter_mut().zip(v) {
+        let (x0, v0) = (load(x), load(v));
+        (x0 + drift * v0).store_array(x);
     }
 }
 
@@ -124,37 +129,81 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
     force: &[N],
     scaled: &Scaled<N, W>,
 ) {
-    let count = awake.end;
     let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-    let drift = load(&scaled.drift);
-    let velocity: [_; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
-    let position: [_; USED] = std::array::from_fn(|k| load(&scaled.position[k]));
-    let (left, right) = (chunks_of(force, count), chunks_of(&force[lanes..], count));
-    let earlier: [&[[N; W]]; EARLIER] = std::array::from_fn(|k| {
-        chunks_of(&motion.accelerations[(motion.newest + 1 + k) % USED], count)
+    let earlier = std::array::from_fn(|k| {
+        let a = &motion.accelerations[(motion.newest + 1 + k) % USED];
+        chunks_of(a, awake.clone())
     });
-    let x = motion.x[..count * W].as_chunks_mut::<W>().0;
-    let v = motion.v[..count * W].as_chunks_mut::<W>().0;
-    let now = now[..count * W].as_chunks_mut::<W>().0;
-    let external = motion.external.as_ref().map(|a| chunks_of(a, count));
-    let inverse_mass = motion.inverse_mass.reader();
-    for i in awake {
-        let pushed = (load(&left[i]) - load(&right[i])) * load(inverse_mass.at(i));
-        let a = match external {
-            None => pushed,
-            Some(external) => pushed + load(&external[i]),
-        };
-        a.store_array(&mut now[i]);
-        let (x0, v0) = (load(&x[i]), load(&v[i]));
-        // What is small first: single precision rounds once where it is large.
-        let mut sped = velocity[0] * a;
-        let mut moved = position[0] * a;
-        for k in 1..USED {
-            let a = load(&earlier[k - 1][i]);
-            sped = velocity[k].mul_add(a, sped);
-            moved = position[k].mul_add(a, moved);
+    let bodies = Bodies {
+        force: [force, &force[lanes..]].map(|force| chunks_of(force, awake.clone())),
+        earlier,
+        now: chunks_of_mut(now, awake.clone()),
+        x: chunks_of_mut(&mut motion.x, awake.clone()),
+        v: chunks_of_mut(&mut motion.v, awake.clone()),
+    };
+    // What is the same for all bodies stays in a register.
+    match (motion.inverse_mass.uniform(), &motion.external) {
+        (Some(mass), None) => {
+            let mass = load(mass);
+            bodies.step(simd, scaled, |_, net| net * mass);
         }
-        (v0 + sped).store_array(&mut v[i]);
-        (x0 + drift.mul_add(v0, moved)).store_array(&mut x[i]);
+        (None, None) => {
+            let mass = &motion.inverse_mass.reader().all()[awake];
+            bodies.step(simd, scaled, |i, net| net * load(&mass[i]));
+        }
+        (_, Some(external)) => {
+            let (mass, from) = (motion.inverse_mass.reader(), awake.start);
+            let external = chunks_of(external, awake);
+            bodies.step(simd, scaled, |i, net| {
+                net * load(mass.at(from + i)) + load(&external[i])
+            });
+        }
+    }
+}
+
+/// Chunks of bodies, all as many.
+struct Bodies<'a, N, const W: usize> {
+    /// From the left and from the right.
+    force: [&'a [[N; W]]; 2],
+    /// Accelerations of earlier steps.
+    earlier: [&'a [[N; W]]; EARLIER],
+    now: &'a mut [[N; W]],
+    x: &'a mut [[N; W]],
+    v: &'a mut [[N; W]],
+}
+
+impl<N: Number<W>, const W: usize> Bodies<'_, N, W> {
+    /// A step of bodies that accelerate as told by their place and net force.
+    #[inline(always)]
+    fn step<S: Simd>(
+        self,
+        simd: S,
+        scaled: &Scaled<N, W>,
+        acceleration: impl Fn(usize, N::Wide<S>) -> N::Wide<S>,
+    ) {
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let drift = load(&scaled.drift);
+        let velocity: [_; USED] = std::array::from_fn(|k| load(&scaled.velocity[k]));
+        let position: [_; USED] = std::array::from_fn(|k| load(&scaled.position[k]));
+        // Of lengths that are seen to be the same, so that nothing is checked in the loop.
+        let count = self.now.len();
+        let (now, x, v) = (self.now, &mut self.x[..count], &mut self.v[..count]);
+        let [left, right] = self.force.map(|force| &force[..count]);
+        let earlier = self.earlier.map(|a| &a[..count]);
+        for i in 0..count {
+            let a = acceleration(i, load(&left[i]) - load(&right[i]));
+            a.store_array(&mut now[i]);
+            let (x0, v0) = (load(&x[i]), load(&v[i]));
+            // What is small first: single precision rounds once where it is large.
+            let mut sped = velocity[0] * a;
+            let mut moved = position[0] * a;
+            for k in 1..USED {
+                let a = load(&earlier[k - 1][i]);
+                sped = velocity[k].mul_add(a, sped);
+                moved = position[k].mul_add(a, moved);
+            }
+            (v0 + sped).store_array(&mut v[i]);
+            (x0 + drift.mul_add(v0, moved)).store_array(&mut x[i]);
+        }
     }
 }

@@ -66,6 +66,12 @@ pub(super) struct Reader<'a, N, const W: usize> {
 }
 
 impl<'a, N, const W: usize> Reader<'a, N, W> {
+    /// All chunks of a column whose chunks are not equal.
+    #[inline(always)]
+    pub fn all(&self) -> &'a [[N; W]] {
+        self.chunks
+    }
+
     /// Chunk `i`.
     #[inline(always)]
     pub fn at(&self, i: usize) -> &'a [N; W] {

@@ -1,9 +1,10 @@
 //! `hertzchain check`: what was understood; runs nothing.
 
 use crate::arguments::Check;
-use crate::failure::Failure;
-use crate::{format, input, json, print};
+use crate::failure::{self, Failure};
+use crate::{format, print};
 use hertzchain_study::describe;
+use hertzchain_verbs::{input, json};
 use serde_json::json;
 
 /// Runs the verb.
@@ -26,6 +27,6 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
             &json!({ "groups": json::groups(&groups), "warnings": warnings }),
         );
     }
-    input::print_warnings(given, &warnings);
+    failure::print_speed_warnings(given, &warnings);
     print::print(&format::groups(&groups, experiment.units()))
 }

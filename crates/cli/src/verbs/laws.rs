@@ -1,39 +1,20 @@
 //! `hertzchain laws`: every contact law, from the registry.
 
 use crate::arguments::Laws;
-use crate::bibliography::Work;
 use crate::failure::Failure;
 use crate::{format, print};
-use hertzchain_chain::laws::{LAWS, LawInfo, Nature, Parameter, Source, find};
-use serde_json::{Value as Json, json};
+use hertzchain_chain::laws::{LawInfo, Parameter, Source};
+use hertzchain_verbs::bibliography::Work;
+use hertzchain_verbs::laws::{self, nature};
 
 /// Runs the verb.
 pub fn run(arguments: &Laws) -> Result<(), Failure> {
-    let infos: Vec<&LawInfo> = match &arguments.name {
-        Some(name) => vec![&find(name).ok_or_else(|| unknown(name))?.info],
-        None => LAWS.iter().map(|row| &row.info).collect(),
-    };
+    let infos = laws::infos(arguments.name.as_deref())?;
     if arguments.json {
-        return print::print_json(&infos.iter().map(|info| as_json(info)).collect::<Json>());
+        return print::print_json(&laws::json(&infos));
     }
     let texts: Vec<String> = infos.iter().map(|info| as_text(info)).collect();
     print::print(texts.join("\n").trim_end())
-}
-
-fn unknown(name: &str) -> Failure {
-    let names: Vec<&str> = LAWS.iter().map(|row| row.info.name).collect();
-    Failure::User(format!(
-        "there is no law `{name}`; expected one of: {}",
-        names.join(", ")
-    ))
-}
-
-fn nature(info: &LawInfo) -> &'static str {
-    match info.nature {
-        Nature::Elastic => "elastic",
-        Nature::Dissipative => "dissipative",
-        Nature::ElasticPlastic => "elastic-plastic",
-    }
 }
 
 fn as_text(info: &LawInfo) -> String {
@@ -66,19 +47,6 @@ fn source(info: &LawInfo) -> String {
     }
 }
 
-fn source_json(info: &LawInfo) -> Json {
-    Work::of_key(info.reference).map_or(Json::Null, |work| {
-        json!({
-            "authors": work.authors,
-            "title": work.title,
-            "journal": work.journal,
-            "volume": work.volume,
-            "pages": work.pages,
-            "year": work.year.parse::<i32>().ok(),
-        })
-    })
-}
-
 fn default(parameter: &Parameter) -> String {
     match parameter.source {
         Source::Required => "required".to_owned(),
@@ -94,33 +62,4 @@ fn parameter(parameter: &Parameter) -> String {
         unit => unit,
     };
     format!("{} [{unit}]; {}", parameter.meaning, default(parameter))
-}
-
-fn as_json(info: &LawInfo) -> Json {
-    let parameter = |p: &Parameter| {
-        let value = match p.source {
-            Source::Default(value) => json!(value),
-            Source::Required | Source::Materials | Source::Hertz => Json::Null,
-        };
-        json!({
-            "name": p.name,
-            "unit": p.unit,
-            "meaning": p.meaning,
-            "required": p.source == Source::Required,
-            "from_elastic_hertz": p.source == Source::Hertz,
-            "from_materials": p.source.is_derived(),
-            "default": value,
-            "least": p.least,
-        })
-    };
-    json!({
-        "name": info.name,
-        "equation": info.equation,
-        "nature": nature(info),
-        "gated": info.gated,
-        "validity": info.validity,
-        "reference": info.reference,
-        "source": source_json(info),
-        "parameters": info.parameters.iter().map(parameter).collect::<Json>(),
-    })
 }

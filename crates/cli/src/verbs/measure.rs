@@ -1,53 +1,30 @@
 //! `hertzchain measure`: records of a rig to times of flight.
 
 mod pictures;
-mod results;
 mod summary;
 
-use crate::arguments::Input;
-use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::{input, print};
-use hertzchain_experiment::Experiment;
-use hertzchain_measure::records::{Parts, ReadOptions, Rows};
-use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Note, Options, ShotList, laws_csv, ratios_csv,
-    shots_csv, speeds_csv,
-};
-use hertzchain_signal::{Finding, LowPass, Measuring, Method, Polarity, Shape, Template};
+use crate::print;
+use hertzchain_measure::{Curves, Measurement, Note, laws_csv, ratios_csv, shots_csv, speeds_csv};
+use hertzchain_verbs::arguments::measure::Measure as Arguments;
+use hertzchain_verbs::measure;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::f64::consts::TAU;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-/// Order of one run of the low-pass.
-const ORDER: usize = 4;
-
-/// The power of a cosine that pulses of Hertz contacts come nearest to.
-const POWER: f64 = 6.0;
-
-/// Full width of its fit, in full widths at half maximum.
-const FITTED_WIDTHS: f64 = 1.6;
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let files = files(&arguments.records, arguments.shots.as_deref())?;
-    let options = options(arguments)?;
+    let files = measure::files(&arguments.records, arguments.shots.as_deref())?;
+    let options = measure::options(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let bar = bar();
     let measured = hertzchain_measure::measure(&files, &options, &mut |count| {
         bar.inc(count as u64);
     });
     bar.finish_and_clear();
-    let grouping = Grouping {
-        gap_m_s: arguments.speed_gap,
-        reference: arguments.reference.clone(),
-        keep_dubious: arguments.keep_dubious,
-    };
+    let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
-    let all = results::json(&measured, &curves);
+    let all = measure::json(&measured, &curves);
     match arguments.json {
         true => print::print_json(&all)?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
@@ -55,159 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = folder {
         write(folder, &measured, (&curves, &grouping.reference), &all)?;
     }
-    judge(&measured)
-}
-
-/// Files, and those of folders in order of their names; the table of shots may
-/// lie among them.
-fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
-    let mut files = Vec::new();
-    for path in given {
-        match path.is_dir() {
-            true => files.extend(inside(path)?),
-            false => files.push(path.clone()),
-        }
-    }
-    let list = list.and_then(|list| list.canonicalize().ok());
-    files.retain(|file| list.is_none() || file.canonicalize().ok() != list);
-    Ok(files)
-}
-
-/// Endings of recordings; a folder may hold other things beside.
-const ENDINGS: [&str; 9] = [
-    "h5", "hdf5", "csv", "tsv", "txt", "npy", "npz", "wav", "tdms",
-];
-
-fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
-    let entries = fs::read_dir(folder).map_err(refused)?;
-    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    let is_recording = |path: &PathBuf| {
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| ENDINGS.contains(&ending.to_ascii_lowercase().as_str()))
-    };
-    let mut found: Vec<PathBuf> = paths.filter(is_recording).collect();
-    found.sort();
-    match found.is_empty() {
-        true => Err(Failure::User(format!(
-            "{}: no recordings in it (of .{})",
-            folder.display(),
-            ENDINGS.join(", .")
-        ))),
-        false => Ok(found),
-    }
-}
-
-fn options(arguments: &Arguments) -> Result<Options, Failure> {
-    let rig = arguments.rig.as_deref().map(open_rig).transpose()?;
-    let reading = &arguments.reading;
-    if reading.channel.len() > 2 {
-        return Err(Failure::User(
-            "a shot has at most two channels: --channel once if one sums both sensors, twice for \
-             the sensor bead's and the wall's"
-                .to_owned(),
-        ));
-    }
-    Ok(Options {
-        reading: ReadOptions {
-            rate_hz: reading.rate,
-            trust_rate: reading.trust_rate,
-            channels: reading.channel.clone(),
-            time_unit_s: reading.time_unit,
-            parts: match (reading.shot_samples, reading.level) {
-                (Some(samples), None) => Parts::Shots(samples),
-                _ => Parts::Whole,
-            },
-            rows: match reading.rows {
-                None => Rows::Auto,
-                Some(RowsAre::Shots) => Rows::Shots,
-                Some(RowsAre::Channels) => Rows::Channels,
-                Some(RowsAre::Times) => Rows::Times,
-            },
-        },
-        cutting: match (reading.level, reading.whole) {
-            (Some(volts), _) => Cut::Level(Level {
-                volts,
-                samples: reading.shot_samples,
-            }),
-            (None, true) => Cut::Never,
-            (None, false) => Cut::Plain,
-        },
-        measuring: measuring(&arguments.picking, rig.as_ref())?,
-        list: arguments.shots.as_deref().map(list).transpose()?,
-        speed_error_m_s: arguments
-            .speed_error
-            .or_else(|| Some(rig.as_ref()?.campaign().photogate.error_m_s)),
-    })
-}
-
-/// The rig's file, or a preset by its name.
-fn open_rig(file: &Path) -> Result<Experiment, Failure> {
-    let preset = file.to_str().filter(|_| !file.exists());
-    let preset = preset.filter(|name| hertzchain_experiment::preset(name).is_ok());
-    input::open(&Input {
-        file: preset.is_none().then(|| file.to_owned()),
-        preset: preset.map(str::to_owned),
-    })
-}
-
-fn list(file: &Path) -> Result<ShotList, Failure> {
-    let wrong = |error: &dyn std::error::Error| {
-        Failure::User(format!("--shots {}: {error}", file.display()))
-    };
-    let text = fs::read_to_string(file).map_err(|error| wrong(&error))?;
-    ShotList::parse(&text).map_err(|error| wrong(&error))
-}
-
-fn measuring(picking: &Picking, rig: Option<&Experiment>) -> Result<Measuring, Failure> {
-    let beads = picking.beads.zip(picking.sensor);
-    if let Some((beads, sensor)) = beads.filter(|(beads, sensor)| sensor >= beads) {
-        return Err(Failure::User(format!(
-            "--sensor {sensor} is not one of --beads {beads} before the last"
-        )));
-    }
-    let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
-    let high_pass_hz = picking
-        .high_pass
-        .or_else(|| Some(rig?.campaign().amplifier.high_pass_hz));
-    Ok(Measuring {
-        finding: Finding {
-            polarity: polarity(picking.polarity),
-            wall_polarity: polarity(picking.wall_polarity),
-            beads: beads.or_else(of_rig),
-            rails: None,
-        },
-        method: method(picking),
-        high_pass_s: high_pass_hz
-            .filter(|hz| *hz > 0.0)
-            .map(|hz| (TAU * hz).recip()),
-        low_pass: picking.low_pass.map(|cutoff_hz| LowPass {
-            cutoff_hz,
-            order: ORDER,
-        }),
-    })
-}
-
-fn polarity(way: Option<Way>) -> Polarity {
-    match way {
-        None => Polarity::Auto,
-        Some(Way::Positive) => Polarity::Positive,
-        Some(Way::Negative) => Polarity::Negative,
-    }
-}
-
-fn method(picking: &Picking) -> Method {
-    match picking.method {
-        MethodName::Local => Method::default(),
-        MethodName::Onset => Method::Onset {
-            fraction: picking.onset,
-        },
-        MethodName::Correlation => Method::CrossCorrelation(Template::Passing),
-        MethodName::Shape => Method::MatchedShape {
-            shape: Shape::cos_power(POWER),
-            width: FITTED_WIDTHS,
-        },
-    }
+    measure::judge(&measured)
 }
 
 /// Drawn on a terminal only.
@@ -264,24 +89,4 @@ fn write(
     }
     eprint!("Written:\n{}", folder.list());
     Ok(())
-}
-
-/// Refused records make the run one with mistakes, whatever else was measured;
-/// so does a run in which no record had a time of flight.
-fn judge(measured: &Measurement) -> Result<(), Failure> {
-    let refused = measured.refused.len();
-    let all = refused + measured.shots.len();
-    let timed = measured.shots.iter().any(|shot| shot.flight.is_ok());
-    match (refused, timed) {
-        (0, true) => Ok(()),
-        (0, false) => Err(Failure::User(
-            "no record had a time of flight; its flags tell why".to_owned(),
-        )),
-        (_, true) => Err(Failure::User(format!(
-            "{refused} of {all} records were refused; the others were measured"
-        ))),
-        (_, false) => Err(Failure::User(format!(
-            "nothing was measured: {refused} of {all} records were refused"
-        ))),
-    }
 }

@@ -4,11 +4,11 @@ mod report;
 mod traces;
 
 use crate::arguments::Shot as Arguments;
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::folder::Folder;
-use crate::{input, json, print, table};
+use crate::print;
 use hertzchain_study::{Plan, shoot, shoot_checked};
-use serde_json::json;
+use hertzchain_verbs::{input, json};
 use std::path::Path;
 
 /// Runs the verb.
@@ -28,17 +28,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => shoot(&plan),
     };
     let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
-    input::print_warnings(given, &warnings);
+    failure::print_speed_warnings(given, &warnings);
     if arguments.json {
-        let mut result = json::shot(&shot, experiment.units(), &plan);
-        if let Some(object) = result.as_object_mut() {
-            object.insert("experiment".to_owned(), json!(experiment.name()));
-            object.insert(
-                "speed_m_s".to_owned(),
-                json!(speed.or(experiment.speed_m_s())),
-            );
-        }
-        print::print_json(&table::named(result, experiment.units()))?;
+        let result = json::shot_of(&experiment, speed, &plan, &shot);
+        print::print_json(&result)?;
     } else {
         print::print(&report::text(&experiment, &plan, &shot))?;
     }

@@ -1,9 +1,10 @@
 //! `hertzchain theory`: what theory says of a chain's waves.
 
 use crate::arguments::Check;
-use crate::failure::Failure;
-use crate::{format, input, json, print};
+use crate::failure::{self, Failure};
+use crate::{format, print};
 use hertzchain_study::describe_theory;
+use hertzchain_verbs::{input, json};
 
 /// Runs the verb.
 pub fn run(arguments: &Check) -> Result<(), Failure> {
@@ -17,7 +18,7 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     if arguments.json {
         return print::print_json(&json::groups(&groups));
     }
-    input::print_warnings(given, &warnings);
+    failure::print_speed_warnings(given, &warnings);
     match groups.is_empty() {
         true => print::print("No closed theory fits this chain: no striker, no preload."),
         false => print::print(&format::groups(&groups, experiment.units())),

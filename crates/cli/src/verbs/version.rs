@@ -1,8 +1,9 @@
 //! `hertzchain --version`: which program this is and how it computes here.
 
 use crate::failure::Failure;
-use crate::{input, print};
+use crate::print;
 use hertzchain_study::InstructionSet;
+use hertzchain_verbs::input;
 
 /// Prints the version.
 pub fn run(verbose: bool) -> Result<(), Failure> {

@@ -96,21 +96,28 @@ impl Model {
             .par_iter()
             .map(|point| self.plans(point, speeds))
             .collect();
-        let sound = planned.iter().filter_map(|plans| plans.as_ref().ok());
-        let plans: Vec<Plan> = sound.flatten().map(|(plan, _)| plan.clone()).collect();
+        let mut plans = Vec::new();
+        let mut part = |(plan, gain)| {
+            plans.push(plan);
+            gain
+        };
+        let gains: Vec<Result<Vec<f64>, ModelError>> = planned
+            .into_iter()
+            .map(|planned| Ok(planned?.into_iter().map(&mut part).collect()))
+            .collect();
         let mut shots = shoot_unjudged(&plans, self.set).into_iter();
-        let curve = |plans: Result<Vec<(Plan, f64)>, ModelError>| {
-            let plans = plans?;
+        let curve = |gains: Result<Vec<f64>, ModelError>| {
+            let gains = gains?;
             // All of the point's shots, so that the next point's are next.
-            let own: Vec<_> = shots.by_ref().take(plans.len()).collect();
-            let rows = own.into_iter().zip(plans).zip(&speeds.at);
-            rows.map(|((shot, (_, gain)), (_, speed))| {
+            let own: Vec<_> = shots.by_ref().take(gains.len()).collect();
+            let rows = own.into_iter().zip(gains).zip(&speeds.at);
+            rows.map(|((shot, gain), (_, speed))| {
                 predicted(&shot.map_err(|error| at(*speed, error))?, gain)
                     .map_err(|error| at(*speed, error))
             })
             .collect()
         };
-        planned.into_iter().map(curve).collect()
+        gains.into_iter().map(curve).collect()
     }
 
     /// The largest relative error of one curve's times of flight, each shot of

@@ -5,6 +5,14 @@ use super::slopes::{Slopes, Stencil, slopes};
 use crate::linear::norm;
 use crate::{ModelError, Problem};
 
+/// Relative error of derivatives by rounding: the least singular value, of unit
+/// columns, that double precision resolves.
+pub(crate) const ROUNDING: f64 = 1e-9;
+
+/// Share of the disagreement between two step sizes that the extrapolated
+/// derivatives are taken to be wrong by.
+pub(crate) const EXTRAPOLATED: f64 = 0.03;
+
 /// Derivatives of the residuals at a point, by central differences with two
 /// step sizes and Richardson's extrapolation from both.
 ///

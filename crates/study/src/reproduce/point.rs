@@ -13,7 +13,7 @@ mod unchecked {
     /// ToFs, relative.
     pub const TOF: f64 = 4.0;
     /// Sensor, wall and returning peak, relative.
-    pub const PEAK: f64 = 50.0;
+    pub const PEAK: f64 = crate::shot::OF_PEAKS;
     /// Second returning peak, in returning peaks, where it is no mere shoulder.
     pub const SECOND_PEAK: f64 = 200.0;
     /// Widths, relative: that of a split pulse ends at a flat shoulder.

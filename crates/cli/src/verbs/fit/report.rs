@@ -1,11 +1,10 @@
 //! A fit for people.
 
-use super::Fitted;
-use super::more::{More, Rivals, Sampled};
 use crate::format::{self, digits};
-use crate::inference::words::{doubt, estimate, percent};
 use crate::print::heading;
+use crate::words::{doubt, estimate, percent};
 use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
+use hertzchain_verbs::fit::{Fitted, More, Rivals, Sampled};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;

@@ -1,9 +1,9 @@
 //! Figures of uncertainty: profiles, samples, and what the data determine.
 
-use super::Fitted;
 use hertzchain_figures::Figure;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_infer::{Parameter, Posterior, Problem, Profile, RISE_OF_95_PERCENT};
+use hertzchain_verbs::fit::Fitted;
 
 /// Parameters as axes say them.
 fn labels(fitted: &Fitted) -> Vec<String> {

@@ -1,8 +1,8 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
-use super::Gauged;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::gauge::{Contact, Oil};
+use hertzchain_verbs::gauge::Gauged;
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;

@@ -1,13 +1,13 @@
 //! A shot in words.
 
 use crate::format::{Style, digits, pairs};
-use crate::missing;
 use crate::print::heading;
 use hertzchain_chain::Start;
 use hertzchain_chain::observe::{Maximum, Passage};
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::Experiment;
 use hertzchain_study::{Plan, Shot};
+use hertzchain_verbs::missing;
 
 type Rows = Vec<(String, String)>;
 

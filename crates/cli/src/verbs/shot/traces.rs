@@ -4,12 +4,12 @@ use crate::arguments::Shot as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures;
-use crate::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_study::{Plan, Shot, shoot};
+use hertzchain_verbs::table::{cell, suffix};
 use npyz::WriterBuilder;
 
 /// Samples of a shot, unless the chain is so long that memory decides.

@@ -1,11 +1,12 @@
 //! Results as JSON, full precision, SI units in the names.
 
 use crate::missing;
+use crate::table::named;
 use hertzchain_chain::observe::Maximum;
 use hertzchain_chain::wave::Budget;
-use hertzchain_experiment::Units;
+use hertzchain_experiment::{Experiment, Units};
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
-use hertzchain_study::{Group, Plan, Point, Row, Shot, Value};
+use hertzchain_study::{Group, Plan, Point, Row, Shot, Sweep, Tuned, Value};
 use serde_json::{Value as Json, json};
 
 fn peak(maximum: &Maximum) -> Json {
@@ -16,7 +17,23 @@ fn peaks(maxima: &[Maximum]) -> Json {
     maxima.iter().map(peak).collect()
 }
 
+/// One shot of an experiment at a speed of its own or another.
+#[must_use]
+pub fn shot_of(experiment: &Experiment, speed_m_s: Option<f64>, plan: &Plan, shot: &Shot) -> Json {
+    let units = experiment.units();
+    let mut result = self::shot(shot, units, plan);
+    if let Some(object) = result.as_object_mut() {
+        object.insert("experiment".to_owned(), json!(experiment.name()));
+        object.insert(
+            "speed_m_s".to_owned(),
+            json!(speed_m_s.or(experiment.speed_m_s())),
+        );
+    }
+    named(result, units)
+}
+
 /// One shot of a plan that differs from this one in speed at most.
+#[must_use]
 pub fn shot(shot: &Shot, units: Units, plan: &Plan) -> Json {
     json!({
         "tof_incident_s": shot.flight.map(|flight| flight.incident_s),
@@ -78,11 +95,27 @@ fn budget(budget: &Budget) -> Json {
     })
 }
 
+/// All speeds of a sweep and their power laws; `plan` is that of one of them.
+#[must_use]
+pub fn sweep(experiment: &Experiment, plan: &Plan, swept: &Sweep) -> Json {
+    let units = experiment.units();
+    let pilots = |tuned: Tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()});
+    let results = json!({
+        "experiment": experiment.name(),
+        "pilots": swept.tuned.map(pilots),
+        "points": swept.points.iter().map(|point| self::point(point, units, plan)).collect::<Json>(),
+        "power_law_incident": fit(&swept.incident, swept.incident_uncertainty().ok()),
+        "power_law_reflected": fit(&swept.reflected, swept.reflected_uncertainty().ok()),
+    });
+    named(results, units)
+}
+
 /// What stands in the place of the energy budget in a sweep.
 const NO_BUDGET: &str =
     "a sweep asks for times of flight and keeps no energy budget; `hertzchain shot` does";
 
 /// One speed of a sweep.
+#[must_use]
 pub fn point(point: &Point, units: Units, plan: &Plan) -> Json {
     match &point.shot {
         Err(error) => json!({ "speed_m_s": point.speed_m_s, "error": error.to_string() }),
@@ -103,6 +136,7 @@ pub fn point(point: &Point, units: Units, plan: &Plan) -> Json {
 /// A fit of times against speed, with its standard errors and with what the
 /// accuracies of the times alone leave open. Two speeds tell no errors and no
 /// R²: null.
+#[must_use]
 pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -> Json {
     match fit {
         Err(error) => json!({ "missing": missing::law(error) }),
@@ -123,6 +157,7 @@ pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -
 
 /// A description: numbers as numbers. What has several of them is an object
 /// whose keys name the units.
+#[must_use]
 pub fn groups(groups: &[Group]) -> Json {
     let row = |row: &Row| json!({ "name": row.name.trim(), "value": value(&row.value), "unit": row.unit });
     let group = |group: &Group| json!({ "title": group.title, "rows": group.rows.iter().map(row).collect::<Json>() });

@@ -76,6 +76,7 @@ pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Fail
 }
 
 /// Whether a number has a unit.
+#[must_use]
 pub fn has_unit(text: &str) -> bool {
     parse_quantity(text).is_ok_and(|quantity| quantity.dimension != Dimension::NONE)
 }

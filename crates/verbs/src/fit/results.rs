@@ -8,6 +8,7 @@ use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Problem, P
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
+#[must_use]
 pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     let data = fitted.problem.data();
@@ -178,6 +179,7 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
 }
 
 /// One line a value of a profile.
+#[must_use]
 pub fn profiles_csv(fitted: &Fitted, profiles: &[Profile]) -> String {
     let mut text = "name,value,chi_square_rise\n".to_owned();
     for profile in profiles {
@@ -190,6 +192,7 @@ pub fn profiles_csv(fitted: &Fitted, profiles: &[Profile]) -> String {
 }
 
 /// One line a parameter.
+#[must_use]
 pub fn parameters_csv(fitted: &Fitted) -> String {
     let mut text = "name,unit,value,standard_error\n".to_owned();
     for (at, parameter) in fitted.problem.parameters().iter().enumerate() {
@@ -206,6 +209,7 @@ pub fn parameters_csv(fitted: &Fitted) -> String {
 }
 
 /// One line a measured value.
+#[must_use]
 pub fn rows_csv(fitted: &Fitted) -> String {
     let mut text = "line,speed_m_s,observable,measured,error,fitted,residual\n".to_owned();
     let measured = fitted.problem.measured();

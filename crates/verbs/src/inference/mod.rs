@@ -1,10 +1,9 @@
 //! From arguments to a problem of inference.
 
 mod known;
-pub mod words;
 
 use crate::arguments::Input;
-use crate::arguments::infer::{Freed, Measured, Modelled, What};
+use crate::arguments::infer::{Assignment, Freed, Measured, Modelled, What};
 use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::{Experiment, PathError, Units};
@@ -29,6 +28,19 @@ pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
 pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
     let text = fs::read_to_string(file)
         .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
+    parsed(&file.display().to_string(), &text, measured, case)
+}
+
+/// The same from the text of a table; its name is used in messages.
+///
+/// # Errors
+/// A table that can't be used, by line and column.
+pub fn parsed(
+    name: &str,
+    text: &str,
+    measured: &Measured,
+    case: Option<String>,
+) -> Result<Data, Failure> {
     let selection = Selection {
         case,
         observables: measured.observables.iter().map(|what| of(*what)).collect(),
@@ -38,7 +50,7 @@ pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result
             ratio: measured.ratio_error,
         },
     };
-    Data::parse(&file.display().to_string(), &text, &selection).map_err(user)
+    Data::parse(name, text, &selection).map_err(user)
 }
 
 fn of(what: What) -> Observable {
@@ -56,10 +68,18 @@ pub fn opened(
     preset: &Option<String>,
     case: &str,
 ) -> Result<Experiment, Failure> {
-    let mut experiment = input::open(&Input {
+    let experiment = input::open(&Input {
         file: file.map(Path::to_owned),
         preset: preset.clone(),
     })?;
+    in_case(experiment, case)
+}
+
+/// An experiment as a model, in the case of this name if it has one.
+///
+/// # Errors
+/// A case that has mistakes, or an experiment without units.
+pub fn in_case(mut experiment: Experiment, case: &str) -> Result<Experiment, Failure> {
     if let Some(case) = experiment.case(case) {
         experiment = case?;
     }
@@ -73,12 +93,20 @@ pub fn opened(
 
 /// The model's experiment, with what is set and in its case.
 pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
-    let mut experiment = opened(
+    let experiment = opened(
         modelled.model.as_deref(),
         &modelled.preset,
         case.unwrap_or_default(),
     )?;
-    for set in &modelled.set {
+    changed(experiment, &modelled.set)
+}
+
+/// An experiment with numbers set.
+///
+/// # Errors
+/// A name or a value that does not fit.
+pub fn changed(mut experiment: Experiment, sets: &[Assignment]) -> Result<Experiment, Failure> {
+    for set in sets {
         let changed = experiment.set_text(&[(&set.name, &set.text)]);
         experiment = changed.map_err(|error| match error {
             PathError::Mistakes(mistakes) => mistakes.into(),

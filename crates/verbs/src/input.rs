@@ -1,13 +1,11 @@
 //! From arguments to an experiment and a plan.
 
 use crate::arguments::{How, Input, Pick, Solver};
-use crate::failure::{self, Failure};
-use crate::format::Style;
+use crate::failure::Failure;
 use crate::given::Given;
+use crate::quantity::Style;
 use hertzchain_chain::System;
-use hertzchain_experiment::{
-    Experiment, Mistakes, OpenError, Units, Warning, longest_duration_s, preset,
-};
+use hertzchain_experiment::{Experiment, Mistakes, OpenError, Units, longest_duration_s, preset};
 use hertzchain_study as study;
 use hertzchain_study::{InstructionSet, Plan};
 use std::path::Path;
@@ -55,15 +53,9 @@ pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result
     })
 }
 
-/// Prints what is odd about an experiment at a speed.
-pub fn print_warnings(given: Option<&Given>, warnings: &[Warning]) {
-    match given {
-        Some(given) => failure::print_option_warnings(&option(given), warnings),
-        None => failure::print_warnings(warnings),
-    }
-}
-
-fn option(given: &Given) -> String {
+/// The option by which a speed was given.
+#[must_use]
+pub fn option(given: &Given) -> String {
     format!("--speed {}", given.text())
 }
 

@@ -1,12 +1,13 @@
 //! Why there is no time of flight or no power law, in the same words wherever it is told.
 
-use crate::format::Style;
+use crate::quantity::Style;
 use hertzchain_chain::FarEnd;
 use hertzchain_chain::observe::PassageError;
 use hertzchain_experiment::Units;
 use hertzchain_signal::FitError;
 
 /// The reason, as the end of a sentence.
+#[must_use]
 pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
     let time = |time_s: f64| Style::brief(units).quantity(time_s, "s");
     match (far, error) {
@@ -22,6 +23,7 @@ pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
 }
 
 /// Why times of flight have no power law.
+#[must_use]
 pub fn law(error: &FitError) -> String {
     match error {
         FitError::TooFew => "fewer than two speeds have a time of flight".to_owned(),

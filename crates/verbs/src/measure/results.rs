@@ -5,6 +5,7 @@ use hertzchain_signal::{Estimate, FitError, Picked, PowerLaw, Ratio, Summary};
 use serde_json::{Value, json};
 
 /// Shots, curves, ratios and what was refused.
+#[must_use]
 pub fn json(measured: &Measurement, curves: &Curves) -> Value {
     let refused = measured.refused.iter().map(ToString::to_string);
     json!({

@@ -1,0 +1,17 @@
+//! All tests of the crate from outside, as one program: linked once.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod arrows;
+mod bad_input;
+mod bad_input_shot;
+mod bibliography;
+mod campaign;
+mod ensembles;
+mod inference;
+mod legends;
+mod measure;
+mod program;
+mod shards;
+mod sweeps;
+mod tables;
+mod whole_loop;

@@ -1,0 +1,17 @@
+//! All tests of the crate from outside, as one program: linked once.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod batches;
+mod choices;
+mod common;
+mod curve;
+mod data;
+mod free;
+mod gauge;
+mod linear;
+mod mistakes;
+mod nonlinear;
+mod peers;
+mod posterior;
+mod round_trip;
+mod toys;

@@ -1,0 +1,11 @@
+//! All tests of the crate from outside, as one program: linked once.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod common;
+mod cutting;
+mod finding;
+mod nonsense;
+mod picking;
+mod power_law;
+mod reduction;
+mod zero_phase;

@@ -1,0 +1,14 @@
+//! All tests of the crate from outside, as one program: linked once.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+mod accuracy;
+mod describe;
+mod ensemble;
+mod examples;
+mod long_chains;
+mod rebound;
+mod reproduce;
+mod runs;
+mod shot;
+mod sweep;
+mod tuned;

@@ -1,0 +1,122 @@
+//! `design`: what to measure next.
+
+use crate::arguments::infer::Design as Arguments;
+use crate::failure::Failure;
+use crate::inference::user;
+use crate::table::cell;
+use hertzchain_infer::{
+    Candidate, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting, Problem, design, fit,
+    usual_ways,
+};
+use hertzchain_study::parse_speeds;
+use serde_json::{Value, json};
+
+/// Speeds that could be measured.
+///
+/// # Errors
+/// A list that is none.
+pub fn speeds(data: &Data, arguments: &Arguments) -> Result<Vec<f64>, Failure> {
+    match &arguments.speeds {
+        Some(speeds) => parse_speeds(speeds).map_err(user),
+        None => Ok(usual_speeds(&data.speeds_m_s())),
+    }
+}
+
+/// A few speeds over the range of the data and a little beyond.
+fn usual_speeds(speeds: &[f64]) -> Vec<f64> {
+    let first = speeds.first().copied().unwrap_or(0.1) * 0.8;
+    let last = speeds.last().copied().unwrap_or(1.0) * 1.25;
+    let steps = 7;
+    let speed = |at: i32| first * (last / first).powf(f64::from(at) / f64::from(steps));
+    // Three digits are as near as a striker is set.
+    let rounded = |speed: f64| format!("{speed:.3}").parse().unwrap_or(speed);
+    (0..=steps).map(|at| rounded(speed(at))).collect()
+}
+
+/// Places of the named parameters; all of them where none is named.
+///
+/// # Errors
+/// A parameter that is not free.
+pub fn targets(problem: &CurveProblem, arguments: &Arguments) -> Result<Vec<usize>, Failure> {
+    let names: Vec<&str> = problem
+        .parameters()
+        .iter()
+        .map(|p| p.name.as_str())
+        .collect();
+    if arguments.target.is_empty() {
+        return Ok((0..names.len()).collect());
+    }
+    let place = |target: &String| {
+        let at = names.iter().position(|name| name == target);
+        at.ok_or_else(|| {
+            Failure::User(format!(
+                "--target {target} is not free; free are {}",
+                names.join(", ")
+            ))
+        })
+    };
+    arguments.target.iter().map(place).collect()
+}
+
+/// Fits, and ranks candidates by what they would tell of the targets.
+///
+/// # Errors
+/// What is in the way of the fit or of a candidate's curve.
+pub fn designed(
+    problem: &CurveProblem,
+    targets: &[usize],
+    speeds: &[f64],
+    arguments: &Arguments,
+) -> Result<(Vec<Candidate>, Design), Failure> {
+    let fit = fit(problem, &Fitting::default()).map_err(user)?;
+    let ways = usual_ways(problem.model().experiment()).map_err(user)?;
+    let errors = ExpectedErrors::like(problem.data());
+    let candidates = problem
+        .candidates(&fit, &ways, speeds, &errors)
+        .map_err(user)?;
+    let picks = arguments.picks;
+    let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
+    Ok((candidates, found))
+}
+
+/// Everything, in SI.
+#[must_use]
+pub fn json(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> Value {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let one = |expected: &Expected| {
+        json!({
+            "measure": candidates[expected.candidate].name,
+            "standard_errors": expected.after.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+            "information_nats": expected.gain,
+        })
+    };
+    json!({
+        "parameters": found.targets.iter().map(|at| problem.parameters()[*at].name.clone()).collect::<Vec<_>>(),
+        "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+        "ranked": found.ranked.iter().map(one).collect::<Value>(),
+        "series": found.greedy.iter().map(one).collect::<Value>(),
+    })
+}
+
+/// One line a candidate, best first.
+#[must_use]
+pub fn csv(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> String {
+    let names = found
+        .targets
+        .iter()
+        .map(|at| format!(",{}_error", problem.parameters()[*at].name));
+    let mut text = format!("measure{},information_nats\n", names.collect::<String>());
+    for expected in &found.ranked {
+        let after = expected.after.iter().map(|sd| match sd.is_finite() {
+            true => format!(",{}", cell(*sd)),
+            false => ",".to_owned(),
+        });
+        let name = &candidates[expected.candidate].name;
+        text += &format!(
+            "\"{name}\"{},{}\n",
+            after.collect::<String>(),
+            cell(expected.gain)
+        );
+    }
+    text
+}
