@@ -204,11 +204,12 @@ fn empty(of: &Channel) -> Channel {
 
 /// A shot that was cut out, by its number in the file.
 fn shot(head: &Record, channels: &[Channel], number: u64, segment: Segment<'_, Moment>) -> Record {
-    let column = |of: fn(&Moment) -> f64| segment.samples.iter().map(of).collect::<Vec<f64>>();
-    let volts = [column(|moment| moment.sensor), column(|moment| moment.wall)];
-    let channels = channels.iter().zip(volts).map(|(channel, volts)| Channel {
+    let columns: [fn(&Moment) -> f64; 2] = [|moment| moment.sensor, |moment| moment.wall];
+    let channels = channels.iter().zip(columns).map(|(channel, of)| Channel {
         name: channel.name.clone(),
-        samples: channel.samples.with_volts(volts),
+        samples: channel
+            .samples
+            .with_volts(segment.samples.iter().map(of).collect()),
     });
     let fired_s = segment.trigger as f64 * head.interval_s;
     Record {
