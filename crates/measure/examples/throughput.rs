@@ -98,7 +98,7 @@ fn shot(seed: u64) -> Vec<i16> {
 fn time(name: &str, path: &Path, options: &Options, threads: usize) -> Anyhow {
     let files: [PathBuf; 1] = [path.to_owned()];
     let (start, before_s) = (Instant::now(), processor_s());
-    let measured = measure(&files, options, &mut |_| {});
+    let measured = measure(&files, options, &());
     let seconds = start.elapsed().as_secs_f64();
     let own_s = processor_s()
         .zip(before_s)

@@ -128,7 +128,7 @@ pub fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box<dyn Er
     }
     files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
     files.sort();
-    let shots = measure(&files, options, &mut |_| {}).shots;
+    let shots = measure(&files, options, &()).shots;
     let mut judged = Vec::new();
     for case in &plan.cases {
         judged.extend(of_case(case, &shots)?);
