@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use hertzchain_rig::Shard;
+use hertzchain_study::Shard;
 use hertzchain_verbs::arguments::{How, Input, infer, measure, threads};
 use hertzchain_verbs::given::Given;
 use std::path::PathBuf;
@@ -44,6 +44,8 @@ pub enum Verb {
     Shot(Shot),
     /// Compute times of flight against speed, with power-law fits
     Sweep(Sweep),
+    /// Put the shards of a sweep or a campaign together that several machines have computed
+    Merge(Merge),
     /// Run a campaign on a virtual rig: taps and shots, recorded as by a real one
     Campaign(Campaign),
     /// Measure times of flight on recordings of any rig, with errors and curves
@@ -138,6 +140,10 @@ pub struct Sweep {
     /// Write the table (CSV) and a figure (SVG, PNG) into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Only the i-th of n parts, for several machines, as one file in --out, unless it is there;
+    /// `hertzchain merge` puts them together
+    #[arg(long, value_name = "i/n", requires = "out", conflicts_with = "json")]
+    pub shard: Option<Shard>,
     /// Follow the striker until it is away for good and give its velocity; takes the slower loop
     #[arg(long)]
     pub rebound: bool,
@@ -147,6 +153,17 @@ pub struct Sweep {
     /// Threads; all cores when absent
     #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
+}
+
+/// Arguments of `merge`.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// Folders with shards, as `sweep --shard` or `campaign --shard` have written them
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// Folder to write the whole into: the files of a run that was never cut
+    #[arg(long, short, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `campaign`.

@@ -31,6 +31,7 @@ fn run(verb: Verb) -> Result<(), Failure> {
         Verb::Reproduce(arguments) => verbs::reproduce::run(&arguments),
         Verb::Shot(arguments) => verbs::shot::run(&arguments),
         Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
+        Verb::Merge(arguments) => verbs::merge::run(&arguments),
         Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
         Verb::Measure(arguments) => verbs::measure::run(&arguments),
         Verb::Fit(arguments) => verbs::fit::run(&arguments),

@@ -10,7 +10,7 @@ use hertzchain_chain::observe::Trace;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_signal::{FitError, PowerLaw};
-use hertzchain_study::Sweep;
+use hertzchain_study::{Column, Part};
 
 /// What a sensor is called in figures and its unit; the last contact is the wall's.
 pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
@@ -126,23 +126,30 @@ pub fn wall(experiment: &Experiment) -> Option<usize> {
 }
 
 /// Times of flight against speed with their power laws.
-pub fn sweep(experiment: &Experiment, sweep: &Sweep) -> Figure {
-    let flights = sweep.flights();
+pub fn sweep(part: &Part) -> Figure {
+    let flights = part.rows.flights();
     let incident: Vec<(f64, f64)> = flights.iter().map(|flight| (flight.0, flight.1)).collect();
     let reflected = flights
         .iter()
         .filter_map(|f| f.2.map(|time_s| (f.0, time_s)));
     let reflected: Vec<(f64, f64)> = reflected.collect();
-    let units = experiment.units();
+    let units = part.units;
     let all = incident.iter().chain(&reflected);
     let clock = Clock::of(&all.map(|(_, time_s)| *time_s).collect::<Vec<_>>(), units);
     let chart = Chart::new(
         &axis("Striker speed $v_0$", "m/s", units),
         &clock.label("Time of flight"),
     );
-    let chart = chart.title(experiment.title()).x_log().y_log();
-    let chart = branch(chart, &clock, "reflected", &reflected, &sweep.reflected);
-    let chart = branch(chart, &clock, "incident", &incident, &sweep.incident);
+    let chart = chart.title(&part.title).x_log().y_log();
+    let law = |column| part.rows.law(column, part.accuracy).0;
+    let chart = branch(
+        chart,
+        &clock,
+        "reflected",
+        &reflected,
+        &law(Column::Reflected),
+    );
+    let chart = branch(chart, &clock, "incident", &incident, &law(Column::Incident));
     Figure::single_column(78.0).panel(chart)
 }
 

@@ -11,6 +11,7 @@ mod inference;
 mod legends;
 mod measure;
 mod program;
+mod shards;
 mod sweeps;
 mod tables;
 mod whole_loop;

@@ -15,6 +15,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "rig",
         &["chain", "experiment", "study", "signal", "records"],
     ),
+    ("shards", &["experiment", "study", "records"]),
     ("infer", &["chain", "experiment", "study", "signal"]),
     ("figures", &["chain", "experiment", "signal", "study"]),
     (
@@ -30,6 +31,19 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "py",
+        &[
+            "chain",
+            "experiment",
+            "study",
+            "rig",
+            "shards",
+            "measure",
+            "infer",
+            "verbs",
+        ],
+    ),
+    (
         "cli",
         &[
             "chain",
@@ -38,6 +52,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "study",
             "figures",
             "rig",
+            "shards",
             "measure",
             "infer",
             "verbs",

@@ -63,6 +63,7 @@ mod presets;
 mod schema;
 mod spec;
 mod syntax;
+mod understood;
 mod unit_slip;
 mod validity;
 mod value;

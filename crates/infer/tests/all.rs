@@ -1,6 +1,7 @@
 //! All tests of the crate from outside, as one program: linked once.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+mod batches;
 mod choices;
 mod common;
 mod curve;
@@ -12,5 +13,6 @@ mod mistakes;
 mod nonlinear;
 mod peers;
 mod posterior;
+mod pulses;
 mod round_trip;
 mod toys;

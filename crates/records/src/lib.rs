@@ -21,6 +21,7 @@ mod options;
 mod read;
 mod record;
 mod series;
+mod table;
 mod tdms;
 mod wav;
 
@@ -30,3 +31,4 @@ pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
 pub use record::{Channel, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, verify};
+pub use table::Table;

@@ -4,7 +4,7 @@ use crate::error::RigError;
 use crate::keep::{Folder, fingerprint};
 use crate::plan::{Plan, Series};
 use crate::recording;
-use crate::shard::Shard;
+use hertzchain_study::Shard;
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +19,7 @@ pub struct Progress {
 }
 
 /// What a run has done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
     /// Series that were finished before.
     pub kept: usize,
@@ -29,6 +29,8 @@ pub struct Done {
     pub shots: u64,
     /// Bytes of all files of this part.
     pub bytes: u64,
+    /// Series that can't be computed, each with the reason; they have no file.
+    pub failed: Vec<String>,
 }
 
 /// Runs the series of a part that a folder does not have yet, and calls
@@ -36,10 +38,11 @@ pub struct Done {
 /// this campaign would write.
 ///
 /// Files depend on neither the number of threads nor the order of series; a
-/// run that is broken off and begun again ends with the same bytes.
+/// run that is broken off and begun again ends with the same bytes. A series that
+/// can't be computed is told in [`Done::failed`] and stops no other.
 ///
 /// # Errors
-/// A folder that can't be used, a file in it that is not this campaign's, a shot that can't be computed, a recording
+/// A folder that can't be used, a file in it that is not this campaign's, a recording
 /// that can't be written: finished files stay as they are.
 pub fn campaign(
     plan: &Plan,
@@ -57,23 +60,30 @@ pub fn campaign(
         part.iter().copied().partition(|series| folder.has(series));
     let fired = AtomicU64::new(0);
     let shots = plan.shots(due.len());
-    let inputs = format!("{:016x}", fingerprint(plan));
+    let inputs = fingerprint(plan).short();
     for series in &done {
         recording::verify(plan, series, &folder.file(series), &inputs)?;
     }
     watch(Progress { fired: 0, shots });
-    due.par_iter().with_max_len(1).try_for_each(|series| {
+    let series = due.par_iter().with_max_len(1).map(|series| {
         let seen = || {
             let fired = fired.fetch_add(1, Ordering::Relaxed) + 1;
             watch(Progress { fired, shots });
         };
-        recording::write(plan, series, &folder.file(series), &inputs, &seen)
-    })?;
+        match recording::write(plan, series, &folder.file(series), &inputs, &seen) {
+            // The others may be sound; a full disk would be full for them too.
+            Err(error @ RigError::Shot { .. }) => Ok(Some(error.to_string())),
+            written => written.map(|()| None),
+        }
+    });
+    let failed: Vec<Option<String>> = series.collect::<Result<_, RigError>>()?;
+    let failed: Vec<String> = failed.into_iter().flatten().collect();
     let size = |series: &&Series| folder.file(series).metadata().map_or(0, |data| data.len());
     Ok(Done {
         kept: done.len(),
-        run: due.len(),
-        shots,
+        run: due.len() - failed.len(),
+        shots: fired.load(Ordering::Relaxed),
         bytes: part.iter().map(size).sum(),
+        failed,
     })
 }

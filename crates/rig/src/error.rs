@@ -1,12 +1,12 @@
 //! What can be wrong with a campaign, told to people.
 
-use crate::shard::ShardError;
 use crate::striker::OutOfRange;
 use hertzchain_chain::ChainError;
 use hertzchain_chain::settle::SettleError;
 use hertzchain_chain::wave::SolveError;
 use hertzchain_experiment::{Mistakes, PathError};
 use hertzchain_records::RecordError;
+use hertzchain_study::ShardError;
 use std::io;
 use std::path::Path;
 
@@ -16,6 +16,9 @@ pub enum RigError {
     /// An experiment that no rig can do.
     #[error("{0}")]
     Unsuited(String),
+    /// It was broken off.
+    #[error("the campaign was broken off; the same folder goes on from there")]
+    Stopped,
     /// A speed that the actuator does not have.
     #[error("{what}: {why}")]
     Speed {
@@ -68,6 +71,47 @@ pub enum RigError {
         /// What is there.
         holds: &'static str,
     },
+    /// A folder whose campaign can't be told from its file.
+    #[error(
+        "{0} is of another build of the program, or of an experiment whose numbers a program has set: merge \
+         with the build that made the recordings"
+    )]
+    OtherBuild(String),
+    /// Two recordings of one series that are not the same.
+    #[error("{one} and {other} are the same series with other bytes: one is damaged; move it away")]
+    Differ {
+        /// One file.
+        one: String,
+        /// The other.
+        other: String,
+    },
+    /// Not all series are there.
+    #[error(
+        "{} of {of} series are missing: {}; run the same `campaign` with any of the folders as --out \
+         again, with any --shard: what is there is kept", .missing.len(), first(.missing)
+    )]
+    Missing {
+        /// How many series the campaign has.
+        of: usize,
+        /// Names of those that are missing.
+        missing: Vec<String>,
+    },
+}
+
+/// Most names that a message lists.
+const LISTED: usize = 12;
+
+fn first(names: &[String]) -> String {
+    let listed = names
+        .iter()
+        .take(LISTED)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => listed,
+        more => format!("{listed} and {more} more"),
+    }
 }
 
 /// Why a tap or a shot can't be computed.

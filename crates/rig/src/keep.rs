@@ -6,7 +6,9 @@
 
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
+use hertzchain_experiment::Experiment;
 use hertzchain_study::reproduce::commit;
+use hertzchain_study::{Fingerprint, Inputs};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,8 +16,8 @@ use std::path::{Path, PathBuf};
 /// Another version may make other bits.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Name of the file that tells which campaign it is.
-const TOLD_IN: &str = "campaign.toml";
+/// Name of the file in a folder of recordings that tells which campaign it is.
+pub const TOLD_IN: &str = "campaign.toml";
 
 /// What a folder with another file of that name holds.
 const ANOTHER: &str =
@@ -27,25 +29,13 @@ pub struct Folder {
     path: PathBuf,
 }
 
-/// A fingerprint of all that recordings follow from, the program's version and
-/// commit included: 64 bits of FNV-1a.
+/// Of all that recordings follow from, the program's version and commit included.
 #[must_use]
-pub fn fingerprint(plan: &Plan) -> u64 {
-    let experiment = &plan.experiment;
-    // Numbers that a program has set are not in the text; where the file lies
-    // does not matter.
-    let numbers = experiment.numbers();
-    let inputs = format!(
-        "{} {:?} {} {numbers:?} {:?} {}",
-        VERSION,
-        commit(),
-        plan.seed,
-        experiment.reading(),
-        experiment.text()
-    );
-    inputs.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+pub fn fingerprint(plan: &Plan) -> Fingerprint {
+    let inputs = Inputs::of("campaign").count("seed", plan.seed);
+    inputs
+        .text("experiment", &plan.experiment.understood())
+        .fingerprint()
 }
 
 impl Folder {
@@ -81,6 +71,23 @@ impl Folder {
         Ok(folder)
     }
 
+    /// A folder that has recordings of this campaign; nothing is written.
+    ///
+    /// # Errors
+    /// One that holds another campaign's, or none.
+    pub fn of(path: &Path, plan: &Plan) -> Result<Self, RigError> {
+        let told_in = path.join(TOLD_IN);
+        let found = fs::read_to_string(&told_in);
+        let found = found.map_err(|error| RigError::folder(&told_in, error))?;
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        match found == told(plan) {
+            true => Ok(folder),
+            false => Err(folder.holds(ANOTHER)),
+        }
+    }
+
     fn holds(&self, holds: &'static str) -> RigError {
         RigError::AnotherCampaign {
             path: self.path.display().to_string(),
@@ -101,14 +108,46 @@ impl Folder {
     }
 }
 
-/// What tells a campaign: the experiment with a fingerprint above it.
+/// What stands before the seed in the file that tells a campaign.
+const SEED: &str = " with seed ";
+
+/// What tells a campaign: the experiment with a fingerprint above it, and the
+/// name that its files have where it has no cases.
 fn told(plan: &Plan) -> String {
+    let named = match (plan.experiment.cases().is_empty(), plan.cases.first()) {
+        (true, Some(case)) => format!(" of `{}`", case.name),
+        _ => String::new(),
+    };
     format!(
-        "# A campaign with seed {}, inputs {:016x}, by hertzchain {VERSION}{}. The recordings beside this file \
+        "# A campaign{named}{SEED}{}, inputs {}, by hertzchain {VERSION}{}. The recordings beside this file \
          are its own.\n{}",
         plan.seed,
-        fingerprint(plan),
+        fingerprint(plan).short(),
         commit().map_or(String::new(), |commit| format!(" ({commit})")),
         plan.experiment.text()
     )
+}
+
+/// The campaign of a folder, from the file in it that tells which it is.
+///
+/// # Errors
+/// A folder without one, or one by another build of the program or with numbers that
+/// a program has set: these are not in the file.
+pub fn told_plan(path: &Path) -> Result<Plan, RigError> {
+    let file = path.join(TOLD_IN);
+    let text = fs::read_to_string(&file).map_err(|error| RigError::folder(&file, error))?;
+    let other = || RigError::OtherBuild(file.display().to_string());
+    let (line, toml) = text.split_once('\n').ok_or_else(other)?;
+    let seed = line
+        .split_once(SEED)
+        .and_then(|(_, rest)| rest.split_once(','));
+    let seed = seed
+        .and_then(|(seed, _)| seed.parse().ok())
+        .ok_or_else(other)?;
+    let name = line.split('`').nth(1).unwrap_or(TOLD_IN);
+    let plan = Plan::new(&Experiment::from_text(name, toml)?, Some(seed))?;
+    match told(&plan) == text {
+        true => Ok(plan),
+        false => Err(other()),
+    }
 }

@@ -22,6 +22,17 @@ pub enum Solver {
     },
 }
 
+impl From<experiment::Solver> for Solver {
+    fn from(asked: experiment::Solver) -> Self {
+        let step_s = asked.step_s;
+        match asked.method {
+            experiment::Method::Adaptive => Self::Adaptive,
+            experiment::Method::Rk4 => Self::Rk4 { step_s },
+            experiment::Method::Verlet => Self::Verlet { step_s },
+        }
+    }
+}
+
 /// Where a pulse is timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pick {
@@ -124,18 +135,9 @@ impl Plan {
         let (_, warnings) = experiment.system(speed_m_s)?;
         let (chain, _) = experiment.chain(speed_m_s)?;
         let asked = experiment.solver();
-        let solver = match asked.method {
-            experiment::Method::Adaptive => Solver::Adaptive,
-            experiment::Method::Rk4 => Solver::Rk4 {
-                step_s: asked.step_s,
-            },
-            experiment::Method::Verlet => Solver::Verlet {
-                step_s: asked.step_s,
-            },
-        };
         let plan = Self {
             accuracy: asked.accuracy,
-            solver,
+            solver: asked.into(),
             duration_s: asked.duration_s,
             pick: experiment.pick().into(),
             ..Self::new(chain, experiment.sensor_bead())

@@ -1,22 +1,24 @@
 //! Many speeds, one chain.
 
-use crate::ensemble::{shoot_all, shoot_tuned};
 use crate::error::StudyError;
-use crate::flight::Flight;
 use crate::plan::Plan;
+use crate::rows::{Column, Law, Rows};
+use crate::several::{Planned, Several};
 use crate::shot::Shot;
 use crate::tuned::Tuned;
 use hertzchain_chain::InstructionSet;
-use hertzchain_experiment::{Experiment, Mistakes, Warning};
-use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
-use rayon::prelude::*;
+use hertzchain_experiment::{Experiment, Mistakes, PathError};
+use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
 
-/// Why one speed has no shot.
+/// Why one shot of several is none.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum PointError {
     /// The experiment can't have this speed.
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
+    /// A number that the experiment does not take.
+    #[error(transparent)]
+    Number(PathError),
     /// The shot failed.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -50,11 +52,7 @@ impl Sweep {
     /// Speeds and times of flight, incident and reflected where seen, in s.
     #[must_use]
     pub fn flights(&self) -> Vec<(f64, f64, Option<f64>)> {
-        let of = |point: &Point| {
-            let flight = point.shot.as_ref().ok()?.flight?;
-            Some((point.speed_m_s, flight.incident_s, flight.reflected_s))
-        };
-        self.points.iter().filter_map(of).collect()
+        Rows::of(&self.points).flights()
     }
 
     /// What the accuracies of the incident times of flight alone leave open in
@@ -63,7 +61,7 @@ impl Sweep {
     /// # Errors
     /// As the fit's.
     pub fn incident_uncertainty(&self) -> Result<Uncertainty, FitError> {
-        self.uncertainty(|flight| Some(flight.incident_s))
+        self.law(Column::Incident).1
     }
 
     /// The same for the reflected times of flight.
@@ -71,17 +69,16 @@ impl Sweep {
     /// # Errors
     /// As the fit's.
     pub fn reflected_uncertainty(&self) -> Result<Uncertainty, FitError> {
-        self.uncertainty(|flight| flight.reflected_s)
+        self.law(Column::Reflected).1
     }
 
-    fn uncertainty(&self, seen: fn(&Flight) -> Option<f64>) -> Result<Uncertainty, FitError> {
-        let of = |point: &Point| {
-            let shot = point.shot.as_ref().ok()?;
-            let accuracy = shot.accuracy_reached.unwrap_or(shot.accuracy_asked);
-            seen(&shot.flight?).map(|_| (point.speed_m_s, accuracy))
-        };
-        let (speeds, accuracies): (Vec<f64>, Vec<f64>) = self.points.iter().filter_map(of).unzip();
-        uncertainty(&speeds, &accuracies)
+    fn law(&self, of: Column) -> Law {
+        let shots = self
+            .points
+            .iter()
+            .filter_map(|point| point.shot.as_ref().ok());
+        let asked = shots.map(|shot| shot.accuracy_asked).fold(0.0, f64::max);
+        Rows::of(&self.points).law(of, asked)
     }
 }
 
@@ -130,67 +127,33 @@ impl Default for Settings<'_> {
 /// others.
 #[must_use]
 pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_>) -> Sweep {
-    let plan = |speed: &f64| {
-        let mut planned = Plan::from_experiment(experiment, Some(*speed));
-        if let Ok((plan, _)) = &mut planned {
-            (settings.adjust)(plan);
-        }
-        planned
+    let plan = |place: usize| -> Planned {
+        let speed_m_s = speeds_m_s.get(place).copied();
+        let (mut plan, warnings) = Plan::from_experiment(experiment, speed_m_s)?;
+        (settings.adjust)(&mut plan);
+        Ok((plan, warnings))
     };
-    let planned: Vec<Planned> = speeds_m_s.par_iter().map(plan).collect();
-    let plans = planned.iter().filter_map(|plan| plan.as_ref().ok());
-    let plans: Vec<Plan> = plans.map(|(plan, _)| plan.clone()).collect();
-    let tuned = match settings.judges {
-        Judges::Pilots => Tuned::new(&Tuned::pilots(&plans), settings.set),
-        Judges::Each => None,
+    let several = Several {
+        count: speeds_m_s.len(),
+        plan: &plan,
+        settings,
     };
-    let shots = match &tuned {
-        Some(tuned) => shoot_tuned(&plans, tuned, settings.set, settings.progress),
-        None => shoot_all(&plans, settings.set, settings.checked, settings.progress),
-    };
+    let tuned = several.tuned();
+    let places: Vec<usize> = (0..speeds_m_s.len()).collect();
+    let shots = several.shoot(&places, tuned.as_ref()).into_iter();
     let mut sweep = Sweep {
         tuned,
-        points: points(speeds_m_s, planned, shots),
+        points: (speeds_m_s.iter().zip(shots))
+            .map(|(&speed_m_s, (shot, warnings))| Point {
+                speed_m_s,
+                shot,
+                warnings,
+            })
+            .collect(),
         incident: Err(FitError::TooFew),
         reflected: Err(FitError::TooFew),
     };
-    let flights = sweep.flights();
-    sweep.incident = fit(flights.iter().map(|flight| (flight.0, flight.1)));
-    sweep.reflected = fit(flights
-        .iter()
-        .filter_map(|flight| Some((flight.0, flight.2?))));
+    sweep.incident = sweep.law(Column::Incident).0;
+    sweep.reflected = sweep.law(Column::Reflected).0;
     sweep
-}
-
-/// A speed's plan with what is odd about it, or why there is none.
-type Planned = Result<(Plan, Vec<Warning>), Mistakes>;
-
-/// Speeds with the shots of those that have a plan.
-fn points(
-    speeds_m_s: &[f64],
-    planned: Vec<Planned>,
-    shots: Vec<Result<Shot, StudyError>>,
-) -> Vec<Point> {
-    let mut shots = shots.into_iter();
-    let point = |(&speed_m_s, planned): (&f64, Planned)| {
-        let (shot, warnings) = match planned {
-            Err(mistakes) => (Some(Err(mistakes.into())), Vec::new()),
-            Ok((_, warnings)) => (
-                shots.next().map(|shot| shot.map_err(PointError::from)),
-                warnings,
-            ),
-        };
-        let warnings = warnings.iter().map(Warning::one_line).collect();
-        Some(Point {
-            speed_m_s,
-            shot: shot?,
-            warnings,
-        })
-    };
-    speeds_m_s.iter().zip(planned).filter_map(point).collect()
-}
-
-fn fit(points: impl Iterator<Item = (f64, f64)>) -> Result<PowerLaw, FitError> {
-    let (speeds, times): (Vec<f64>, Vec<f64>) = points.unzip();
-    power_law(&speeds, &times, None)
 }

@@ -99,9 +99,14 @@ impl Tuned {
     /// Plans, evenly spread over those given in the order of what changes.
     #[must_use]
     pub fn pilots(plans: &[Plan]) -> Vec<Plan> {
-        let count = PILOTS.min(plans.len());
-        let at = |i: usize| i * (plans.len() - 1) / (count - 1).max(1);
-        (0..count).map(|i| plans[at(i)].clone()).collect()
+        let places = Self::pilot_places(plans.len());
+        places.map(|place| plans[place].clone()).collect()
+    }
+
+    /// Places from 0 of the pilots among so many plans, evenly spread.
+    pub(crate) fn pilot_places(plans: usize) -> impl Iterator<Item = usize> {
+        let count = PILOTS.min(plans);
+        (0..count).map(move |i| i * (plans - 1) / (count - 1).max(1))
     }
 
     /// Shots of plans by the ensemble loop, of those that are like the pilots.

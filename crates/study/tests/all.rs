@@ -8,6 +8,7 @@ mod examples;
 mod long_chains;
 mod rebound;
 mod reproduce;
+mod runs;
 mod shot;
 mod sweep;
 mod tuned;

@@ -26,16 +26,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let watch = |progress| shown.show(progress);
     let done = pool.install(|| campaign(&plan, &arguments.out, arguments.shard, &watch));
     shown.bar.finish_and_clear();
-    print(&summary(
-        &plan,
-        &done.map_err(failure)?,
-        begun.elapsed(),
-        arguments,
-    ))
+    let done = done.map_err(failure)?;
+    print(&summary(&plan, &done, begun.elapsed(), arguments))?;
+    judge(&done)
+}
+
+/// Series that can't be computed are told, after all the others were.
+fn judge(done: &Done) -> Result<(), Failure> {
+    for why in &done.failed {
+        eprintln!("warning: {why}");
+    }
+    match done.failed.len() {
+        0 => Ok(()),
+        n => Err(Failure::User(format!(
+            "{n} series can't be computed; the others are finished"
+        ))),
+    }
 }
 
 /// The user's mistakes are told as such; a full disk is nobody's.
-fn failure(error: RigError) -> Failure {
+pub fn failure(error: RigError) -> Failure {
     match error {
         RigError::Mistakes(mistakes) => (*mistakes).into(),
         RigError::Record(error) => Failure::Ours(error.to_string()),

@@ -9,6 +9,7 @@ pub mod gauge;
 pub mod laws;
 pub mod man;
 pub mod measure;
+pub mod merge;
 pub mod presets;
 pub mod reproduce;
 pub mod schema;

@@ -6,6 +6,7 @@ use super::whiten::whiten;
 use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
+use hertzchain_study::{Fingerprint, Inputs};
 
 /// Relative distance of the speeds around each row's, where there are too
 /// few rows to tell a slope.
@@ -107,6 +108,22 @@ impl CurveProblem {
     #[must_use]
     pub fn data(&self) -> &Data {
         &self.data
+    }
+
+    /// Of everything that residuals follow from: the experiment as it is
+    /// understood, its free numbers, the data, accuracy and instruction set, this
+    /// build of the program; not where the data lie.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        let model = &self.model;
+        let rows = Inputs::of("curve problem")
+            .text("experiment", &model.experiment().understood())
+            .text("free", &format!("{:?}", model.numbers()))
+            .text("parameters", &format!("{:?}", self.parameters))
+            .text("set", model.set.name())
+            .numbers("accuracy", &[model.accuracy]);
+        let row = |inputs: Inputs, row: &DataRow| inputs.text("row", &format!("{row:?}"));
+        self.data.rows.iter().fold(rows, row).fingerprint()
     }
 
     /// The same problem with curves of another relative accuracy.

@@ -7,7 +7,8 @@ mod verify;
 mod write;
 
 pub(crate) use layout::SEPARATE;
-pub(crate) use read::{attribute_number, is_ours, open};
+pub(crate) use read::{attribute_number, column, is_ours, open};
 pub use truth::truth;
 pub use verify::verify;
 pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+pub(crate) use write::{describe, unit};

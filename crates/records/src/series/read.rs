@@ -129,7 +129,7 @@ pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, 
     names.iter().copied().map(named).collect()
 }
 
-pub(super) fn column<T: rust_hdf5::H5Type>(
+pub(crate) fn column<T: rust_hdf5::H5Type>(
     open: &H5File,
     name: &str,
     count: usize,

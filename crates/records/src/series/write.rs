@@ -315,7 +315,7 @@ fn column(
     Ok(column)
 }
 
-fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
+pub(crate) fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
     for (name, text) in [("long_name", what), ("units", unit)] {
         of.new_attr::<rust_hdf5::VarLenUnicode>()
             .shape(())
@@ -326,7 +326,7 @@ fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
 }
 
 /// The unit that a name ends in, as CF conventions write it.
-fn unit(name: &str) -> &'static str {
+pub(crate) fn unit(name: &str) -> &'static str {
     const ENDINGS: &[(&str, &str)] = &[
         ("_m_s", "m s-1"),
         ("_s", "s"),

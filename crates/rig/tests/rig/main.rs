@@ -9,6 +9,7 @@ mod amplifier;
 mod campaign;
 mod claims;
 mod instruments;
+mod poisoned;
 mod record;
 mod series;
 mod small;

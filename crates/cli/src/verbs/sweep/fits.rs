@@ -3,24 +3,20 @@
 use crate::format::{digits, r_squared, with_error};
 use hertzchain_experiment::Units;
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
-use hertzchain_study::Sweep;
+use hertzchain_study::{Column, Part};
 use hertzchain_verbs::missing;
 
 /// A line for the incident and one for the reflected times of flight.
-pub fn lines(swept: &Sweep, units: Units) -> String {
-    let incident = line(
-        "incident",
-        &swept.incident,
-        swept.incident_uncertainty(),
-        units,
-    );
-    let reflected = line(
-        "reflected",
-        &swept.reflected,
-        swept.reflected_uncertainty(),
-        units,
-    );
-    incident + &reflected
+pub fn lines(part: &Part) -> String {
+    let named = [
+        ("incident", Column::Incident),
+        ("reflected", Column::Reflected),
+    ];
+    let lines = named.map(|(name, column)| {
+        let (fit, uncertainty) = part.rows.law(column, part.accuracy);
+        line(name, &fit, uncertainty, part.units)
+    });
+    lines.concat()
 }
 
 fn line(

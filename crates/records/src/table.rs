@@ -1,0 +1,110 @@
+//! Tables of numbers as HDF5, each with a text that tells what they are: for
+//! results that many processes write and one puts together.
+
+use crate::error::{RecordError, name};
+use crate::hdf5::damaged;
+use crate::series::{column, describe, unit};
+use rust_hdf5::{H5File, Hdf5Error};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Name of the text's dataset.
+const ABOUT: &str = "about";
+
+/// Effort of the compression: numbers that follow a curve lose a third of their
+/// bytes at the lowest, and hardly more at the highest.
+const DEFLATE: u32 = 1;
+
+/// Rows of a chunk, which is compressed and read as one.
+const CHUNK: usize = 1 << 16;
+
+/// Columns of numbers with a text about them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// What the numbers are; in the file a dataset of bytes, UTF-8.
+    pub about: String,
+    /// Columns of one length, by names whose endings are the units.
+    pub columns: Vec<(String, Vec<f64>)>,
+}
+
+impl Table {
+    /// Writes the table beside its place and renames it: what has the name is
+    /// whole. Several processes may write one table at once; the last one stays.
+    /// The bytes follow from the table alone.
+    ///
+    /// # Errors
+    /// [`RecordError::Unwritable`].
+    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
+        let part = beside(path);
+        let failed = |detail: String| {
+            // Nothing half-written stays; the first error is the one that counts.
+            let _ = fs::remove_file(&part);
+            RecordError::Unwritable {
+                file: name(path),
+                detail,
+            }
+        };
+        self.put(&part).map_err(|error| failed(error.to_string()))?;
+        fs::rename(&part, path).map_err(|error| failed(error.to_string()))
+    }
+
+    fn put(&self, part: &Path) -> Result<(), Hdf5Error> {
+        let file = H5File::create(part)?;
+        let about = file.new_dataset::<u8>().shape([self.about.len()]);
+        about.create(ABOUT)?.write_raw(self.about.as_bytes())?;
+        for (name, values) in self.columns.iter().filter(|column| !column.1.is_empty()) {
+            let column = file
+                .new_dataset::<f64>()
+                .shape([values.len()])
+                .chunk(&[values.len().min(CHUNK)])
+                .shuffle_deflate(DEFLATE)
+                .create(name)?;
+            column.write_raw(values)?;
+            describe(&column, name, unit(name))?;
+        }
+        file.close_no_sync()
+    }
+
+    /// Reads the text of a table and those columns of it that are asked for;
+    /// columns without rows are not in the file.
+    ///
+    /// # Errors
+    /// [`RecordError::Malformed`] with what is damaged or missing.
+    pub fn read(path: &Path, columns: &[&str]) -> Result<Self, RecordError> {
+        let found = Self::found(path, columns);
+        found.map_err(|error| RecordError::malformed(path, "a table", damaged(&error)))
+    }
+
+    fn found(path: &Path, columns: &[&str]) -> Result<Self, Hdf5Error> {
+        let open = H5File::open(path)?;
+        let about = open.dataset(ABOUT)?.read_raw::<u8>()?;
+        let about = String::from_utf8(about)
+            .map_err(|_| Hdf5Error::InvalidState("its text is not UTF-8".to_owned()))?;
+        let there = open.dataset_names();
+        let mut read = Vec::new();
+        for name in columns
+            .iter()
+            .filter(|name| there.iter().any(|n| n == *name))
+        {
+            let rows = open.dataset(name)?.shape().iter().product();
+            read.push(((*name).to_owned(), column::<f64>(&open, name, rows)?));
+        }
+        Ok(Self {
+            about,
+            columns: read,
+        })
+    }
+}
+
+/// A name beside the file that no other process has, on this machine or another
+/// that shares the folder.
+fn beside(path: &Path) -> PathBuf {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let nanoseconds = now.map_or(0, |now| now.as_nanos());
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(
+        ".{file}.{}-{nanoseconds:x}.part",
+        std::process::id()
+    ))
+}

@@ -1,0 +1,75 @@
+//! Shots of many plans by their places, all of them or some.
+
+use crate::ensemble::{shoot_all, shoot_tuned};
+use crate::error::StudyError;
+use crate::plan::Plan;
+use crate::shot::Shot;
+use crate::stop::stopped;
+use crate::sweep::{Judges, PointError, Settings};
+use crate::tuned::Tuned;
+use hertzchain_experiment::Warning;
+use rayon::prelude::*;
+
+/// A shot's plan with what is odd about it, or why there is none.
+pub(crate) type Planned = Result<(Plan, Vec<Warning>), PointError>;
+
+/// A shot or why there is none, with what is odd about it in words.
+pub(crate) type Told = (Result<Shot, PointError>, Vec<String>);
+
+/// Many plans, each by its place from 0.
+pub(crate) struct Several<'a> {
+    /// How many there are.
+    pub count: usize,
+    /// The one at a place.
+    pub plan: &'a (dyn Fn(usize) -> Planned + Sync),
+    /// How they are shot.
+    pub settings: &'a Settings<'a>,
+}
+
+impl Several<'_> {
+    /// What pilots choose, where they are asked to: from all plans, however few
+    /// of them are shot here, so that every part of the work has the same setting.
+    /// A place without a plan has no pilot.
+    pub(crate) fn tuned(&self) -> Option<Tuned> {
+        match self.settings.judges {
+            Judges::Each => None,
+            Judges::Pilots => {
+                let places: Vec<usize> = Tuned::pilot_places(self.count).collect();
+                let plans = places.par_iter().map(|place| (self.plan)(*place));
+                let sound: Vec<Plan> = plans.filter_map(|plan| Some(plan.ok()?.0)).collect();
+                Tuned::new(&sound, self.settings.set)
+            }
+        }
+    }
+
+    /// Shots at some places, in their order. Bits do not depend on which others
+    /// are asked for along.
+    pub(crate) fn shoot(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {
+        let wanted = |place: &usize| match stopped() {
+            true => Err(StudyError::Stopped.into()),
+            false => (self.plan)(*place),
+        };
+        let planned: Vec<Planned> = places.par_iter().map(wanted).collect();
+        let sound = planned.iter().filter_map(|plan| plan.as_ref().ok());
+        let plans: Vec<Plan> = sound.map(|(plan, _)| plan.clone()).collect();
+        let Settings {
+            set,
+            checked,
+            progress,
+            ..
+        } = *self.settings;
+        let shots = match tuned {
+            Some(tuned) => shoot_tuned(&plans, tuned, set, progress),
+            None => shoot_all(&plans, set, checked, progress),
+        };
+        let mut shots = shots.into_iter();
+        let told = |planned: Planned| match planned {
+            Err(error) => Some((Err(error), Vec::new())),
+            Ok((_, warnings)) => {
+                let shot = shots.next()?.map_err(PointError::from);
+                Some((shot, warnings.iter().map(Warning::one_line).collect()))
+            }
+        };
+        planned.into_iter().filter_map(told).collect()
+    }
+}
