@@ -32,6 +32,8 @@ pub struct Experiment {
     written: Spec,
     /// What holds in the reading.
     spec: Spec,
+    /// The case whose contacts and liquid were chosen.
+    case: Option<String>,
 }
 
 /// Why an experiment file can't be used.
@@ -104,6 +106,7 @@ impl Experiment {
         let reading = *reading.unwrap_or(&written.reading);
         let experiment = Self {
             spec: written.clone(),
+            case: None,
             source,
             folder,
             tree,
@@ -190,15 +193,17 @@ impl Experiment {
         Mistakes::one(problem, &self.source)
     }
 
-    /// The experiment of a changed tree, in the present reading.
+    /// The experiment of a changed tree, in the present reading and case.
     pub(crate) fn with_tree(&self, tree: Node) -> Result<Self, Mistakes> {
         let reading = self.spec.reading;
-        Self::from_tree(
+        let changed = Self::from_tree(
             self.source.clone(),
             self.folder.clone(),
             tree,
             Some(&reading),
-        )
+        )?;
+        let case = self.case.as_ref().and_then(|name| changed.case(name));
+        case.unwrap_or(Ok(changed))
     }
 
     pub(crate) fn tree(&self) -> &Node {
@@ -343,6 +348,7 @@ impl Experiment {
         }
         let chosen = Self {
             written,
+            case: Some(name.to_owned()),
             ..self.clone()
         };
         Some(chosen.with_reading(&self.spec.reading))

@@ -183,3 +183,16 @@ fn overrides_do_not_touch_the_experiment_they_start_from() {
     let file = Experiment::from_text("dry.toml", dry.text()).unwrap();
     assert_eq!(format!("{:?}", file.chain(None).unwrap().0), text);
 }
+
+#[test]
+fn a_case_that_was_chosen_stays_when_numbers_are_set() {
+    let paper = preset("paper").unwrap();
+    let gear = paper.case("gear").unwrap().unwrap();
+    let slower = gear.with_speed(0.3).unwrap();
+    let laws = |experiment: &hertzchain_experiment::Experiment| {
+        let (chain, _) = experiment.chain(Some(0.3)).unwrap();
+        format!("{:?}", chain.sections)
+    };
+    assert_eq!(laws(&slower), laws(&gear));
+    assert_ne!(laws(&slower), laws(&paper.case("dry").unwrap().unwrap()));
+}
