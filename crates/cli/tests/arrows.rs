@@ -31,6 +31,19 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "py",
+        &[
+            "chain",
+            "experiment",
+            "study",
+            "rig",
+            "shards",
+            "measure",
+            "infer",
+            "verbs",
+        ],
+    ),
+    (
         "cli",
         &[
             "chain",

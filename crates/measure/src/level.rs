@@ -2,7 +2,7 @@
 
 use crate::Refused;
 use hertzchain_records::{Channel, Record, RecordError};
-use hertzchain_signal::{Cutter, Cutting, Segment, Trigger, median};
+use hertzchain_signal::{Cutter, Segment, Trigger, median};
 use std::collections::VecDeque;
 
 /// A level trigger, as an oscilloscope has it.
@@ -122,14 +122,14 @@ impl UnderWay {
         let stride = volts.len().div_ceil(LOOKED_AT).max(1);
         let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
         let baseline_v = median(&some).unwrap_or(0.0);
-        let cutter = Cutter::new(Cutting::Level(Trigger {
+        let cutter = Cutter::new(Trigger {
             level: level.volts,
             falling: level.volts < baseline_v,
             hysteresis: 0.5 * (level.volts - baseline_v).abs(),
             before: (BEFORE * length as f64) as usize,
             length,
             hold_off: length as u64,
-        }));
+        });
         Ok(Self {
             head: piece.without_samples(),
             channels: piece.channels.iter().map(empty).collect(),
@@ -204,13 +204,14 @@ fn empty(of: &Channel) -> Channel {
 
 /// A shot that was cut out, by its number in the file.
 fn shot(head: &Record, channels: &[Channel], number: u64, segment: Segment<'_, Moment>) -> Record {
-    let column = |of: fn(&Moment) -> f64| segment.samples.iter().map(of).collect::<Vec<f64>>();
-    let volts = [column(|moment| moment.sensor), column(|moment| moment.wall)];
-    let channels = channels.iter().zip(volts).map(|(channel, volts)| Channel {
+    let columns: [fn(&Moment) -> f64; 2] = [|moment| moment.sensor, |moment| moment.wall];
+    let channels = channels.iter().zip(columns).map(|(channel, of)| Channel {
         name: channel.name.clone(),
-        samples: channel.samples.with_volts(volts),
+        samples: channel
+            .samples
+            .with_volts(segment.samples.iter().map(of).collect()),
     });
-    let fired_s = segment.trigger.unwrap_or(segment.first_sample) as f64 * head.interval_s;
+    let fired_s = segment.trigger as f64 * head.interval_s;
     Record {
         source: format!("{}, shot {number} at {fired_s:.4} s", head.source),
         shot: Some(number),

@@ -22,6 +22,6 @@ pub use hertzchain_records as records;
 pub use level::Level;
 pub use list::{ListError, ShotList};
 pub use refused::Refused;
-pub use run::{Cut, Measurement, Note, Options, measure};
+pub use run::{Cut, Measurement, Note, Options, Watch, measure};
 pub use shot::Shot;
 pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv};

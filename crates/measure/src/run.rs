@@ -68,27 +68,41 @@ pub struct Note {
     pub files: Vec<PathBuf>,
 }
 
+/// Who follows a measurement, from any thread.
+pub trait Watch: Sync {
+    /// A record is done.
+    fn seen(&self) {}
+
+    /// Whether to break off; what was measured until then counts for nothing.
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody.
+impl Watch for () {}
+
 type Read = Box<dyn Iterator<Item = Result<Record, Refused>>>;
 
-/// Reads and measures recordings; `seen` is told how many records are done.
+/// Reads and measures recordings while somebody may watch.
 ///
 /// Holds two batches of records at a time, one being read while the other is
 /// measured: a recording may be larger than memory. Results do not depend on the
 /// number of threads.
 #[must_use]
-pub fn measure(files: &[PathBuf], options: &Options, seen: &mut dyn FnMut(usize)) -> Measurement {
+pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
     let mut measurement = Measurement::default();
-    let mut records = files.iter().flat_map(|file| records(file, options));
+    let records = files.iter().flat_map(|file| records(file, options));
+    let mut records = records.take_while(|_| !watch.stopped());
     let mut refused = Vec::new();
     let mut batch = gather(&mut records, &mut refused);
     while !batch.is_empty() {
         let mut done = Vec::new();
         // Readers stay in this thread; the others measure meanwhile.
         let next = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| done = measured(&batch, options));
+            scope.spawn(|_| done = measured(&batch, options, watch));
             gather(&mut records, &mut refused)
         });
-        seen(batch.len());
         for (shots, record) in done.into_iter().zip(batch) {
             measurement.keep(shots, &record, options);
         }
@@ -138,7 +152,7 @@ fn gather(
 /// A shot, and where it begins and ends in a record that was cut.
 type Done = (Shot, Option<(usize, usize)>);
 
-fn measured(batch: &[Record], options: &Options) -> Vec<Vec<Done>> {
+fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<Done>> {
     let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
         let volts = volts(record);
@@ -163,7 +177,15 @@ fn measured(batch: &[Record], options: &Options) -> Vec<Vec<Done>> {
         };
         vec![(shot, None)]
     };
-    batch.par_iter().map(one).collect()
+    let watched = |record: &Record| {
+        if watch.stopped() {
+            return Vec::new();
+        }
+        let done = one(record);
+        watch.seen();
+        done
+    };
+    batch.par_iter().map(watched).collect()
 }
 
 /// Every channel of a record in V.

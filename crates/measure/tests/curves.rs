@@ -65,7 +65,7 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
 }
 
 fn measured(files: &[PathBuf]) -> Measurement {
-    measure(files, &Options::default(), &mut |_| {})
+    measure(files, &Options::default(), &())
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn a_list_overrides_what_files_say() {
         list: Some(ShotList::parse(list).unwrap()),
         ..Options::default()
     };
-    let shots = measure(&files, &options, &mut |_| {}).shots;
+    let shots = measure(&files, &options, &()).shots;
     let third = shots[3].speed_m_s.unwrap();
     assert_eq!(
         (shots[3].case.as_str(), third.value, third.sigma),
@@ -218,7 +218,7 @@ fn cut(file: &Path, cutting: Cut) -> Measurement {
         cutting,
         ..Options::default()
     };
-    measure(&[file.to_owned()], &options, &mut |_| {})
+    measure(&[file.to_owned()], &options, &())
 }
 
 #[test]
@@ -329,7 +329,7 @@ fn lines_and_shots_that_do_not_find_each_other_are_told() {
         list: Some(ShotList::parse(list).unwrap()),
         ..Options::default()
     };
-    let told = measure(&files, &options, &mut |_| {}).unmatched;
+    let told = measure(&files, &options, &()).unmatched;
     assert_eq!(told.len(), 3, "{told:?}");
     assert_eq!(told[0], "line 3: an earlier line is about the same");
     assert_eq!(told[1], "line 4: dry-0.5.h5 has no shot 9");

@@ -182,7 +182,7 @@ impl Samples {
             } => Self::Counts {
                 counts: volts
                     .iter()
-                    .map(|volt| ((volt - offset_v) / volts_per_count).round() as i16)
+                    .map(|volt| nearest((volt - offset_v) / volts_per_count))
                     .collect(),
                 volts_per_count: *volts_per_count,
                 offset_v: *offset_v,
@@ -208,4 +208,9 @@ impl Samples {
             },
         }
     }
+}
+
+/// The nearest reading. Adding half and cutting off is one instruction where `round` is a call.
+fn nearest(count: f64) -> i16 {
+    (count + 0.5_f64.copysign(count)) as i16
 }

@@ -16,6 +16,9 @@ pub enum RigError {
     /// An experiment that no rig can do.
     #[error("{0}")]
     Unsuited(String),
+    /// It was broken off.
+    #[error("the campaign was broken off; the same folder goes on from there")]
+    Stopped,
     /// A speed that the actuator does not have.
     #[error("{what}: {why}")]
     Speed {

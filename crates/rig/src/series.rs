@@ -11,6 +11,7 @@ use crate::record::{Record, Window};
 use crate::shot::{Shot, shoot};
 use crate::striker::{fired_m_s, misplaced_m, programmed};
 use hertzchain_experiment::Campaign;
+use hertzchain_study::stopped;
 
 /// One shot with all that is known of it.
 #[derive(Clone, Debug)]
@@ -104,6 +105,9 @@ impl Run<'_> {
         let actuator = &self.campaign.actuator;
         let told_m_s = programmed(actuator, self.campaign.tap_speed_m_s).unwrap_or_default();
         for tap in 0..self.campaign.taps {
+            if stopped() {
+                return Err(RigError::Stopped);
+            }
             let speed_m_s = fired_m_s(actuator, told_m_s, chance);
             self.bench.tap(speed_m_s).map_err(|why| {
                 let when = format!("tap {} before shot {}", tap + 1, number + 1);

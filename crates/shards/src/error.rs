@@ -6,6 +6,9 @@ use std::io;
 /// Why shards can't be written, read or put together.
 #[derive(Debug, thiserror::Error)]
 pub enum ShardsError {
+    /// It was broken off: nothing is written.
+    #[error("the shard was broken off")]
+    Stopped,
     /// A folder that can't be used.
     #[error("cannot use {path}: {error}")]
     Folder {

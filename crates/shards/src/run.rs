@@ -3,7 +3,7 @@
 use crate::error::ShardsError;
 use crate::file::{read, write};
 use crate::gather::ENDING;
-use hertzchain_study::{Part, Run, Shard};
+use hertzchain_study::{Part, Run, Shard, stopped};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -47,6 +47,9 @@ pub fn run(
         });
     }
     let part = run.part(shard, progress);
+    if stopped() {
+        return Err(ShardsError::Stopped);
+    }
     Ok(Done {
         path: write(&part, folder)?,
         kept: false,

@@ -1,18 +1,6 @@
-//! Shots cut out of a recording that comes in pieces.
+//! Shots cut out of a recording that comes in pieces, where it passes a level.
 
 use crate::error::SignalError;
-
-/// How a recording is divided into shots.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cutting {
-    /// Shots of equal length follow one another without a gap.
-    Fixed {
-        /// Samples in each.
-        length: usize,
-    },
-    /// A shot begins some samples before the signal passes a level.
-    Level(Trigger),
-}
 
 /// When a level trigger fires.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +25,8 @@ pub struct Trigger {
 pub struct Segment<'a, T> {
     /// Number of its first sample in the recording, from 0.
     pub first_sample: u64,
-    /// Number of the sample that fired, if a level did.
-    pub trigger: Option<u64>,
+    /// Number of the sample that fired.
+    pub trigger: u64,
     /// Its samples: fewer than asked for at the recording's end, and before a
     /// trigger that comes soon after its beginning or after another shot.
     pub samples: &'a [T],
@@ -52,7 +40,7 @@ pub struct Segment<'a, T> {
 /// pieces. Holds one shot and what comes before a trigger, no more.
 #[derive(Clone, Debug)]
 pub struct Cutter<T> {
-    cutting: Cutting,
+    trigger: Trigger,
     /// Samples of the shot under way, or the last ones that may come before one.
     held: Vec<T>,
     /// Number of the next sample.
@@ -75,22 +63,14 @@ const STRIDE: usize = 64;
 
 impl<T: Copy + Into<f64>> Cutter<T> {
     /// # Errors
-    /// A length of 0; no sample after the trigger; a level that is not finite;
-    /// negative hysteresis.
-    pub fn new(cutting: Cutting) -> Result<Self, SignalError> {
-        let (length, state) = match cutting {
-            Cutting::Fixed { length } => (length, State::Collecting(0, length)),
-            Cutting::Level(trigger) => {
-                trigger.check()?;
-                (trigger.length, State::Resting(0))
-            }
-        };
-        SignalError::positive("number of samples of a shot", length as f64)?;
+    /// No sample after the trigger; a level that is not finite; negative hysteresis.
+    pub fn new(trigger: Trigger) -> Result<Self, SignalError> {
+        trigger.check()?;
         Ok(Self {
-            cutting,
+            trigger,
             held: Vec::new(),
             position: 0,
-            state,
+            state: State::Resting(0),
         })
     }
 
@@ -116,17 +96,13 @@ impl<T: Copy + Into<f64>> Cutter<T> {
         }
         self.held.clear();
         self.position = 0;
-        self.state = match self.cutting {
-            Cutting::Fixed { length } => State::Collecting(0, length),
-            Cutting::Level(_) => State::Resting(0),
-        };
+        self.state = State::Resting(0);
     }
 
     fn segment<'a>(&self, samples: &'a [T], fired: u64, complete: bool) -> Segment<'a, T> {
-        let trigger = matches!(self.cutting, Cutting::Level(_)).then_some(fired);
         Segment {
             first_sample: self.position - samples.len() as u64,
-            trigger,
+            trigger: fired,
             samples,
             complete,
         }
@@ -155,30 +131,17 @@ impl<T: Copy + Into<f64>> Cutter<T> {
                 shot(self.segment(&self.held, fired, true));
                 self.held.clear();
             }
-            self.state = self.next(fired);
+            let until = fired.saturating_add(self.trigger.hold_off);
+            self.state = State::Resting(self.position.max(until));
         }
         used
-    }
-
-    fn next(&self, fired: u64) -> State {
-        match self.cutting {
-            Cutting::Fixed { length } => State::Collecting(0, length),
-            Cutting::Level(trigger) => {
-                State::Resting(self.position.max(fired.saturating_add(trigger.hold_off)))
-            }
-        }
     }
 
     /// Waits for the signal to be back, `until` a sample at least.
     fn rest(&mut self, left: &[T], until: u64) -> usize {
         let waiting = until.saturating_sub(self.position);
         let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
-        let back = match self.cutting {
-            Cutting::Level(trigger) => {
-                first(&left[skip..], trigger, |trigger, x| trigger.is_back(x))
-            }
-            Cutting::Fixed { .. } => None,
-        };
+        let back = first(&left[skip..], |x| self.trigger.is_back(x));
         if back.is_some() {
             self.state = State::Armed;
         }
@@ -189,10 +152,8 @@ impl<T: Copy + Into<f64>> Cutter<T> {
 
     /// Waits for the level.
     fn wait(&mut self, left: &[T]) -> usize {
-        let Cutting::Level(trigger) = self.cutting else {
-            return left.len();
-        };
-        let fires = first(left, trigger, |trigger, x| trigger.fires(x));
+        let trigger = self.trigger;
+        let fires = first(left, |x| trigger.fires(x));
         let used = fires.unwrap_or(left.len());
         self.remember(&left[..used]);
         if fires.is_some() {
@@ -204,9 +165,7 @@ impl<T: Copy + Into<f64>> Cutter<T> {
 
     /// Keeps the last samples that a shot may need.
     fn remember(&mut self, passed: &[T]) {
-        let Cutting::Level(Trigger { before, .. }) = self.cutting else {
-            return;
-        };
+        let before = self.trigger.before;
         self.position += passed.len() as u64;
         let new = &passed[passed.len().saturating_sub(before)..];
         let surplus = (self.held.len() + new.len()).saturating_sub(before);
@@ -249,19 +208,13 @@ impl Trigger {
 }
 
 /// First sample for which `test` holds.
-fn first<T: Copy + Into<f64>>(
-    samples: &[T],
-    trigger: Trigger,
-    test: impl Fn(Trigger, f64) -> bool,
-) -> Option<usize> {
+fn first<T: Copy + Into<f64>>(samples: &[T], test: impl Fn(f64) -> bool) -> Option<usize> {
     let mut start = 0;
     for chunk in samples.chunks(STRIDE) {
         // Without early exit inside, so that it runs many samples at a time.
-        let any = chunk
-            .iter()
-            .fold(false, |any, x| any | test(trigger, (*x).into()));
+        let any = chunk.iter().fold(false, |any, x| any | test((*x).into()));
         if any {
-            let at = chunk.iter().position(|x| test(trigger, (*x).into()))?;
+            let at = chunk.iter().position(|x| test((*x).into()))?;
             return Some(start + at);
         }
         start += chunk.len();

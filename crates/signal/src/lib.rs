@@ -42,7 +42,7 @@ mod running;
 mod saturation;
 mod zero_phase;
 
-pub use cutter::{Cutter, Cutting, Segment, Trigger};
+pub use cutter::{Cutter, Segment, Trigger};
 pub use delay::delay_by_cross_correlation;
 pub use droop::{droop, undroop};
 pub use error::SignalError;

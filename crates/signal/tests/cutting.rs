@@ -1,13 +1,13 @@
 //! Cutting a recording does not depend on the pieces it comes in.
 
-use hertzchain_signal::{Cutter, Cutting, Trigger};
+use hertzchain_signal::{Cutter, Trigger};
 use proptest::prelude::*;
 
-type Shot = (u64, Option<u64>, Vec<i16>, bool);
+type Shot = (u64, u64, Vec<i16>, bool);
 
-fn cut(cutting: Cutting, recording: &[i16], pieces: &[usize]) -> Vec<Shot> {
+fn cut(trigger: Trigger, recording: &[i16], pieces: &[usize]) -> Vec<Shot> {
     let mut shots = Vec::new();
-    let mut cutter = Cutter::new(cutting).unwrap();
+    let mut cutter = Cutter::new(trigger).unwrap();
     let mut left = recording;
     for piece in pieces.iter().chain(&[recording.len()]) {
         let (now, later) = left.split_at((*piece).min(left.len()));
@@ -37,9 +37,9 @@ fn a_level_cuts_one_shot_a_pulse() {
     recording[30] = 10;
     recording[31] = 9;
     recording[70] = 10;
-    let shots = cut(Cutting::Level(level(5.0, 4, 12)), &recording, &[]);
+    let shots = cut(level(5.0, 4, 12), &recording, &[]);
     let found: Vec<_> = shots.iter().map(|s| (s.0, s.1, s.2.len(), s.3)).collect();
-    assert_eq!(found, [(26, Some(30), 12, true), (66, Some(70), 12, true)]);
+    assert_eq!(found, [(26, 30, 12, true), (66, 70, 12, true)]);
     assert_eq!(shots[0].2[4], 10);
 }
 
@@ -49,7 +49,7 @@ fn a_signal_that_hangs_about_the_level_fires_once() {
     let mut recording = vec![0_i16; 20];
     recording.extend([6, 4, 6, 4, 6, 4, 6, 4, 6, 4]);
     recording.extend([0; 20]);
-    let shots = cut(Cutting::Level(level(5.0, 2, 4)), &recording, &[]);
+    let shots = cut(level(5.0, 2, 4), &recording, &[]);
     assert_eq!(shots.len(), 1);
 }
 
@@ -61,9 +61,9 @@ fn hold_off_swallows_what_comes_back() {
     }
     let mut trigger = level(5.0, 2, 6);
     trigger.hold_off = 30;
-    let shots = cut(Cutting::Level(trigger), &recording, &[]);
+    let shots = cut(trigger, &recording, &[]);
     let fired: Vec<_> = shots.iter().map(|s| s.1).collect();
-    assert_eq!(fired, [Some(20), Some(80)]);
+    assert_eq!(fired, [20, 80]);
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn a_falling_trigger_is_a_rising_one_upside_down() {
         falling: true,
         ..rising
     };
-    let up = cut(Cutting::Level(rising), &recording, &[]);
-    let down = cut(Cutting::Level(falling), &turned, &[]);
+    let up = cut(rising, &recording, &[]);
+    let down = cut(falling, &turned, &[]);
     assert!(up.len() > 5);
     assert_eq!(up.len(), down.len());
     assert!(up.iter().zip(&down).all(|(a, b)| a.0 == b.0 && a.1 == b.1));
@@ -85,16 +85,18 @@ fn a_falling_trigger_is_a_rising_one_upside_down() {
 
 #[test]
 fn a_recording_that_ends_in_a_shot_says_so() {
-    let shots = cut(Cutting::Fixed { length: 40 }, &[1; 100], &[]);
+    let mut recording = [0; 100];
+    recording[20..60].fill(10);
+    recording[90..].fill(10);
+    let shots = cut(level(5.0, 0, 40), &recording, &[]);
     let found: Vec<_> = shots.iter().map(|s| (s.0, s.2.len(), s.3)).collect();
-    assert_eq!(found, [(0, 40, true), (40, 40, true), (80, 20, false)]);
+    assert_eq!(found, [(20, 40, true), (90, 10, false)]);
 }
 
 #[test]
-fn cuttings_that_make_no_sense_are_refused() {
-    assert!(Cutter::<i16>::new(Cutting::Fixed { length: 0 }).is_err());
-    assert!(Cutter::<i16>::new(Cutting::Level(level(f64::NAN, 0, 5))).is_err());
-    assert!(Cutter::<i16>::new(Cutting::Level(level(1.0, 5, 5))).is_err());
+fn triggers_that_make_no_sense_are_refused() {
+    assert!(Cutter::<i16>::new(level(f64::NAN, 0, 5)).is_err());
+    assert!(Cutter::<i16>::new(level(1.0, 5, 5)).is_err());
 }
 
 proptest! {
@@ -113,14 +115,12 @@ proptest! {
             hold_off,
             ..level(threshold, before, before + after)
         };
-        for cutting in [Cutting::Level(trigger), Cutting::Fixed { length: before + after }] {
-            let whole = cut(cutting, &recording, &[]);
-            prop_assert_eq!(&whole, &cut(cutting, &recording, &pieces));
-            // What is handed out is what was recorded.
-            for (first, _, samples, _) in &whole {
-                let from = *first as usize;
-                prop_assert_eq!(samples, &recording[from..from + samples.len()]);
-            }
+        let whole = cut(trigger, &recording, &[]);
+        prop_assert_eq!(&whole, &cut(trigger, &recording, &pieces));
+        // What is handed out is what was recorded.
+        for (first, _, samples, _) in &whole {
+            let from = *first as usize;
+            prop_assert_eq!(samples, &recording[from..from + samples.len()]);
         }
     }
 }

@@ -7,7 +7,8 @@
 
 use crate::common::{Scene, channels};
 use hertzchain_signal::{
-    Channels, Doubt, Finding, Found, Place, Polarity, Rails, SignalError, pulses,
+    Channels, Doubt, Finding, Found, Measuring, Place, Polarity, Rails, SignalError, measure,
+    pulses,
 };
 
 fn find(samples: &[f64]) -> Found {
@@ -319,4 +320,41 @@ fn records_that_hold_nothing_say_why() {
     };
     let beads = pulses(Channels::Summed(&Scene::default().summed()), &finding);
     assert!(matches!(beads, Err(SignalError::Option { .. })));
+}
+
+/// A wall's pulse that falls three times as slowly as it rises.
+fn trailing() -> (Vec<f64>, Vec<f64>) {
+    let (sensor, mut wall) = Scene::default().separate();
+    let top = 1500;
+    for (i, volt) in wall.iter_mut().enumerate().skip(top) {
+        *volt = 1.6 / ((i - top) as f64 / 59.0).cosh().powi(2);
+    }
+    (sensor, wall)
+}
+
+#[test]
+fn a_pulse_that_trails_is_doubted_in_a_summed_channel_alone() {
+    let pair = trailing();
+    let sum: Vec<f64> = pair.0.iter().zip(&pair.1).map(|(a, b)| a + b).collect();
+    assert_eq!(find(&sum).doubts, [Doubt::Trailing(Place::Wall)]);
+    let found = pulses(channels(&pair), &Finding::default()).unwrap();
+    assert_eq!(found.doubts, []);
+}
+
+#[test]
+fn what_lies_under_a_pulse_that_trails_is_in_its_error() {
+    let (sensor, wall) = trailing();
+    let sum: Vec<f64> = sensor.iter().zip(&wall).map(|(a, b)| a + b).collect();
+    // A swing of a hundredth as it rises, over when it falls.
+    let swing = |i: usize| 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
+    let under = sum.iter().enumerate().map(|(i, volt)| volt - swing(i));
+    let under: Vec<f64> = under.collect();
+    let wall_s = |samples: &[f64]| {
+        let shot = measure(Channels::Summed(samples), 1e-6, &Measuring::default());
+        shot.unwrap().flight.unwrap().incident_s
+    };
+    let (alone, beneath) = (wall_s(&sum), wall_s(&under));
+    let off = (beneath.value - alone.value).abs();
+    assert!(off > 1e-7, "{off:e}");
+    assert!(off < 1.96 * beneath.sigma, "{off:e} {beneath:?}");
 }

@@ -2,8 +2,8 @@
 
 use crate::common::Scene;
 use hertzchain_signal::{
-    Channels, Cutter, Cutting, Estimate, Finding, LowPass, Measuring, Method, Polarity, Rails,
-    Shape, Template, Trigger, chi_square, coverage, groups, level, measure, power_law_both_errors,
+    Channels, Cutter, Estimate, Finding, LowPass, Measuring, Method, Polarity, Rails, Shape,
+    Template, Trigger, chi_square, coverage, groups, level, measure, power_law_both_errors,
     summary, undroop,
 };
 use proptest::prelude::*;
@@ -131,7 +131,7 @@ proptest! {
             length: 20,
             hold_off: u64::MAX,
         };
-        if let Ok(mut cutter) = Cutter::new(Cutting::Level(trigger)) {
+        if let Ok(mut cutter) = Cutter::new(trigger) {
             let mut count = 0;
             cutter.feed(&recording, |_| count += 1);
             cutter.finish(|_| count += 1);

@@ -11,6 +11,7 @@ use crate::flight::Flight;
 use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
 use crate::shot::{Shot, reported, shoot, shoot_checked, tie};
+use crate::stop::stopped;
 use crate::tuned::Tuned;
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::{Passages, RETURN_WITHIN};
@@ -89,7 +90,10 @@ fn in_blocks(
         .par_iter()
         .flat_map_iter(|block| {
             let together: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
-            let shots = fired(&together);
+            let shots = match stopped() {
+                true => vec![Err(StudyError::Stopped); block.len()],
+                false => fired(&together),
+            };
             together.iter().for_each(|_| progress());
             block.iter().copied().zip(shots).collect::<Vec<_>>()
         })

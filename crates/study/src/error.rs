@@ -12,6 +12,9 @@ pub enum StudyError {
     /// The motion can't be computed as asked.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// It was broken off.
+    #[error("the computation was broken off")]
+    Stopped,
     /// An accuracy no result can have.
     #[error("an accuracy of {0} makes no sense; expected a number between 1e-13 and 1e-2")]
     Accuracy(f64),

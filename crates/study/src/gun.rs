@@ -7,9 +7,22 @@ use crate::flight::Flight;
 use crate::following::Following;
 use crate::plan::{Plan, Solver};
 use crate::shot::{Rebound, Shot, reported, tie};
+use crate::stop::stopped;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
-use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
+use hertzchain_chain::wave::{Flow, Limits, Method, Observer, Outcome, Piece, run};
 use hertzchain_chain::{Start, System};
+
+/// Ends a shot that is no longer wanted.
+struct BreakingOff;
+
+impl Observer for BreakingOff {
+    fn step(&mut self, _: &Piece<'_>) -> Flow {
+        match stopped() {
+            true => Flow::Finished,
+            false => Flow::Continue,
+        }
+    }
+}
 
 /// Most times that a shot is computed so that its energy budget closes.
 const MOST_TRIES: u32 = 4;
@@ -225,7 +238,9 @@ impl<'a> Gun<'a> {
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut following, &mut separation];
+        let mut breaking_off = BreakingOff;
+        let mut observers: Vec<&mut dyn Observer> =
+            vec![&mut breaking_off, &mut following, &mut separation];
         if self.end.when_apart {
             observers.push(&mut apart);
         }
@@ -236,6 +251,9 @@ impl<'a> Gun<'a> {
             ..Limits::until(self.end.longest_s)
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;
+        if stopped() {
+            return Err(StudyError::Stopped);
+        }
         let trace = tracer.map(Tracer::into_trace);
         Ok(self.shot(method, outcome, &following, separation, trace))
     }

@@ -34,6 +34,7 @@ mod several;
 mod shard;
 mod shot;
 mod speeds;
+mod stop;
 mod sweep;
 mod tuned;
 
@@ -49,6 +50,7 @@ pub use run::{How, Part, Run, RunError};
 pub use shard::{Shard, ShardError};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
+pub use stop::{Stop, stopped};
 pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep};
 pub use tuned::{PILOTS, Tuned};
 

@@ -1,8 +1,10 @@
 //! Shots of many plans by their places, all of them or some.
 
 use crate::ensemble::{shoot_all, shoot_tuned};
+use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::shot::Shot;
+use crate::stop::stopped;
 use crate::sweep::{Judges, PointError, Settings};
 use crate::tuned::Tuned;
 use hertzchain_experiment::Warning;
@@ -43,7 +45,11 @@ impl Several<'_> {
     /// Shots at some places, in their order. Bits do not depend on which others
     /// are asked for along.
     pub(crate) fn shoot(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {
-        let planned: Vec<Planned> = places.par_iter().map(|place| (self.plan)(*place)).collect();
+        let wanted = |place: &usize| match stopped() {
+            true => Err(StudyError::Stopped.into()),
+            false => (self.plan)(*place),
+        };
+        let planned: Vec<Planned> = places.par_iter().map(wanted).collect();
         let sound = planned.iter().filter_map(|plan| plan.as_ref().ok());
         let plans: Vec<Plan> = sound.map(|(plan, _)| plan.clone()).collect();
         let Settings {

@@ -1,7 +1,6 @@
 //! Results as JSON, full precision, SI units in the names.
 
 use crate::missing;
-use crate::table::named;
 use hertzchain_chain::observe::Maximum;
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, Units};
@@ -29,7 +28,7 @@ pub fn shot_of(experiment: &Experiment, speed_m_s: Option<f64>, plan: &Plan, sho
             json!(speed_m_s.or(experiment.speed_m_s())),
         );
     }
-    named(result, units)
+    result
 }
 
 /// One shot of a plan that differs from this one in speed at most.
@@ -100,14 +99,13 @@ fn budget(budget: &Budget) -> Json {
 pub fn sweep(experiment: &Experiment, plan: &Plan, swept: &Sweep) -> Json {
     let units = experiment.units();
     let pilots = |tuned: Tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()});
-    let results = json!({
+    json!({
         "experiment": experiment.name(),
         "pilots": swept.tuned.map(pilots),
         "points": swept.points.iter().map(|point| self::point(point, units, plan)).collect::<Json>(),
         "power_law_incident": fit(&swept.incident, swept.incident_uncertainty().ok()),
         "power_law_reflected": fit(&swept.reflected, swept.reflected_uncertainty().ok()),
-    });
-    named(results, units)
+    })
 }
 
 /// What stands in the place of the energy budget in a sweep.

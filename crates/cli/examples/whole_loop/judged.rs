@@ -119,7 +119,7 @@ pub fn run(text: &str, seeds: u64, under: &Path) -> Result<Vec<PathBuf>, Box<dyn
 
 /// Measures the recordings of a campaign's folder, and holds every shot against
 /// its true values and the model.
-pub fn judge(folder: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
+pub fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box<dyn Error>> {
     let text = fs::read_to_string(folder.join("campaign.toml"))?;
     let plan = Plan::new(&Experiment::from_text("campaign.toml", &text)?, None)?;
     let mut files = Vec::new();
@@ -128,7 +128,7 @@ pub fn judge(folder: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
     }
     files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
     files.sort();
-    let shots = measure(&files, &Options::default(), &mut |_| {}).shots;
+    let shots = measure(&files, options, &()).shots;
     let mut judged = Vec::new();
     for case in &plan.cases {
         judged.extend(of_case(case, &shots)?);

@@ -7,6 +7,7 @@
 
 mod judged;
 
+use hertzchain_measure::Options;
 use hertzchain_signal::{Coverage, coverage, median};
 use judged::{Judged, Speed, TIMES, by_speed, judge, run};
 use std::error::Error;
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut shots = Vec::new();
     for folder in &folders {
-        shots.extend(judge(folder)?);
+        shots.extend(judge(folder, &Options::default())?);
     }
     if own.exists() {
         std::fs::remove_dir_all(own)?;

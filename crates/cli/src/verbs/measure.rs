@@ -6,7 +6,9 @@ mod summary;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print;
-use hertzchain_measure::{Curves, Measurement, Note, laws_csv, ratios_csv, shots_csv, speeds_csv};
+use hertzchain_measure::{
+    Curves, Measurement, Note, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv,
+};
 use hertzchain_verbs::arguments::measure::Measure as Arguments;
 use hertzchain_verbs::measure;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,10 +19,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = measure::options(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let bar = bar();
-    let measured = hertzchain_measure::measure(&files, &options, &mut |count| {
-        bar.inc(count as u64);
-    });
-    bar.finish_and_clear();
+    let measured = hertzchain_measure::measure(&files, &options, &bar);
+    bar.0.finish_and_clear();
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
@@ -36,11 +36,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Drawn on a terminal only.
-fn bar() -> ProgressBar {
+struct Bar(ProgressBar);
+
+impl Watch for Bar {
+    fn seen(&self) {
+        self.0.inc(1);
+    }
+}
+
+fn bar() -> Bar {
     let bar = ProgressBar::no_length();
     let style = ProgressStyle::with_template("{spinner} {pos} records, {per_sec}");
     style.into_iter().for_each(|style| bar.set_style(style));
-    bar
+    Bar(bar)
 }
 
 /// Most lines about the table of shots, which may be of other recordings.

@@ -8,6 +8,7 @@ use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_study::{Plan, shoot, shoot_checked};
+use hertzchain_verbs::table::named;
 use hertzchain_verbs::{input, json};
 use std::path::Path;
 
@@ -31,7 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     failure::print_speed_warnings(given, &warnings);
     if arguments.json {
         let result = json::shot_of(&experiment, speed, &plan, &shot);
-        print::print_json(&result)?;
+        print::print_json(&named(result, experiment.units()))?;
     } else {
         print::print(&report::text(&experiment, &plan, &shot))?;
     }

@@ -15,7 +15,7 @@ use hertzchain_study::{
 };
 use hertzchain_verbs::arguments::How as Asked;
 use hertzchain_verbs::given::check_speeds;
-use hertzchain_verbs::{input, json, missing};
+use hertzchain_verbs::{input, json, missing, table};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 
@@ -131,7 +131,8 @@ fn show(
     (swept, part): (&Sweep, &Part),
 ) -> Result<(), Failure> {
     if arguments.json {
-        return print::print_json(&json::sweep(experiment, plan, swept));
+        let results = json::sweep(experiment, plan, swept);
+        return print::print_json(&table::named(results, experiment.units()));
     }
     print_warnings(experiment, swept);
     if part.rows.flights().is_empty() && !told::nothing(part) {

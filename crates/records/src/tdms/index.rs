@@ -1,7 +1,9 @@
 //! Where each channel's samples are: all segments' metadata, no samples.
 
 use super::bytes::{Bytes, Property, TEXT, kind, width};
+use super::daqmx::{ANALOGUE, DIGITAL, Layout, cards};
 use super::lead::{LEAD, Lead};
+use super::scaling::{Properties, polynomial};
 use crate::error::{RecordError, name};
 use crate::numbers::Number;
 use std::fs::File;
@@ -30,12 +32,36 @@ pub(super) struct Piece {
 pub(super) struct Channel {
     pub name: String,
     pub number: Number,
-    /// Sampling interval in s, if its properties say.
-    pub interval_s: Option<f64>,
+    pub properties: Properties,
+    /// Powers of a stored number that make volts, where slope and offset do not.
+    pub powers: Vec<f64>,
     pub pieces: Vec<Piece>,
 }
 
 impl Channel {
+    /// Sampling interval in s, if its properties say.
+    pub fn interval_s(&self) -> Option<f64> {
+        match self.properties.get("wf_increment") {
+            Some(Property::Number(number)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// Takes its scales from its properties.
+    ///
+    /// # Errors
+    /// What a scale is that is not known here.
+    pub fn scaled(mut self) -> Result<Self, String> {
+        let powers = polynomial(&self.properties)?;
+        match powers.as_slice() {
+            [] => {}
+            [offset] => (self.number.offset, self.number.scale) = (*offset, 0.0),
+            [offset, slope] => (self.number.offset, self.number.scale) = (*offset, *slope),
+            _ => self.powers = powers,
+        }
+        Ok(self)
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.pieces
@@ -55,8 +81,25 @@ pub(super) struct Index {
 #[derive(Clone, Debug)]
 struct Object {
     path: String,
-    /// Type, values a chunk and bytes a chunk, of one with samples.
-    raw: Option<(u32, usize, usize)>,
+    raw: Option<Values>,
+}
+
+/// Where the values of an object are in a chunk.
+#[derive(Clone, Debug)]
+enum Values {
+    /// Type, number and bytes of them: one object's after the other's, or row by row.
+    Own(u32, usize, usize),
+    /// In the rows of a DAQ card.
+    Card(Layout),
+}
+
+impl Values {
+    fn code(&self) -> u32 {
+        match self {
+            Self::Own(code, ..) => *code,
+            Self::Card(layout) => layout.code,
+        }
+    }
 }
 
 /// The state while segments are read.
@@ -100,10 +143,6 @@ impl Index {
                     let detail = format!("the segment at byte {at} has metadata it cannot have");
                     return Err(RecordError::malformed(file, "TDMS", detail));
                 }
-            }
-            if lead.has_samples() && lead.is_unscaled() {
-                let detail = "it holds raw data of DAQmx; export it with scaled values";
-                return Err(RecordError::malformed(file, "TDMS", detail));
             }
             if lead.has_samples() {
                 walk.samples(&lead, raw, end);
@@ -150,7 +189,7 @@ impl Walk {
             for _ in 0..bytes.u32()? {
                 properties.push(bytes.property()?);
             }
-            self.describe(&object, lead.is_big_endian(), &properties);
+            self.describe(&object, lead.is_big_endian(), properties);
             self.list(object);
         }
         Some(())
@@ -162,12 +201,9 @@ impl Walk {
             u32::MAX => None,
             0 => {
                 let before = self.known.iter().find(|known| known.path == path);
-                before.and_then(|known| known.raw)
+                before.and_then(|known| known.raw.clone())
             }
-            // Those of DAQmx, whose segments are refused by their flags.
-            0x6912_0000 | 0x6912_6900 | 0x6913_0000 | 0x6913_6900 => {
-                return self.daqmx(bytes, path);
-            }
+            kind @ (ANALOGUE | DIGITAL) => Some(Values::Card(Layout::of(bytes, kind)?)),
             _ => {
                 let code = bytes.u32()?;
                 let _dimension = bytes.u32()?;
@@ -176,20 +212,10 @@ impl Walk {
                     TEXT => usize::try_from(bytes.u64()?).ok()?,
                     _ => count.checked_mul(width(code)?)?,
                 };
-                Some((code, count, size))
+                Some(Values::Own(code, count, size))
             }
         };
         Some(Object { path, raw })
-    }
-
-    /// Skips the layout of DAQmx' raw data.
-    fn daqmx(&self, bytes: &mut Bytes<'_>, path: String) -> Option<Object> {
-        bytes.take(4 + 4 + 8)?;
-        let scalers = bytes.u32()? as usize;
-        bytes.take(scalers.checked_mul(20)?)?;
-        let widths = bytes.u32()? as usize;
-        bytes.take(widths.checked_mul(4)?)?;
-        Some(Object { path, raw: None })
     }
 
     fn list(&mut self, object: Object) {
@@ -202,28 +228,10 @@ impl Walk {
     }
 
     /// Keeps what a channel's properties say.
-    fn describe(&mut self, object: &Object, big_endian: bool, properties: &[(String, Property)]) {
-        let code = object.raw.map(|raw| raw.0);
-        let Some(channel) = self.channel(&object.path, code, big_endian) else {
-            return;
-        };
-        let number = |wanted: &str| {
-            properties.iter().find_map(|(name, value)| match value {
-                Property::Number(number) if name == wanted => Some(*number),
-                _ => None,
-            })
-        };
-        let linear = properties.iter().any(|(name, value)| {
-            name == "NI_Scale[0]_Scale_Type" && *value == Property::Text("Linear".to_owned())
-        });
-        if let Some(interval_s) = number("wf_increment") {
-            channel.interval_s = Some(interval_s);
-        }
-        if linear {
-            let slope = number("NI_Scale[0]_Linear_Slope");
-            channel.number.scale = slope.unwrap_or(channel.number.scale);
-            let offset = number("NI_Scale[0]_Linear_Y_Intercept");
-            channel.number.offset = offset.unwrap_or(channel.number.offset);
+    fn describe(&mut self, object: &Object, big: bool, properties: Vec<(String, Property)>) {
+        let code = object.raw.as_ref().map(Values::code);
+        if let Some(channel) = self.channel(&object.path, code, big) {
+            channel.properties.extend(properties);
         }
     }
 
@@ -244,7 +252,8 @@ impl Walk {
                 channels.push(Channel {
                     name,
                     number: Number::plain(kind, big),
-                    interval_s: None,
+                    properties: Properties::new(),
+                    powers: Vec::new(),
                     pieces: Vec::new(),
                 });
                 channels.len() - 1
@@ -255,38 +264,88 @@ impl Walk {
 
     /// Where the samples of one segment are.
     fn samples(&mut self, lead: &Lead, raw: u64, end: u64) {
-        let with = self
-            .objects
-            .iter()
-            .filter_map(|object| Some((object.path.clone(), object.raw?)));
-        let with: Vec<(String, (u32, usize, usize))> = with.collect();
-        let sizes = with.iter().map(|object| object.1.2);
-        let chunk_bytes = sizes.fold(0, usize::saturating_add);
+        let objects = self.objects.iter();
+        let with = objects.filter_map(|object| Some((object.path.clone(), object.raw.clone()?)));
+        let with: Vec<(String, Values)> = with.collect();
+        let (places, chunk_bytes) = match lead.is_of_cards() {
+            true => of_cards(&with),
+            false => of_objects(&with, lead.is_interleaved()),
+        };
         if chunk_bytes == 0 {
             return;
         }
         let room = usize::try_from(end - raw).unwrap_or(usize::MAX);
-        let chunks = room / chunk_bytes;
-        let row: usize = with.iter().filter_map(|object| width(object.1.0)).sum();
-        let (mut offset, big) = (raw, lead.is_big_endian());
-        for (path, (code, count, size)) in with {
-            let wide = width(code).unwrap_or(0);
-            let stride = if lead.is_interleaved() { row } else { wide };
-            if count > 0
-                && let Some(channel) = self.channel(&path, Some(code), big)
-            {
+        for place in places.into_iter().filter(|place| place.count > 0) {
+            let code = Some(place.code);
+            if let Some(channel) = self.channel(place.path, code, lead.is_big_endian()) {
                 channel.pieces.push(Piece {
-                    offset,
-                    count,
-                    stride,
-                    chunks,
+                    offset: raw.saturating_add(place.begin as u64),
+                    count: place.count,
+                    stride: place.stride,
+                    chunks: room / chunk_bytes,
                     chunk_bytes,
                 });
             }
-            let next = if lead.is_interleaved() { wide } else { size };
-            offset = offset.saturating_add(next as u64);
         }
     }
+}
+
+/// A channel's place in every chunk of a segment.
+struct Place<'a> {
+    path: &'a str,
+    code: u32,
+    /// Bytes before its first value.
+    begin: usize,
+    count: usize,
+    stride: usize,
+}
+
+/// Places of objects one after the other, or row by row, and the bytes of a chunk.
+fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<Place<'_>>, usize) {
+    let own = with.iter().filter_map(|(path, values)| match values {
+        Values::Own(code, count, size) => Some((path, *code, *count, *size)),
+        Values::Card(_) => None,
+    });
+    let row: usize = own.clone().filter_map(|own| width(own.1)).sum();
+    let (mut places, mut begin, mut chunk_bytes) = (Vec::new(), 0_usize, 0_usize);
+    for (path, code, count, size) in own {
+        let wide = width(code).unwrap_or(0);
+        places.push(Place {
+            path,
+            code,
+            begin,
+            count,
+            stride: if rows { row } else { wide },
+        });
+        begin = begin.saturating_add(if rows { wide } else { size });
+        chunk_bytes = chunk_bytes.saturating_add(size);
+    }
+    (places, chunk_bytes)
+}
+
+/// Places of channels in the rows of DAQ cards, and the bytes of a chunk.
+fn of_cards(with: &[(String, Values)]) -> (Vec<Place<'_>>, usize) {
+    let own = with.iter().filter_map(|(path, values)| match values {
+        Values::Card(layout) => Some((path.as_str(), layout)),
+        Values::Own(..) => None,
+    });
+    let layouts: Vec<&Layout> = own.clone().map(|(_, layout)| layout).collect();
+    let (begins, chunk_bytes) = cards(&layouts);
+    let places = own.filter_map(|(path, layout)| in_row(path, layout, &begins));
+    (places.collect(), chunk_bytes)
+}
+
+/// Place of a channel in its card's rows; none of one that is beyond them.
+fn in_row<'a>(path: &'a str, layout: &Layout, begins: &[usize]) -> Option<Place<'a>> {
+    let stride = *layout.rows.get(layout.card)?;
+    let end = layout.within.checked_add(width(layout.code)?)?;
+    (end <= stride).then_some(Place {
+        path,
+        code: layout.code,
+        begin: begins.get(layout.card)?.saturating_add(layout.within),
+        count: layout.count,
+        stride,
+    })
 }
 
 /// Group and channel of a path; quotes inside a name are doubled.

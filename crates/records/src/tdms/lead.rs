@@ -53,7 +53,8 @@ impl Lead {
         self.flags & (1 << 6) != 0
     }
 
-    pub fn is_unscaled(&self) -> bool {
+    /// Whether its samples are in the rows of DAQ cards.
+    pub fn is_of_cards(&self) -> bool {
         self.flags & (1 << 7) != 0
     }
 }

@@ -2,8 +2,10 @@
 //! channels nor several chunks a segment, which most of LabVIEW's files have.
 
 mod bytes;
+mod daqmx;
 mod index;
 mod lead;
+mod scaling;
 
 use crate::channels::{chosen, interval_s};
 use crate::cut::{Cut, Head, MOST_SAMPLES, Stream};
@@ -12,6 +14,7 @@ use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::Samples;
 use index::{Channel, Index, Piece};
+use scaling::value;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -55,11 +58,18 @@ fn open_group(
         .map(|channel| channel.name.clone())
         .collect();
     let picked = chosen(file, &names, options)?;
-    let mut kept: Vec<Channel> = Vec::new();
-    for index in picked {
-        kept.extend(channels.get(index).cloned());
-    }
     let source_name = format!("{}, {group}", name(file));
+    let kept = picked.into_iter().filter_map(|at| channels.get(at));
+    let kept: Result<Vec<Channel>, RecordError> = kept
+        .map(|channel| {
+            channel.clone().scaled().map_err(|scale| {
+                let name = &channel.name;
+                let detail = format!("{name:?} has {scale}; export it with scaled values");
+                RecordError::malformed(file, "TDMS", detail)
+            })
+        })
+        .collect();
+    let kept = kept?;
     let total = kept.first().map_or(0, Channel::len);
     if total == 0 {
         return Err(RecordError::Empty { source_name });
@@ -72,7 +82,7 @@ fn open_group(
             why: "as in its first channel",
         });
     }
-    let stated_s = kept.iter().find_map(|channel| channel.interval_s);
+    let stated_s = kept.iter().find_map(Channel::interval_s);
     let head = Head {
         file: file.to_owned(),
         part: Some(group),
@@ -132,7 +142,17 @@ fn part(opened: &mut File, channel: &Channel, from: usize, to: usize) -> std::io
         }
         begin = end;
     }
-    Ok(channel.number.samples(&numbers, 0, 1))
+    let samples = channel.number.samples(&numbers, 0, 1);
+    Ok(match channel.powers.as_slice() {
+        [] => samples,
+        powers => Samples::Volts(
+            samples
+                .volts()
+                .into_iter()
+                .map(|x| value(powers, x))
+                .collect(),
+        ),
+    })
 }
 
 /// The bytes of `count` numbers in one chunk, side by side.

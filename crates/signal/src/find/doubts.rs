@@ -2,7 +2,7 @@
 
 use super::smooth::Smooth;
 use super::track::Track;
-use super::{Doubt, Place, Pulse};
+use super::{Doubt, Found, Place, Pulse};
 
 /// One pulse with the channel and the smoothed stretch it was found in.
 pub(super) struct Seen<'a, 'b> {
@@ -67,4 +67,12 @@ pub(super) fn missing(found: &[Option<Pulse>; 3]) -> impl Iterator<Item = Doubt>
     let places = [Place::Passing, Place::Wall, Place::Returning];
     let pairs = places.into_iter().zip(found);
     pairs.filter_map(|(place, pulse)| pulse.is_none().then_some(Doubt::Missing(place)))
+}
+
+/// Pulses that trail in a summed channel; where a clipped one has its maximum is chance.
+pub(super) fn trailing(found: &Found) -> Vec<Doubt> {
+    let clipped = |pulse: &&Pulse| found.doubts.contains(&Doubt::Saturation(pulse.place));
+    let whole = found.pulses().filter(|pulse| !clipped(pulse));
+    let trail = whole.filter(|pulse| pulse.trails());
+    trail.map(|pulse| Doubt::Trailing(pulse.place)).collect()
 }

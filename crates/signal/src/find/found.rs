@@ -38,6 +38,8 @@ pub enum Doubt {
     Missing(Place),
     /// Another maximum of at least a quarter of its height stands near a pulse.
     Split(Place),
+    /// A pulse in a summed channel falls much more slowly than it rises.
+    Trailing(Place),
     /// Between two pulses the signal does not fall to a tenth of the lower one.
     Overlap(Place, Place),
     /// A pulse is less than ten times as high as the noise.
@@ -60,6 +62,7 @@ impl fmt::Display for Doubt {
             Self::Saturation(place) => write!(f, "{place} pulse saturated"),
             Self::Missing(place) => write!(f, "{place} pulse missing"),
             Self::Split(place) => write!(f, "{place} pulse split"),
+            Self::Trailing(place) => write!(f, "{place} pulse trails"),
             Self::Overlap(one, other) => write!(f, "{one} and {other} pulse overlap"),
             Self::LowSignal(place) => write!(f, "{place} pulse low"),
             Self::RecordTooShort => f.write_str("record too short"),
@@ -122,7 +125,17 @@ pub struct Pulse {
     pub extent: (usize, usize),
 }
 
+/// From so many times as slow a fall as rise on, at half the height, a pulse trails: those of
+/// dry chains have 0.9 to 1.2.
+const TRAILS: f64 = 2.0;
+
 impl Pulse {
+    /// Whether it falls so much more slowly than it rises that its top is flat.
+    #[must_use]
+    pub fn trails(&self) -> bool {
+        self.sides_samples.1 > TRAILS * self.sides_samples.0
+    }
+
     /// Twice the shorter side: the width of a bell as steep as the steeper flank.
     /// What a pulse trails behind does not widen it.
     #[must_use]

@@ -50,6 +50,9 @@ pub(crate) fn conditioned_pulses(
         Channels::Separate { sensor, wall } => separate(sensor, wall, finding),
     }?;
     digitiser::judge(&mut found, recorded, finding);
+    if let Channels::Summed(_) = channels {
+        found.doubt(doubts::trailing(&found));
+    }
     Ok(found)
 }
 

@@ -137,7 +137,8 @@ impl Sight<'_> {
     }
 
     /// Slope, a sample, of what may lie under a pulse in a summed channel: from
-    /// what is there before the pulse begins to nothing at its maximum.
+    /// what is there before the pulse begins to nothing at its maximum; under one that
+    /// trails, and whose flat top little can shift far, within its rise.
     fn slope_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let foot = time - 2.0 * FOOT * pulse.sides_samples.0;
         let length = UNDER * pulse.width_samples;
@@ -149,7 +150,11 @@ impl Sight<'_> {
         let mean = heights.iter().sum::<f64>() / count;
         let noise = self.upright.level.broad_noise();
         let beyond_noise = (mean * mean - noise * noise / count).max(0.0);
-        beyond_noise.sqrt() / (time - foot)
+        let within = match pulse.trails() {
+            true => pulse.sides_samples.0,
+            false => time - foot,
+        };
+        beyond_noise.sqrt() / within
     }
 
     /// `left` over the noise, if there is noise.

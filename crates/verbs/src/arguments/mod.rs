@@ -3,9 +3,28 @@
 pub mod infer;
 pub mod measure;
 
+use crate::failure::Failure;
 use crate::given::Given;
-use clap::{Args, ValueEnum};
+use clap::{Args, Command, ValueEnum};
 use std::path::PathBuf;
+
+/// Options of a verb from words, as a command line has them.
+///
+/// # Errors
+/// Words that are no options, or say nothing sensible.
+pub fn parsed<A: Args>(verb: &'static str, words: &[String]) -> Result<A, Failure> {
+    let command = Command::new(verb).no_binary_name(true);
+    let command = A::augment_args(command.disable_help_flag(true));
+    let told = |error: clap::Error| {
+        let text = error.to_string();
+        let text = text.split("\n\nUsage:").next().unwrap_or_default();
+        let text = text.split("\n\nFor more information").next();
+        let text = text.unwrap_or_default().trim();
+        Failure::User(text.strip_prefix("error: ").unwrap_or(text).to_owned())
+    };
+    let matches = command.try_get_matches_from(words).map_err(told)?;
+    A::from_arg_matches(&matches).map_err(told)
+}
 
 /// Which experiment.
 #[derive(Debug, Args)]

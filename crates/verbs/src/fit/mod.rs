@@ -4,7 +4,7 @@ mod more;
 mod results;
 
 pub use more::{CHAIN, More, Rival, Rivals, Sampled};
-pub use results::{json, parameters_csv, profiles_csv, rows_csv};
+pub use results::{json, parameters_csv, profiles_csv, rows_csv, rows_json};
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;

@@ -9,6 +9,7 @@ use hertzchain_infer::{
     Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
     compare, cross_validate, fit, profile,
 };
+use hertzchain_study::{StudyError, stopped};
 use std::fs;
 
 /// What a method tells beside the covariance.
@@ -81,13 +82,29 @@ fn sampled(
             Err(unconverged) if left == 0 => break Err(unconverged),
             Err(unconverged) => unconverged.more_steps().max(FIRST_STEPS),
         };
-        chain.advance(target, more.min(left)).map_err(user)?;
+        advance(&mut chain, target, more.min(left))?;
     };
     Ok(More::Sampled(Box::new(Sampled {
         chain,
         posterior,
         surrogate_error: surrogate.map(|surrogate| surrogate.error),
     })))
+}
+
+/// Steps between looks at whether to break off: some milliseconds.
+const TOGETHER: u64 = 20;
+
+/// Leads a chain on; steps in parts are the same steps.
+fn advance(chain: &mut Chain, target: &dyn Problem, mut steps: u64) -> Result<(), Failure> {
+    while steps > 0 {
+        if stopped() {
+            return Err(user(StudyError::Stopped));
+        }
+        let now = steps.min(TOGETHER);
+        chain.advance(target, now).map_err(user)?;
+        steps -= now;
+    }
+    Ok(())
 }
 
 /// A new chain, or the one that lies in the output folder.

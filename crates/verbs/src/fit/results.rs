@@ -237,3 +237,27 @@ fn row_line(fitted: &Fitted, (at, of): (usize, Observable), residual: f64) -> St
     let speed = cell(row.speed_m_s.value);
     format!("{},{speed},{},{}\n", row.line, of.column(), cells.join(","))
 }
+
+/// Every measured value beside the fitted one with its standard error.
+#[must_use]
+pub fn rows_json(fitted: &Fitted) -> Value {
+    let measured = fitted.problem.measured().into_iter();
+    let one = |((at, of), residual): ((usize, Observable), &f64)| {
+        let row = &fitted.problem.data().rows[at];
+        let value = row.value(of);
+        let predicted = fitted.curve.predicted.get(at);
+        let sd = fitted.curve.sd.get(at).map(|row| row[of as usize]);
+        json!({
+            "line": row.line,
+            "speed_m_s": row.speed_m_s.value,
+            "speed_error_m_s": row.speed_m_s.sigma,
+            "observable": of.column(),
+            "measured": value.map(|value| value.value),
+            "error": value.map(|value| value.sigma),
+            "fitted": predicted.and_then(|row| row[of as usize]),
+            "fitted_error": sd.filter(|sd| sd.is_finite()),
+            "residual": residual,
+        })
+    };
+    measured.zip(&fitted.fit.residuals).map(one).collect()
+}

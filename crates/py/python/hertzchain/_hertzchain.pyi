@@ -1,0 +1,137 @@
+"""The extension: thin bindings of the Rust libraries. Use `hertzchain` instead."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+_Table = tuple[str, str]
+_Progress = Callable[[int], object] | None
+_Asked = dict[str, Any]
+
+@final
+class Experiment:
+    """A described experiment, valid and in SI; unchangeable and picklable.
+
+    Make one with `hertzchain.load`, `hertzchain.preset` or `hertzchain.build`.
+    """
+
+    @staticmethod
+    def open(path: str | PathLike[str]) -> Experiment: ...
+    @staticmethod
+    def from_text(name: str, text: str) -> Experiment: ...
+    @staticmethod
+    def preset(name: str) -> Experiment: ...
+    @property
+    def name(self) -> str:
+        """Name of the file or preset."""
+    @property
+    def title(self) -> str:
+        """What the experiment is."""
+    @property
+    def text(self) -> str:
+        """The file's text, as it was read."""
+    @property
+    def is_dimensionless(self) -> bool:
+        """Whether K = m = 1 stands for SI."""
+    @property
+    def speed_m_s(self) -> float | None:
+        """Speed of the striker in m/s; None without a striker."""
+    @property
+    def beads(self) -> int:
+        """Number N of beads."""
+    @property
+    def sensor_bead(self) -> int:
+        """Number n of the bead whose signal times the pulses."""
+    @property
+    def has_wall(self) -> bool:
+        """Whether bead N leans on something, so that there is a wall signal."""
+    @property
+    def cases(self) -> list[str]:
+        """Names of the chains that a campaign measures."""
+    def numbers(self) -> list[tuple[str, float, str]]:
+        """Every number that the file gives: path, value in SI, SI unit."""
+    def get(self, path: str) -> float:
+        """One number in SI, by its path or an unmistakable end of it."""
+    def case(self, name: str) -> Experiment:
+        """The chain of one of a campaign's cases."""
+    def set(self, values: dict[str, float] | dict[str, str] | dict[str, float | str]) -> Experiment:
+        """This experiment with numbers set: in SI, or as text with a unit."""
+
+@final
+class Force:
+    """A force law of Python on some contacts."""
+
+    def __new__(
+        cls,
+        name: str,
+        equation: str,
+        force: Callable[[Floats, Floats], object],
+        energy: Callable[[Floats], object] | None,
+        first: int,
+        last: int | None,
+        beside: bool,
+    ) -> Force: ...
+
+@final
+class Run:
+    """A sweep or an ensemble with everything that its numbers follow from."""
+
+    def __new__(
+        cls, experiment: Experiment, speeds_m_s: Floats, names: Sequence[str], values: Floats, asked: _Asked
+    ) -> Run: ...
+    @property
+    def name(self) -> str: ...
+    def speeds(self) -> Floats: ...
+    def values(self) -> list[Floats]: ...
+
+def shard(
+    run: Run, number: int, of: int, folder: str, threads: int, progress: _Progress
+) -> bool: ...
+def gather(folder: str) -> dict[str, Any]: ...
+def presets() -> list[tuple[str, str]]: ...
+def schema() -> str: ...
+def shot(
+    experiment: Experiment,
+    speed: str | None,
+    options: Sequence[str],
+    watch: Sequence[tuple[str, int]] | None,
+    interval_s: float | None,
+    forces: Sequence[Force],
+) -> dict[str, Any]: ...
+def speeds(text: str) -> Floats: ...
+def sweep(
+    experiment: Experiment, speeds_m_s: Floats, asked: _Asked, progress: _Progress
+) -> dict[str, Any]: ...
+def ensemble(
+    experiment: Experiment,
+    speeds_m_s: Floats,
+    names: Sequence[str],
+    values: Floats,
+    asked: _Asked,
+    progress: _Progress,
+) -> dict[str, Any]: ...
+def check(experiment: Experiment, speed: str | None) -> dict[str, Any]: ...
+def theory(experiment: Experiment, speed: str | None) -> dict[str, Any]: ...
+def laws(name: str | None) -> list[dict[str, Any]]: ...
+def instruction_set() -> str: ...
+def campaign(
+    experiment: Experiment,
+    out: str | PathLike[str],
+    shard: str,
+    seed: int | None,
+    threads: int,
+    progress: _Progress,
+) -> dict[str, Any]: ...
+def measure(options: Sequence[str], threads: int, progress: _Progress) -> dict[str, Any]: ...
+def fit(table: _Table, experiment: Experiment, options: Sequence[str]) -> dict[str, Any]: ...
+def design(table: _Table, experiment: Experiment, options: Sequence[str]) -> dict[str, Any]: ...
+def gauge(
+    tables: tuple[_Table, _Table],
+    experiments: tuple[Experiment, Experiment],
+    more_oils: _Table | None,
+    options: Sequence[str],
+) -> dict[str, Any]: ...

@@ -1,0 +1,319 @@
+"""Recordings: made on a virtual rig, and measured."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _hertzchain as _native
+from . import _options as options
+from ._hertzchain import Experiment
+from ._table import Floats, lines
+from .errors import OptionError
+from .results import PowerLaw
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+__all__ = ["Campaigned", "Case", "Measured", "campaign", "measure"]
+
+Path_ = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Campaigned:
+    """What a run of a campaign has done.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the recordings are, one HDF5 file a series.
+    kept, run : int
+        Series that were there before, and series run now.
+    shots : int
+        Shots fired now.
+    bytes : int
+        Size of all recordings of this part.
+    failed : list of str
+        Series that can't be computed, each with the reason; the others are there.
+    seed : int
+        Of all that is random.
+    """
+
+    folder: Path
+    kept: int
+    run: int
+    shots: int
+    bytes: int
+    failed: list[str]
+    seed: int
+
+    @property
+    def files(self) -> list[Path]:
+        """The recordings, by name."""
+        return sorted(self.folder.glob("*.h5"))
+
+
+def campaign(
+    experiment: Experiment,
+    out: Path_,
+    *,
+    shard: str = "1/1",
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: object = None,
+) -> Campaigned:
+    """Runs a campaign on a virtual rig: taps and shots, recorded as by a real one.
+
+    Files are the same bytes whatever the number of threads; a run that was
+    broken off goes on where it stood.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        With a ``[campaign]``, such as ``hertzchain.preset("paper")``.
+    out : path
+        Folder to write recordings into.
+    shard : str
+        Only the i-th of n parts, as ``"i/n"``: series are dealt out like cards.
+    seed : int, optional
+        In place of the experiment's.
+    threads, progress
+        As for `sweep`; progress counts shots.
+
+    Raises
+    ------
+    OptionError, ExperimentError
+        An experiment that no rig can do, a folder with something else in it.
+    InternalError
+        A recording that can't be written.
+    """
+    update, bar = options.progress(progress, None, "shot")
+    try:
+        done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)  # type: ignore[arg-type]
+    finally:
+        if bar is not None:
+            bar.close()  # type: ignore[attr-defined]
+    return Campaigned(folder=Path(out), **done)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Case:
+    """A measured curve: one row a speed.
+
+    Attributes
+    ----------
+    name : str
+        Name of the case, such as ``"dry"``.
+    columns : dict of str to ndarray, shape (speeds,)
+        ``speed_m_s``, ``tof_incident_s`` … with ``*_error`` for standard errors.
+    power_law_incident, power_law_reflected : PowerLaw or None
+        Weighted fits.
+    """
+
+    name: str
+    columns: dict[str, Floats]
+    power_law_incident: PowerLaw | None
+    power_law_reflected: PowerLaw | None
+
+    def __getitem__(self, column: str) -> Floats:
+        return self.columns[column]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row a speed."""
+        from ._table import frame
+
+        return frame(self.columns, False)
+
+    def to_xarray(self) -> xr.Dataset:
+        """One variable a column over ``speed_m_s``."""
+        from ._table import dataset
+
+        rest = {name: (("speed_m_s",), values) for name, values in self.columns.items() if name != "speed_m_s"}
+        return dataset(rest, {"speed_m_s": (("speed_m_s",), self.columns["speed_m_s"])}, False, {"case": self.name})
+
+    def __repr__(self) -> str:
+        from ._table import span
+
+        names = ("speed_m_s", "tof_incident_s", "tof_reflected_s")
+        return lines(f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", {name: span(self.columns[name], name) for name in names})
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Measured:
+    """What came of a set of recordings.
+
+    Attributes
+    ----------
+    shots : list of dict
+        Every record: file, case, times of flight with errors in s, peaks in V, flags.
+    cases : dict of str to Case
+        One curve a case.
+    ratios : list of dict
+        Times of flight of each case over the reference's.
+    refused : list of str
+        What could not be read.
+    notes, unmatched : list
+        What was taken for granted; what table and recordings do not find in each other.
+    verdict : str or None
+        What was refused or not found, as the program ends with.
+    tables : dict of str to str
+        The program's tables as text: ``shots.csv``, ``speeds.csv`` …
+    """
+
+    shots: list[dict[str, Any]]
+    cases: dict[str, Case]
+    ratios: list[dict[str, Any]]
+    notes: list[dict[str, Any]]
+    unmatched: list[str]
+    refused: list[str]
+    verdict: str | None
+    tables: dict[str, str]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row a shot, as in ``shots.csv``."""
+        import pandas as pd
+
+        return pd.read_csv(io.StringIO(self.tables["shots.csv"]))
+
+    def to_xarray(self) -> xr.Dataset:
+        """One row a shot."""
+        made = self.to_pandas().to_xarray()
+        return made.rename({"index": "record"}) if "index" in made.dims else made
+
+    def save(self, folder: Path_) -> list[Path]:
+        """Writes the tables into a folder; tables without rows are left out."""
+        into = Path(folder)
+        into.mkdir(parents=True, exist_ok=True)
+        written: list[Path] = []
+        for name, text in self.tables.items():
+            if text.count("\n") > 1:
+                (into / name).write_text(text, encoding="utf-8")
+                written.append(into / name)
+        return written
+
+    def __repr__(self) -> str:
+        timed = sum("missing" not in shot for shot in self.shots)
+        rows = {"times of flight": f"{timed} of {len(self.shots)} records"}
+        rows |= {case.name or "(unnamed)": f"{case['speed_m_s'].size} speeds" for case in self.cases.values()}
+        if self.refused:
+            rows["refused"] = str(len(self.refused))
+        return lines("Measured", rows)
+
+
+def measure(
+    records: Path_ | Iterable[Path_] | NDArray[Any],
+    *,
+    rate: str | float | None = None,
+    trust_rate: bool = False,
+    channel: str | int | Iterable[str | int] = (),
+    time_unit: Literal["s", "ms", "us", "ns"] | None = None,
+    shot_samples: int | None = None,
+    level: float | None = None,
+    whole: bool = False,
+    rows: Literal["shots", "channels", "times"] | None = None,
+    method: Literal["local", "onset", "correlation", "shape"] = "local",
+    onset: float = 0.5,
+    beads: int | None = None,
+    sensor: int | None = None,
+    polarity: Literal["positive", "negative"] | None = None,
+    wall_polarity: Literal["positive", "negative"] | None = None,
+    low_pass: str | float | None = None,
+    high_pass: str | float | None = None,
+    rig: Path_ | None = None,
+    shots: Path_ | None = None,
+    speed_error: float | None = None,
+    speed_gap: float = 0.01,
+    reference: str = "dry",
+    keep_dubious: bool = False,
+    threads: int | None = None,
+    progress: object = None,
+) -> Measured:
+    """Measures times of flight on recordings of any rig, with errors and curves.
+
+    Parameters
+    ----------
+    records : path, iterable of paths, or ndarray
+        Files (HDF5 of a campaign, text, NPY, NPZ, WAV, TDMS) or folders of them;
+        or volts as an array of shape (samples,) or (shots, samples), with ``rate``.
+    rate : float or str, optional
+        Sampling rate in Hz, or as ``"1MHz"``.
+    rig : path or str, optional
+        Experiment file or preset of the rig.
+    shots : path, optional
+        Table of speeds and cases: file, case, speed, speed error.
+    speed_error, speed_gap : float
+        In m/s: standard error where nobody tells one; speeds nearer than the gap are one.
+    threads, progress
+        As for `sweep`; progress counts records.
+    trust_rate, channel, time_unit, shot_samples, level, whole, rows, method, onset, beads, \
+sensor, polarity, wall_polarity, low_pass, high_pass, reference, keep_dubious
+        As the options of ``hertzchain measure``.
+
+    Returns
+    -------
+    Measured
+        Bad records are told in it one by one, the rest is measured.
+
+    Raises
+    ------
+    OptionError
+        Options that do not go together, a folder without recordings.
+    """
+    channels = [channel] if isinstance(channel, (str, int)) else list(channel)
+    told = options.words(
+        rate=rate, trust_rate=trust_rate, time_unit=time_unit, shot_samples=shot_samples, level=level, whole=whole,
+        rows=rows, method=method, onset=onset, beads=beads, sensor=sensor, polarity=polarity,
+        wall_polarity=wall_polarity, low_pass=low_pass, high_pass=high_pass, rig=rig, shots=shots,
+        speed_error=speed_error, speed_gap=speed_gap, reference=reference, keep_dubious=keep_dubious,
+    )  # fmt: skip
+    told += [f"--channel={name}" for name in channels]
+    with TemporaryDirectory(prefix="hertzchain-") as folder:
+        files = _files(records, Path(folder))
+        update, bar = options.progress(progress, None, "record")
+        try:
+            found = _native.measure([*told, "--", *files], options.count("threads", threads), update)  # type: ignore[arg-type]
+        finally:
+            if bar is not None:
+                bar.close()  # type: ignore[attr-defined]
+    cases = [_case(case) for case in found.pop("cases")]
+    return Measured(cases={case.name: case for case in cases}, **found)
+
+
+def _files(records: Path_ | Iterable[Path_] | NDArray[Any], folder: Path) -> list[str]:
+    if isinstance(records, np.ndarray):
+        if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
+            raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
+        np.save(folder / "array.npy", np.ascontiguousarray(records))
+        return [str(folder / "array.npy")]
+    if isinstance(records, (str, os.PathLike)):
+        return [os.fspath(records)]
+    return [os.fspath(record) for record in records]
+
+
+def _case(raw: Mapping[str, Any]) -> Case:
+    columns: dict[str, list[float]] = {}
+
+    def put(name: str, value: float | None) -> None:
+        columns.setdefault(name, []).append(np.nan if value is None else value)
+
+    for row in raw["speeds"]:
+        put("speed_m_s", row["speed_m_s"]["value"])
+        put("speed_error_m_s", row["speed_m_s"]["sigma"])
+        put("shots", row["shots"])
+        for name in ("tof_incident_s", "tof_reflected_s", "wall_over_passing", "returning_over_passing"):
+            found = row[name] or {}
+            put(name, found.get("mean"))
+            put(f"{name}_error", found.get("error"))
+    laws = (raw["power_law_incident"], raw["power_law_reflected"])
+    made = {name: np.array(values, dtype=float) for name, values in columns.items()}
+    return Case(raw["case"], made, *(PowerLaw.of(law) for law in laws))

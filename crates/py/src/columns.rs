@@ -1,0 +1,69 @@
+//! Many shots as columns of numbers.
+
+use hertzchain_study::Shot;
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// What a column is called and which number of a shot stands in it.
+type Column = (&'static str, fn(&Shot) -> Option<f64>);
+
+/// In the order in which they are told.
+const COLUMNS: [Column; 12] = [
+    ("tof_incident_s", |shot| Some(shot.flight?.incident_s)),
+    ("tof_reflected_s", |shot| shot.flight?.reflected_s),
+    ("accuracy_reached", |shot| shot.accuracy_reached),
+    ("sensor_peak_n", sensor_peak),
+    ("wall_peak_n", |shot| {
+        Some(shot.passage.as_ref().ok()?.wall.value)
+    }),
+    ("returning_peak_n", |shot| {
+        Some(shot.passage.as_ref().ok()?.reflected?.value)
+    }),
+    ("incident_width_s", |shot| {
+        shot.passage.as_ref().ok()?.incident_width_s
+    }),
+    ("wall_width_s", |shot| {
+        shot.passage.as_ref().ok()?.wall_width_s
+    }),
+    ("reflected_width_s", |shot| {
+        shot.passage.as_ref().ok()?.reflected_width_s
+    }),
+    ("pulse_speed_beads_per_s", |shot| shot.pulse_speed_beads_s),
+    ("striker_rebound_m_s", |shot| shot.rebound?.end_m_s),
+    ("duration_s", |shot| Some(shot.duration_s)),
+];
+
+/// The incident pulse's, or the largest where none is seen to pass.
+fn sensor_peak(shot: &Shot) -> Option<f64> {
+    let passage = shot.passage.as_ref().ok();
+    let largest = || {
+        shot.sensor_maxima
+            .iter()
+            .map(|peak| peak.value)
+            .reduce(f64::max)
+    };
+    passage.map(|seen| seen.incident.value).or_else(largest)
+}
+
+/// One number a shot and column; NaN where there is none.
+#[derive(Debug, Default)]
+pub struct Columns([Vec<f64>; COLUMNS.len()]);
+
+impl Columns {
+    /// One shot more; a row of NaN for none.
+    pub fn push(&mut self, shot: Option<&Shot>) {
+        for (values, (_, number)) in self.0.iter_mut().zip(COLUMNS) {
+            values.push(shot.and_then(number).unwrap_or(f64::NAN));
+        }
+    }
+
+    /// Arrays by name.
+    pub fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let all = PyDict::new(py);
+        for (values, (name, _)) in self.0.into_iter().zip(COLUMNS) {
+            all.set_item(name, values.into_pyarray(py))?;
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,225 @@
+//! Experiments: read, looked into, changed, pickled.
+
+use crate::failure::{Failed, of_file, of_path};
+use hertzchain_experiment as experiment;
+use hertzchain_experiment::Units;
+use hertzchain_verbs::failure::Failure;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// What has been done to an experiment since it was read.
+#[derive(Clone, Debug, FromPyObject, IntoPyObject)]
+enum Change {
+    /// Numbers set in SI.
+    Numbers(Vec<(String, f64)>),
+    /// Numbers set as text.
+    Texts(Vec<(String, String)>),
+    /// One of its cases chosen.
+    Case(String),
+}
+
+/// A described experiment, valid and in SI.
+#[pyclass(frozen, module = "hertzchain", name = "Experiment")]
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// As the libraries have it.
+    pub inner: experiment::Experiment,
+    changes: Vec<Change>,
+}
+
+impl Experiment {
+    fn read(inner: experiment::Experiment) -> Self {
+        Self {
+            inner,
+            changes: Vec::new(),
+        }
+    }
+
+    fn changed(&self, change: Change) -> Result<Self, Failed> {
+        let inner = match &change {
+            Change::Numbers(values) => {
+                let values: Vec<_> = values.iter().map(|(path, v)| (path.as_str(), *v)).collect();
+                self.inner.set(&values).map_err(of_path)?
+            }
+            Change::Texts(values) => {
+                let values = values.iter().map(|(path, v)| (path.as_str(), v.as_str()));
+                let values: Vec<_> = values.collect();
+                self.inner.set_text(&values).map_err(of_path)?
+            }
+            Change::Case(name) => {
+                let found = self.inner.case(name);
+                found.ok_or_else(|| self.no_case(name))??
+            }
+        };
+        let changes = self.changes.iter().cloned().chain([change]);
+        Ok(Self {
+            inner,
+            changes: changes.collect(),
+        })
+    }
+
+    fn no_case(&self, name: &str) -> Failure {
+        Failure::User(match self.inner.cases() {
+            known if known.is_empty() => {
+                format!("there is no case `{name}`: the experiment has none")
+            }
+            known => format!(
+                "there is no case `{name}`; expected one of {}",
+                known.join(", ")
+            ),
+        })
+    }
+}
+
+#[pymethods]
+impl Experiment {
+    /// Reads an experiment file.
+    #[staticmethod]
+    fn open(path: std::path::PathBuf) -> Result<Self, Failed> {
+        let read = experiment::Experiment::open(path);
+        Ok(Self::read(read.map_err(of_file)?))
+    }
+
+    /// Reads an experiment from text; its name is used in messages.
+    #[staticmethod]
+    fn from_text(name: &str, text: &str) -> Result<Self, Failed> {
+        Ok(Self::read(experiment::Experiment::from_text(name, text)?))
+    }
+
+    /// An experiment that comes with the program.
+    #[staticmethod]
+    fn preset(name: &str) -> Result<Self, Failed> {
+        let found = experiment::preset(name);
+        let found = found.map_err(|error| Failure::User(error.to_string()))?;
+        Ok(Self::read(found))
+    }
+
+    #[staticmethod]
+    fn _restored(name: &str, text: &str, changes: Vec<Change>) -> Result<Self, Failed> {
+        let read = Self::from_text(name, text)?;
+        let mut changes = changes.into_iter();
+        changes.try_fold(read, |experiment, change| experiment.changed(change))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restored = py.get_type::<Self>().getattr("_restored")?;
+        let parts = (self.inner.name(), self.inner.text(), self.changes.clone());
+        Ok((restored, parts.into_pyobject(py)?))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        self.inner.title()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.inner.text()
+    }
+
+    #[getter]
+    fn is_dimensionless(&self) -> bool {
+        self.inner.units() == Units::Dimensionless
+    }
+
+    #[getter]
+    fn speed_m_s(&self) -> Option<f64> {
+        self.inner.speed_m_s()
+    }
+
+    #[getter]
+    fn beads(&self) -> usize {
+        self.inner.beads()
+    }
+
+    #[getter]
+    fn sensor_bead(&self) -> usize {
+        self.inner.sensor_bead()
+    }
+
+    #[getter]
+    fn has_wall(&self) -> bool {
+        self.inner.has_wall()
+    }
+
+    #[getter]
+    fn cases(&self) -> Vec<&str> {
+        self.inner.cases()
+    }
+
+    /// Every number that the file gives: path, value in SI, unit.
+    fn numbers(&self) -> Vec<(String, f64, String)> {
+        let all = self.inner.numbers().into_iter();
+        all.map(|named| (named.path, named.value, named.unit))
+            .collect()
+    }
+
+    /// One number in SI.
+    fn get(&self, path: &str) -> Result<f64, Failed> {
+        Ok(self.inner.get(path).map_err(of_path)?)
+    }
+
+    /// This experiment with numbers set: in SI, or as text with a unit.
+    fn set(&self, values: Bound<'_, PyDict>) -> PyResult<Self> {
+        let (mut numbers, mut texts) = (Vec::new(), Vec::new());
+        for (path, value) in values {
+            let path: String = path.extract()?;
+            match value.extract::<String>() {
+                Ok(text) => texts.push((path, text)),
+                Err(_) => numbers.push((path, value.extract()?)),
+            }
+        }
+        let changes = [
+            (!numbers.is_empty()).then_some(Change::Numbers(numbers)),
+            (!texts.is_empty()).then_some(Change::Texts(texts)),
+        ];
+        let mut changes = changes.into_iter().flatten();
+        Ok(changes.try_fold(self.clone(), |experiment, change| {
+            experiment.changed(change)
+        })?)
+    }
+
+    /// The chain of one of a campaign's cases.
+    fn case(&self, name: &str) -> Result<Self, Failed> {
+        self.changed(Change::Case(name.to_owned()))
+    }
+
+    fn __repr__(&self) -> String {
+        let speed = self.inner.speed_m_s();
+        let speed = speed.map_or(String::new(), |v| match self.inner.units() {
+            Units::Si => format!(", striker at {v} m/s"),
+            Units::Dimensionless => format!(", striker at {v}"),
+        });
+        format!(
+            "<Experiment {:?}: {} beads{speed}>",
+            self.inner.title(),
+            self.inner.beads()
+        )
+    }
+}
+
+/// Names and titles of the experiments that come with the program.
+#[pyfunction]
+pub fn presets() -> Vec<(&'static str, &'static str)> {
+    let lists = [
+        experiment::presets(),
+        experiment::examples(),
+        experiment::campaigns(),
+    ];
+    let all = lists.into_iter().flatten();
+    all.map(|preset| (preset.name, preset.title())).collect()
+}
+
+/// The JSON Schema of experiment files, as text.
+#[pyfunction]
+pub fn schema() -> String {
+    format!("{:#}", experiment::schema())
+}

@@ -1,0 +1,75 @@
+//! Failures as Python's exceptions, with the reports of the command line.
+
+use hertzchain_experiment::{Finding, Mistakes, OpenError, PathError};
+use hertzchain_verbs::failure::{self, Failure};
+use miette::Diagnostic;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Where the exceptions are declared.
+const ERRORS: &str = "hertzchain.errors";
+
+/// A failure on its way to Python.
+pub struct Failed(Failure);
+
+impl<E: Into<Failure>> From<E> for Failed {
+    fn from(error: E) -> Self {
+        Self(error.into())
+    }
+}
+
+/// A path or its value; what is wrong in the file has its place.
+pub fn of_path(error: PathError) -> Failure {
+    match error {
+        PathError::Mistakes(mistakes) => mistakes.into(),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+/// A file that can't be used.
+pub fn of_file(error: OpenError) -> Failure {
+    match error {
+        OpenError::Mistakes(mistakes) => mistakes.into(),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+impl From<Failed> for PyErr {
+    fn from(Failed(failure): Failed) -> Self {
+        Python::attach(|py| match raised(py, &failure) {
+            Ok(error) => Self::from_value(error),
+            Err(error) => error,
+        })
+    }
+}
+
+fn raised<'py>(py: Python<'py>, failure: &Failure) -> PyResult<Bound<'py, PyAny>> {
+    let class = |name: &str| py.import(ERRORS)?.getattr(name);
+    match failure {
+        Failure::Mistakes(mistakes) => {
+            let report = failure.report(false);
+            class("ExperimentError")?.call1((report.trim_end(), findings(py, mistakes)?))
+        }
+        Failure::User(text) => class("OptionError")?.call1((text,)),
+        Failure::Ours(text) => class("InternalError")?.call1((text,)),
+        Failure::BrokenPipe => class("InternalError")?.call1(("broken pipe",)),
+    }
+}
+
+fn findings<'py>(py: Python<'py>, mistakes: &Mistakes) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let all = mistakes.findings().iter();
+    all.map(|found| finding(py, found)).collect()
+}
+
+/// What, where, what was expected.
+pub fn finding<'py>(py: Python<'py>, found: &Finding) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(py);
+    told.set_item("file", found.file())?;
+    told.set_item("line", found.line())?;
+    told.set_item("text", found.text())?;
+    told.set_item("message", found.to_string())?;
+    told.set_item("expected", found.label())?;
+    told.set_item("help", found.help().map(|help| help.to_string()))?;
+    told.set_item("report", failure::report(found, false).trim_end())?;
+    Ok(told)
+}

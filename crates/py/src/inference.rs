@@ -1,0 +1,135 @@
+//! From times of flight to contacts.
+
+use crate::experiment::Experiment;
+use crate::failure::Failed;
+use crate::job::Job;
+use crate::json;
+use hertzchain_infer::gauge::{Chains, known_oils, oils};
+use hertzchain_infer::{CurveProblem, Data};
+use hertzchain_verbs::arguments::infer::{Design, Fit, Gauge, Measured};
+use hertzchain_verbs::arguments::parsed;
+use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::inference::{changed, in_case, model, parsed as data, problem, user};
+use hertzchain_verbs::{design as designing, fit as fitting, gauge as gauging};
+use numpy::{IntoPyArray, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A table by name and text.
+type Table = (String, String);
+
+fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Result<Data, Failure> {
+    data(
+        name,
+        text,
+        measured,
+        case.or(measured.case.as_ref()).cloned(),
+    )
+}
+
+/// Contact parameters from times of flight.
+#[pyfunction]
+#[pyo3(signature = (table, experiment, options))]
+pub fn fit<'py>(
+    py: Python<'py>,
+    table: Table,
+    experiment: &Experiment,
+    options: Vec<String>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Fit = parsed("fit", &options).map_err(Failed::from)?;
+    let threads = arguments.modelled.threads.unwrap_or(0);
+    let (found, curve, samples) = Job::pooled(None, threads).run(py, |_| {
+        let data = read(&table, &arguments.measured, None)?;
+        let inner = in_case(experiment.inner.clone(), &data.case)?;
+        let inner = changed(inner, &arguments.modelled.set)?;
+        let model = model(&inner, &arguments.modelled, &arguments.freed)?;
+        let fitted = fitting::fitted(problem(model, data, &arguments.freed)?, &arguments)?;
+        let found = fitting::json(&fitted, &arguments);
+        Ok((found, curve(&fitted), samples(&fitted)))
+    })?;
+    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
+    told.set_item("rows", json::object(py, &curve)?)?;
+    if let Some((parameters, samples)) = samples {
+        let samples = samples.into_pyarray(py);
+        let count = samples.len()? / parameters.max(1);
+        told.set_item("samples", samples.reshape([parameters, count])?)?;
+    }
+    Ok(told.into_any())
+}
+
+/// Every measured value beside the fitted one.
+fn curve(fitted: &fitting::Fitted) -> serde_json::Value {
+    fitting::rows_json(fitted)
+}
+
+/// Samples of a posterior, parameter by parameter, and how many parameters there are.
+fn samples(fitted: &fitting::Fitted) -> Option<(usize, Vec<f64>)> {
+    match &fitted.more {
+        fitting::More::Sampled(sampled) => {
+            let posterior = sampled.posterior.as_ref().ok()?;
+            let parameters = posterior.mean.len();
+            Some((
+                parameters,
+                posterior.samples.iter().flatten().copied().collect(),
+            ))
+        }
+        _ => None,
+    }
+}
+
+/// What to measure next.
+#[pyfunction]
+#[pyo3(signature = (table, experiment, options))]
+pub fn design<'py>(
+    py: Python<'py>,
+    table: Table,
+    experiment: &Experiment,
+    options: Vec<String>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Design = parsed("design", &options).map_err(Failed::from)?;
+    let threads = arguments.modelled.threads.unwrap_or(0);
+    let found = Job::pooled(None, threads).run(py, |_| {
+        let data = read(&table, &arguments.measured, None)?;
+        let speeds = designing::speeds(&data, &arguments)?;
+        let inner = in_case(experiment.inner.clone(), &data.case)?;
+        let inner = changed(inner, &arguments.modelled.set)?;
+        let model = model(&inner, &arguments.modelled, &arguments.freed)?;
+        let problem: CurveProblem = problem(model, data, &arguments.freed)?;
+        let targets = designing::targets(&problem, &arguments)?;
+        let (candidates, found) = designing::designed(&problem, &targets, &speeds, &arguments)?;
+        Ok(designing::json(&problem, &candidates, &found))
+    })?;
+    json::object(py, &found)
+}
+
+/// Which oil is on the contacts.
+#[pyfunction]
+#[pyo3(signature = (tables, experiments, more_oils, options))]
+pub fn gauge<'py>(
+    py: Python<'py>,
+    tables: (Table, Table),
+    experiments: (PyRef<'py, Experiment>, PyRef<'py, Experiment>),
+    more_oils: Option<Table>,
+    options: Vec<String>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Gauge = parsed("gauge", &options).map_err(Failed::from)?;
+    let (wet_model, dry_model) = (experiments.0.inner.clone(), experiments.1.inner.clone());
+    let found = Job::pooled(None, arguments.threads.unwrap_or(0)).run(py, |_| {
+        let measured = &arguments.measured;
+        let wet = read(&tables.0, measured, arguments.wet_case.as_ref())?;
+        let dry = read(&tables.1, measured, arguments.dry_case.as_ref())?;
+        let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
+        if let Some((name, text)) = &more_oils {
+            all.extend(oils(name, text).map_err(user)?);
+        }
+        let chains = Chains {
+            wet: &in_case(wet_model, &wet.case)?,
+            dry: &in_case(dry_model, &dry.case)?,
+            free: &arguments.dry_free,
+            accuracy: arguments.accuracy,
+        };
+        let gauged = gauging::gauged(&chains, (dry, wet), all)?;
+        Ok(gauging::json(&gauged))
+    })?;
+    json::object(py, &found)
+}

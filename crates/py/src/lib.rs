@@ -1,0 +1,43 @@
+//! hertzchain for Python: all of its bindings.
+//!
+//! Thin: what a verb does is in `hertzchain_verbs` and below; here arguments
+//! become Rust's, results become arrays and dicts, and Python's lock is let go
+//! while anything is computed. The package around this module is in `python/`.
+
+mod columns;
+mod ensemble;
+mod experiment;
+mod failure;
+mod inference;
+mod job;
+mod json;
+mod law;
+mod recordings;
+mod shards;
+mod shot;
+mod sweep;
+mod theory;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _hertzchain {
+    #[pymodule_export]
+    use super::ensemble::ensemble;
+    #[pymodule_export]
+    use super::experiment::{Experiment, presets, schema};
+    #[pymodule_export]
+    use super::inference::{design, fit, gauge};
+    #[pymodule_export]
+    use super::law::Force;
+    #[pymodule_export]
+    use super::recordings::{campaign, measure};
+    #[pymodule_export]
+    use super::shards::{Run, gather, shard};
+    #[pymodule_export]
+    use super::shot::shot;
+    #[pymodule_export]
+    use super::sweep::{speeds, sweep};
+    #[pymodule_export]
+    use super::theory::{check, instruction_set, laws, theory};
+}

@@ -1,0 +1,115 @@
+//! Recordings: made on a virtual rig, and measured.
+
+use crate::experiment::Experiment;
+use crate::failure::Failed;
+use crate::job::{Job, Meter};
+use crate::json;
+use hertzchain_measure::{Curves, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
+use hertzchain_rig::{Plan, RigError};
+use hertzchain_study::stopped;
+use hertzchain_verbs::arguments::measure::Measure;
+use hertzchain_verbs::arguments::parsed;
+use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::measure as measuring;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// The user's mistakes are told as such; a full disk is nobody's.
+fn failure(error: RigError) -> Failure {
+    match error {
+        RigError::Mistakes(mistakes) => (*mistakes).into(),
+        RigError::Record(error) => Failure::Ours(error.to_string()),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+/// Runs the series of a campaign that a folder does not have yet.
+#[pyfunction]
+#[pyo3(signature = (experiment, out, shard, seed, threads, progress))]
+pub fn campaign<'py>(
+    py: Python<'py>,
+    experiment: &Experiment,
+    out: PathBuf,
+    shard: &str,
+    seed: Option<u64>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let part = shard.parse();
+    let part = part.map_err(|error: hertzchain_rig::ShardError| {
+        Failed::from(Failure::User(error.to_string()))
+    })?;
+    let (done, seed) = Job::pooled(progress, threads).run(py, |meter| {
+        let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
+        let watch = |progress: hertzchain_rig::Progress| {
+            if progress.fired > 0 {
+                meter.count();
+            }
+        };
+        let done = hertzchain_rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
+        Ok((done, plan.seed))
+    })?;
+    let told = PyDict::new(py);
+    told.set_item("kept", done.kept)?;
+    told.set_item("run", done.run)?;
+    told.set_item("shots", done.shots)?;
+    told.set_item("bytes", done.bytes)?;
+    told.set_item("failed", done.failed)?;
+    told.set_item("seed", seed)?;
+    Ok(told)
+}
+
+struct Counted<'a>(&'a Meter);
+
+impl Watch for Counted<'_> {
+    fn seen(&self) {
+        self.0.count();
+    }
+
+    fn stopped(&self) -> bool {
+        stopped()
+    }
+}
+
+/// Times of flight from recordings.
+#[pyfunction]
+#[pyo3(signature = (options, threads, progress))]
+pub fn measure<'py>(
+    py: Python<'py>,
+    options: Vec<String>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Measure = parsed("measure", &options).map_err(Failed::from)?;
+    let (found, tables) = Job::pooled(progress, threads).run(py, |meter| {
+        let files = measuring::files(&arguments.records, arguments.shots.as_deref())?;
+        let how = measuring::options(&arguments)?;
+        let measured = hertzchain_measure::measure(&files, &how, &Counted(meter));
+        let grouping = measuring::grouping(&arguments);
+        let curves = Curves::of(&measured.shots, &grouping);
+        let mut found = measuring::json(&measured, &curves);
+        let wrong = measuring::judge(&measured).err();
+        found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {
+            failure
+                .report(false)
+                .trim_start_matches("error: ")
+                .trim_end()
+                .into()
+        });
+        let tables = [
+            ("shots.csv", shots_csv(&measured.shots)),
+            ("speeds.csv", speeds_csv(&curves)),
+            ("power-laws.csv", laws_csv(&curves)),
+            ("ratios.csv", ratios_csv(&curves)),
+        ];
+        Ok((found, tables))
+    })?;
+    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
+    let texts = PyDict::new(py);
+    for (name, text) in tables {
+        texts.set_item(name, text)?;
+    }
+    told.set_item("tables", texts)?;
+    Ok(told.into_any())
+}

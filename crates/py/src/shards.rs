@@ -1,0 +1,180 @@
+//! Parts of a run, for several machines.
+
+use crate::experiment::Experiment;
+use crate::failure::{Failed, of_path};
+use crate::job::Job;
+use crate::sweep::{Asked, judges, representative};
+use hertzchain_shards::ShardsError;
+use hertzchain_study::{COLUMNS, How, RunError, Shard};
+use hertzchain_verbs::arguments::{How as Options, parsed};
+use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::input;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::path::{Path, PathBuf};
+
+/// A sweep or an ensemble with everything that its numbers follow from.
+#[pyclass(frozen, module = "hertzchain._hertzchain")]
+pub struct Run {
+    inner: hertzchain_study::Run,
+    experiment: Experiment,
+    speeds_m_s: Vec<f64>,
+    names: Vec<String>,
+    values: Vec<Vec<f64>>,
+    asked: Asked,
+}
+
+fn refused(error: RunError) -> Failure {
+    match error {
+        RunError::Mistakes(mistakes) => (*mistakes).into(),
+        RunError::Number(error) => of_path(error),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+fn failure(error: ShardsError) -> Failure {
+    match error {
+        ShardsError::Unwritable(error) => Failure::Ours(error.to_string()),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+fn run(
+    experiment: &Experiment,
+    speeds_m_s: &[f64],
+    numbers: &[(String, Vec<f64>)],
+    asked: &Asked,
+) -> Result<hertzchain_study::Run, Failure> {
+    let options: Options = parsed("sweep", &asked.options)?;
+    let plan = representative(experiment, &options)?;
+    let how = How {
+        accuracy: plan.accuracy,
+        solver: plan.solver,
+        duration_s: plan.duration_s,
+        pick: plan.pick,
+        rebound: asked.rebound,
+        checked: options.check,
+        judges: judges(&asked.judges)?,
+        set: input::instruction_set()?,
+    };
+    let whole = hertzchain_study::Run::new(&experiment.inner, speeds_m_s.to_vec(), how);
+    numbers
+        .iter()
+        .try_fold(whole.map_err(refused)?, |run, (name, values)| {
+            run.with_number(name, values.clone()).map_err(refused)
+        })
+}
+
+#[pymethods]
+impl Run {
+    #[new]
+    #[pyo3(signature = (experiment, speeds_m_s, names, values, asked))]
+    fn new(
+        experiment: &Experiment,
+        speeds_m_s: PyReadonlyArray1<'_, f64>,
+        names: Vec<String>,
+        values: PyReadonlyArray2<'_, f64>,
+        asked: Asked,
+    ) -> Result<Self, Failed> {
+        let speeds_m_s = speeds_m_s.as_array().to_vec();
+        let values: Vec<Vec<f64>> = values
+            .as_array()
+            .rows()
+            .into_iter()
+            .map(|row| row.to_vec())
+            .collect();
+        let numbers: Vec<_> = names.iter().cloned().zip(values.iter().cloned()).collect();
+        Ok(Self {
+            inner: run(experiment, &speeds_m_s, &numbers, &asked)?,
+            experiment: experiment.clone(),
+            speeds_m_s,
+            names,
+            values,
+            asked,
+        })
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>().into_any();
+        let asked = PyDict::new(py);
+        asked.set_item("options", &self.asked.options)?;
+        asked.set_item("rebound", self.asked.rebound)?;
+        asked.set_item("judges", &self.asked.judges)?;
+        asked.set_item("threads", self.asked.threads)?;
+        let values = self.values.concat().into_pyarray(py);
+        let shape = (self.names.len(), self.speeds_m_s.len());
+        let values = values.call_method1("reshape", (shape,))?;
+        let parts = (
+            self.experiment.clone(),
+            self.speeds(py),
+            self.names.clone(),
+            values,
+            asked,
+        );
+        Ok((class, parts.into_pyobject(py)?))
+    }
+
+    /// A short name that follows from all inputs.
+    #[getter]
+    fn name(&self) -> String {
+        self.inner.fingerprint().short()
+    }
+
+    /// Speeds of all shots in m/s.
+    fn speeds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.speeds_m_s.clone().into_pyarray(py)
+    }
+
+    /// Values of the named numbers in SI, one array a name.
+    fn values<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<f64>>> {
+        self.values
+            .iter()
+            .map(|values| values.clone().into_pyarray(py))
+            .collect()
+    }
+}
+
+/// Computes a shard into a folder unless it is there; tells whether it was.
+#[pyfunction]
+#[pyo3(signature = (run, number, of, folder, threads, progress))]
+pub fn shard<'py>(
+    py: Python<'py>,
+    run: &Run,
+    number: usize,
+    of: usize,
+    folder: PathBuf,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<bool> {
+    let part = Shard::new(number, of);
+    let part = part.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
+    Job::pooled(progress, threads).run(py, |meter| {
+        let done = hertzchain_shards::run(&run.inner, part, &folder, &|| meter.count());
+        Ok(done.map_err(failure)?.kept)
+    })
+}
+
+/// All shards of a folder put together.
+#[pyfunction]
+pub fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+    let whole = Job::alone().run(py, |_| {
+        hertzchain_shards::gather(&[Path::new(&folder)]).map_err(failure)
+    })?;
+    let columns = PyDict::new(py);
+    for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {
+        columns.set_item(name, values.into_pyarray(py))?;
+    }
+    let errors = whole
+        .rows
+        .failed
+        .into_iter()
+        .map(|failed| (failed.place, failed.why));
+    let told = PyDict::new(py);
+    told.set_item("columns", columns)?;
+    told.set_item("errors", errors.collect::<Vec<_>>())?;
+    Ok(told)
+}

@@ -1,0 +1,110 @@
+"""Fits, gauges and designs: the command line's numbers."""
+
+import numpy as np
+import pytest
+
+import hertzchain as hc
+from hertzchain.inferring import _csv
+
+ERROR_S = 3e-7
+
+
+def noisy(preset: str, seed: int, count: int = 8) -> dict[str, np.ndarray]:
+    speeds = np.geomspace(0.2, 1.2, count)
+    truth = hc.sweep(hc.preset(preset), speeds)
+    rng = np.random.default_rng(seed)
+    columns = {"speed_m_s": speeds, "speed_error_m_s": np.full(count, 1e-6)}
+    for end in ("tof_incident_s", "tof_reflected_s"):
+        columns[end] = truth.columns[end] + ERROR_S * rng.standard_normal(count)
+        columns[f"{end}_error"] = np.full(count, ERROR_S)
+    return columns
+
+
+@pytest.fixture(scope="module")
+def dry_data() -> dict[str, np.ndarray]:
+    return noisy("dry", 1)
+
+
+@pytest.fixture
+def table(tmp_path, dry_data):
+    path = tmp_path / "speeds.csv"
+    path.write_text(_csv(dry_data))
+    return path
+
+
+@pytest.mark.parametrize("method", ["covariance", "profile", "posterior"])
+def test_a_fit_has_the_numbers_of_the_command_line(cli, table, dry_data, method):
+    told = cli("fit", table, "--preset", "dry", "--free", "eta,B", "--method", method)
+    from_file = hc.fit(table, "dry", free="eta,B", method=method)
+    from_columns = hc.fit(dry_data, hc.preset("dry"), free=["eta", "B"], method=method)
+    assert from_file.details == told
+    assert from_columns.covariance.tolist() == told["covariance"]
+    assert [p.value for p in from_columns.parameters.values()] == [p["value"] for p in told["parameters"]]
+    if method == "posterior":
+        assert from_file.samples is not None and from_file.samples.shape[1] == 2
+        mean = told["posterior"]["parameters"][0]["mean"]
+        assert from_file.samples[:, 0].mean() == pytest.approx(mean, rel=1e-12)  # order of summation
+
+
+def test_a_fit_finds_what_made_the_data(dry_data):
+    fitted = hc.fit(dry_data, free=["eta", "B"])
+    # Four standard errors: one in ten thousand draws is farther; the seed is fixed.
+    for name, value in (("eta", 3.2e4), ("B", 77.0)):
+        parameter = next(p for key, p in fitted.parameters.items() if key.endswith(name))
+        assert parameter.standard_error is not None
+        assert abs(parameter.value - value) < 4 * parameter.standard_error
+    assert fitted.converged and fitted.chi_square is not None and fitted.chi_square["probability"] > 1e-3
+    assert set(fitted.rows) >= {"measured", "fitted", "fitted_error", "residual"}
+    assert "±" in repr(fitted) and fitted.to_xarray()["covariance"].shape == (2, 2)
+    assert len(fitted.to_pandas()) == 16
+
+
+def test_tables_of_pandas_and_sweeps_are_data(dry_data):
+    import pandas as pd
+
+    plain = hc.fit(dry_data, free="B")
+    assert hc.fit(pd.DataFrame(dry_data), free="B").covariance.tolist() == plain.covariance.tolist()
+    swept = hc.sweep(hc.preset("dry"), dry_data["speed_m_s"])
+    exact = hc.fit(swept, free="B", tof_error=1e-7, speed_error=1e-7)
+    # Data without noise: what the solver's accuracy of 1e-5 leaves.
+    assert next(iter(exact.parameters.values())).value == pytest.approx(77.0, rel=1e-2)
+
+
+def test_bounds_priors_and_starts_are_those_of_the_command_line(cli, table):
+    told = cli(
+        "fit", table, "--preset", "dry", "--free", "eta,B", "--prior", "B=80+-5", "--bounds", "eta=1e4:1e5", "--start", "B=70", "--set", "young_modulus=212 GPa"
+    )  # fmt: skip
+    found = hc.fit(table, free="eta,B", prior={"B": (80.0, 5.0)}, bounds={"eta": (1e4, 1e5)}, start={"B": 70.0}, fixed={"young_modulus": "212 GPa"})
+    for ours, theirs in zip(found.details["parameters"], told["parameters"], strict=True):
+        assert ours == theirs
+
+
+def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table, dry_data):
+    told = cli("design", table, "--preset", "dry", "--free", "eta,B", "--target", "B", "--picks", "2")
+    found = hc.design(dry_data, free="eta,B", target="B", picks=2)
+    assert (found.ranked, found.series) == (told["ranked"], told["series"])
+    assert len(found.to_pandas()) == len(found.ranked) and "measure next" in repr(found)
+    wet = noisy("motor", 2, 4)
+    (tmp_path / "wet.csv").write_text(_csv(wet))
+    told = cli("gauge", tmp_path / "wet.csv", "--dry", table, "--preset", "motor")
+    gauged = hc.gauge(wet, dry_data, model="motor")
+    assert gauged.details == told and gauged.verdict in repr(gauged)
+    assert gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "words"),
+    [
+        ({}, {"free": "B"}, "one length"),
+        ({"speed_m_s": [1.0, 2.0], "tof_incident_s": [1.0]}, {"free": "B"}, "one length"),
+        ({"v": [1.0], "t": [1.0]}, {"free": "B"}, "speed_m_s"),
+        ("nowhere.csv", {"free": "B"}, "can't be read"),
+        (7, {"free": "B"}, "expected a file"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "beta", "tof_error": 1e-6, "speed_error": 1e-6}, "beta"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": []}, "--free"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "B", "method": "guess"}, "posterior"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_words(data, options, words):
+    with pytest.raises(hc.HertzchainError, match=words):
+        hc.fit(data, **options)

@@ -1,0 +1,41 @@
+"""The three notebooks run from beginning to end, and their code has sound types."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from conftest import ROOT
+from nbclient import NotebookClient
+
+FOLDER = ROOT / "crates/py/examples"
+NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs(path):
+    notebook = nbformat.read(path, as_version=4)
+    NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
+
+
+def test_there_is_one_notebook_a_question():
+    assert [path.stem for path in NOTEBOOKS] == ["infer", "measure", "predict"]
+
+
+def code(path: Path) -> str:
+    cells = nbformat.read(path, as_version=4).cells
+    return "\n\n".join(cell.source for cell in cells if cell.cell_type == "code")
+
+
+def test_pyright_in_strict_mode_finds_nothing_in_the_examples(tmp_path):
+    for path in NOTEBOOKS:
+        (tmp_path / f"{path.stem}.py").write_text(code(path))
+    # The last expression of a cell is shown: that is no mistake in a notebook.
+    settings = {"include": ["."], "typeCheckingMode": "strict", "reportUnusedExpression": False, "pythonVersion": "3.10"}
+    # Libraries without complete types of their own are not ours to judge.
+    settings |= {name: False for name in ("reportUnknownMemberType", "reportMissingTypeStubs")}
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings))
+    done = subprocess.run([sys.executable, "-m", "pyright", "-p", tmp_path, "--pythonpath", sys.executable], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout

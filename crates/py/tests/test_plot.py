@@ -1,0 +1,74 @@
+"""Figures: what they show, read back from the axes."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from test_inference import noisy
+
+import hertzchain as hc
+from hertzchain import plot
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def test_signals_are_in_microseconds_and_newtons(small):
+    shot = hc.shot(small, 0.5, trace=["bead_3", "contact_10"])
+    ax = plot.signals(shot)
+    times, forces = ax.lines[1].get_data()
+    assert shot.trace is not None
+    assert np.array_equal(times, 1e6 * shot.trace.time_s) and np.array_equal(forces, shot.trace["contact_10"])
+    assert ax.get_xlabel() == "Time (µs)" and ax.get_ylabel() == "Force (N)"
+    with pytest.raises(ValueError, match="trace=True"):
+        plot.signals(hc.shot(small))
+
+
+def test_a_space_time_map_has_a_row_a_contact(small):
+    ax = plot.space_time(hc.shot(small, 0.5, trace=[f"contact_{i}" for i in range(11)]))
+    (mesh,) = ax.collections
+    assert mesh.get_array().shape[0] == 11
+    plot.space_time(hc.shot(small, 0.5, trace=[f"velocity_{i}" for i in range(11)]), "velocity")
+
+
+def test_curves_and_ratios_are_those_of_the_sweeps(small):
+    swept = hc.sweep(small, [0.2, 0.5, 1.0])
+    ax = plot.times_of_flight({"row": swept}, laws=True)
+    assert np.array_equal(ax.lines[0].get_ydata(), 1e6 * swept.tof_incident_s)
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["row incident", "row reflected"]
+    ratio = plot.ratios({"same": swept}, swept).lines[0].get_ydata()
+    assert np.allclose(ratio, 1.0, rtol=1e-12)  # logarithm and back
+
+
+def test_the_papers_figures_are_of_its_model():
+    axes = plot.figure2()
+    assert axes.shape == (4,) and all(ax.lines for ax in axes)
+    few = np.array([0.2, 0.6, 1.1])
+    dry = hc.sweep(hc.preset("dry"), few)
+    ax = plot.figure3(few)
+    assert np.array_equal(ax.lines[0].get_ydata(), 1e6 * dry.tof_incident_s)
+    pump = hc.sweep(hc.preset("pump"), few)
+    line = plot.figure4(few).lines[0]
+    assert np.allclose(line.get_ydata(), pump.tof_incident_s / dry.tof_incident_s, rtol=1e-12)  # logarithm and back
+
+
+def test_fits_have_bands_and_posteriors_corners():
+    fitted = hc.fit(noisy("dry", 3, 6), free="eta,B", method="posterior")
+    upper, lower = plot.fit(fitted)
+    assert len(upper.collections) >= 2 and lower.get_ylabel() == "Residual (σ)"
+    axes = plot.corner(fitted)
+    assert axes.shape == (2, 2) and not axes[0, 1].axison
+    given = plt.subplots(2, 2)[1]
+    assert plot.corner(hc.fit(noisy("dry", 3, 6), free="eta,B"), axes=given)[0, 0] is given[0, 0]
+
+
+def test_functions_draw_into_axes_they_are_given(small):
+    swept = hc.sweep(small, [0.2, 0.5])
+    own = plt.subplots()[1]
+    assert plot.times_of_flight(swept, ax=own) is own
+    assert plot.ratios({"same": swept}, swept, ax=own) is own

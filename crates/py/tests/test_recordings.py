@@ -1,0 +1,82 @@
+"""Campaigns and measurements: the command line's bytes and numbers."""
+
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ROOT, program
+
+import hertzchain as hc
+
+SMALL = ROOT / "crates/rig/tests/small.toml"
+
+
+@pytest.fixture(scope="module")
+def records(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("campaign") / "records"
+    seen: list[int] = []
+    done = hc.campaign(hc.load(SMALL), folder, progress=seen.append)
+    assert sum(seen) == done.shots and done.kept == 0 and len(done.files) == done.run
+    return folder
+
+
+def test_recordings_are_the_bytes_of_the_command_line(records, tmp_path):
+    subprocess.run([program(), "campaign", SMALL, "--out", tmp_path / "cli"], check=True, capture_output=True)
+    theirs = sorted(path.name for path in (tmp_path / "cli").glob("*.h5"))
+    assert theirs == sorted(path.name for path in records.glob("*.h5"))
+    for name in theirs:
+        assert (records / name).read_bytes() == (tmp_path / "cli" / name).read_bytes()
+
+
+def test_a_campaign_goes_on_and_comes_in_parts(records, tmp_path):
+    again = hc.campaign(hc.load(SMALL), records)
+    assert again.run == 0 and again.kept == len(again.files)
+    for shard in ("1/2", "2/2"):
+        hc.campaign(hc.load(SMALL), tmp_path / "parts", shard=shard)
+    assert {p.name: p.read_bytes() for p in records.glob("*.h5")} == {p.name: p.read_bytes() for p in (tmp_path / "parts").glob("*.h5")}
+    with pytest.raises(hc.OptionError, match="i/n"):
+        hc.campaign(hc.load(SMALL), tmp_path, shard="3/2")
+    with pytest.raises(hc.OptionError):
+        hc.campaign(hc.load(SMALL), records, seed=8)
+
+
+def test_recordings_open_in_h5py(records):
+    with h5py.File(next(iter(sorted(records.glob("*.h5"))))) as file:
+        assert len(file.keys()) > 0
+
+
+def test_measurements_are_those_of_the_command_line(cli, records):
+    told = cli("measure", records, "--rig", SMALL)
+    found = hc.measure(records, rig=SMALL)
+    assert found.shots == told["shots"] and found.ratios == told["ratios"]
+    for case in told["cases"]:
+        own = found.cases[case["case"]]
+        assert own["tof_incident_s"].tolist() == [row["tof_incident_s"]["mean"] for row in case["speeds"]]
+    assert found.verdict is None and "Measured" in repr(found)
+    assert len(found.to_pandas()) == len(found.shots)
+
+
+def test_arrays_are_recordings_too(small):
+    shot = hc.shot(small, 0.5, trace=["bead_plus_wall_3"], interval_s=1e-6, duration=2e-3)
+    assert shot.trace is not None
+    rng = np.random.default_rng(0)
+    volts = 1e-2 * shot.trace["bead_plus_wall_3"] + 1e-4 * rng.standard_normal(shot.trace.time_s.size)
+    found = hc.measure(volts, rate=1e6, beads=10, sensor=3)
+    (record,) = found.shots
+    # Noise of 1e-4 V on pulses of 1 V and samples of 1 µs: a tenth of a microsecond.
+    assert record["tof_incident_s"]["value"] == pytest.approx(shot.tof_incident_s, abs=1e-7)
+    assert found.save.__doc__
+
+
+def test_what_can_not_be_read_is_told(tmp_path):
+    (tmp_path / "empty.csv").write_text("")
+    found = hc.measure(tmp_path / "empty.csv")
+    assert found.refused and found.verdict
+    with pytest.raises(hc.OptionError, match="no recordings"):
+        hc.measure(tmp_path / "nothing") if (tmp_path / "nothing").mkdir() is None else None
+    with pytest.raises(hc.OptionError, match="--rate"):
+        hc.measure(tmp_path / "empty.csv", rate="fast")
+    with pytest.raises(hc.OptionError, match="volts"):
+        hc.measure(np.zeros((2, 2, 2)))

@@ -1,0 +1,186 @@
+"""Shots, sweeps and ensembles: the command line's numbers, and NumPy's ways."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import hertzchain as hc
+
+NUMBERS = ["tof_incident_s", "tof_reflected_s", "accuracy_reached", "duration_s"]
+
+
+def test_a_shot_has_the_bits_of_the_command_line(cli, dry):
+    told = cli("shot", "--preset", "dry", "--speed", "0.37", "--check")
+    found = hc.shot(dry, 0.37, check=True)
+    for name in told:
+        # The budget is a dict of doubles; times are doubles; all must be equal, not close.
+        theirs = told[name]
+        ours = found.energy if name == "energy" else getattr(found, name)
+        assert ours == theirs, name
+
+
+def test_a_sweep_has_the_bits_of_the_command_line(cli, dry):
+    told = cli("sweep", "--preset", "dry", "--speeds", "log:0.1:1.2:20")
+    found = hc.sweep(dry, "log:0.1:1.2:20")
+    for name in NUMBERS:
+        theirs = [point[name] for point in told["points"]]
+        assert found.columns[name].tolist() == theirs
+    assert found.columns["wall_peak_n"].tolist() == [p["passage"]["wall"]["value"] for p in told["points"]]
+    for name in ("power_law_incident", "power_law_reflected"):
+        ours, theirs = getattr(found, name), told[name]
+        assert (ours.prefactor_s, ours.exponent) == (theirs["prefactor_s"], theirs["exponent"])
+        assert (ours.prefactor_error_s, ours.exponent_accuracy) == (theirs["prefactor_error_s"], theirs["exponent_accuracy"])
+
+
+def test_pilots_and_the_striker_are_those_of_the_command_line(cli, dry):
+    told = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:60", "--judges", "pilots")
+    found = hc.sweep(dry, "0.2:1:60", judges="pilots")
+    assert found.tof_incident_s.tolist() == [point["tof_incident_s"] for point in told["points"]]
+    assert found.pilots == told["pilots"]
+    told = cli("sweep", "--preset", "dry", "--speeds", "0.2,0.5", "--rebound")
+    rebounds = [point["striker_rebound"]["end_m_s"] for point in told["points"]]
+    assert hc.sweep(dry, [0.2, 0.5], rebound=True).columns["striker_rebound_m_s"].tolist() == rebounds
+
+
+@pytest.mark.parametrize("verb", ["check", "theory"])
+def test_descriptions_are_those_of_the_command_line(cli, dry, verb):
+    told = cli(verb, "--preset", "dry", "--speed", "0.4")
+    groups = told["groups"] if verb == "check" else told
+    found = getattr(hc, verb)(dry, 0.4)
+    for ours, theirs in zip(found, groups, strict=True):
+        assert ours.title == theirs["title"]
+        assert [(row.name, row.value, row.unit) for row in ours.rows] == [(row["name"], row["value"], row["unit"]) for row in theirs["rows"]]
+
+
+def test_laws_are_those_of_the_command_line(cli):
+    told = cli("laws")
+    found = hc.laws()
+    assert [law.name for law in found] == [law["name"] for law in told]
+    assert [law.parameters for law in found] == [law["parameters"] for law in told]
+    assert "damping_cubic" in repr(hc.laws("damping_cubic")[0])
+
+
+def test_a_file_a_dict_and_objects_are_the_same_chain(tmp_path, small):
+    (tmp_path / "row.toml").write_text(small.text)
+    loaded = hc.load(tmp_path / "row.toml")
+    plain = hc.build(
+        {
+            "materials": {"steel": {"young_modulus": "213 GPa", "poisson_ratio": 0.3, "density": "7.96 g/cm^3"}},
+            "striker": {"speed": "500 mm/s"},
+            "beads": [{"count": 10, "radius": "6.35 mm", "material": "steel"}],
+            "contacts": [{"laws": ["elastic_hertz", {"law": "damping_cubic", "coefficient": "77 kg s/m^2"}]}],
+            "sensors": {"bead": 3},
+        }
+    )
+    times = {hc.shot(chain).tof_incident_s for chain in (small, loaded, plain)}
+    assert len(times) == 1
+
+
+def test_an_ensemble_broadcasts_as_numpy_does(small):
+    speeds = np.array([0.2, 0.5, 1.0])
+    moduli = np.array([[200e9], [213e9]])
+    found = hc.ensemble(small, speeds, {"young_modulus": moduli})
+    assert found.shape == found.tof_incident_s.shape == (2, 3)
+    assert np.array_equal(found.parameters["young_modulus"], np.broadcast_to(moduli, (2, 3)))
+    for row, modulus in enumerate(moduli.ravel()):
+        own = hc.sweep(small.set({"young_modulus": float(modulus)}), speeds)
+        for name, column in own.columns.items():
+            # A shot's bits depend on no neighbour.
+            assert np.array_equal(found[name][row], column, equal_nan=True), name
+
+
+def test_an_ensemble_of_no_dimension_is_one_shot(small):
+    found = hc.ensemble(small, 0.5)
+    assert found.shape == () and found.tof_incident_s.shape == ()
+    assert float(found.tof_incident_s) == hc.sweep(small, [0.5]).tof_incident_s[0]
+    assert hc.ensemble(small, np.empty((0, 3))).shape == (0, 3)
+
+
+def test_results_depend_on_no_threads(small):
+    speeds = np.linspace(0.1, 1.0, 50)
+    one, two = (hc.ensemble(small, speeds, threads=threads) for threads in (1, 3))
+    for name in one.columns:
+        assert np.array_equal(one[name], two[name], equal_nan=True)
+
+
+def test_unjudged_shots_are_as_right_as_was_asked(small):
+    speeds = np.linspace(0.2, 1.0, 40)
+    exact = [hc.shot(small, float(speed), accuracy=1e-9).tof_incident_s for speed in speeds]
+    for judges in ("each", "pilots", "none"):
+        found = hc.ensemble(small, speeds, accuracy=1e-6, judges=judges)
+        # The accuracy asked for is the tolerance.
+        assert np.allclose(found.tof_incident_s, exact, rtol=1e-6, atol=0)
+
+
+def test_what_fails_is_told_and_the_rest_is_computed(small):
+    found = hc.ensemble(small, [0.5, np.nan, -1.0, 0.6])
+    assert sorted(found.errors) == [(1,), (2,)]
+    assert np.isfinite(found.tof_incident_s[[0, 3]]).all() and np.isnan(found.tof_incident_s[[1, 2]]).all()
+    swept = hc.sweep(small, [0.5, np.inf])
+    assert list(swept.errors) == [1]
+    with pytest.raises(hc.OptionError, match="no shot could be computed"):
+        hc.ensemble(small, [-1.0, np.nan])
+
+
+def test_traces_are_sampled_where_asked(small):
+    found = hc.shot(small, 0.5, trace=["bead_3", ("contact", 10), "velocity_0", "position_10"], interval_s=1e-6)
+    trace = found.trace
+    assert trace is not None
+    assert set(trace.signals) == {"bead_3", "contact_10", "velocity_0", "position_10"}
+    assert np.allclose(np.diff(trace.time_s), 1e-6, rtol=1e-9)  # rounding of multiples
+    peak = found.passage["wall"]
+    sampled = trace["contact_10"].max()
+    # A parabola about the peak is lower by its curvature: width 30 µs, half a microsecond.
+    assert sampled == pytest.approx(peak["value"], rel=2e-3)
+    numbers, stacked = hc.shot(small, 0.5, trace=[f"contact_{i}" for i in range(11)]).trace.stacked("contact")
+    assert numbers.tolist() == list(range(11)) and stacked.shape[0] == 11
+    assert found.energy is not None and abs(found.energy["relative_residual"]) < found.accuracy_asked
+    assert set(hc.shot(small, trace=True).trace.signals) == {"bead_3", "contact_10"}
+
+
+def test_results_convert_with_units(small):
+    swept = hc.sweep(small, [0.2, 0.4, 0.8])
+    data = swept.to_xarray()
+    assert data["tof_incident_s"].attrs["units"] == "s" and data["wall_peak_n"].attrs["units"] == "N"
+    assert data["speed_m_s"].attrs["units"] == "m/s"
+    table = swept.to_pandas()
+    assert table.index.name == "speed_m_s" and table.attrs["units"]["tof_reflected_s"] == "s"
+    found = hc.ensemble(small, [[0.2], [0.4]], {"young_modulus": [200e9, 210e9, 220e9]})
+    data = found.to_xarray()
+    assert data["speed_m_s"].dims == ("axis_0",) and data["young_modulus"].dims == ("axis_1",)
+    assert data["young_modulus"].attrs["units"] == "Pa" and data["tof_incident_s"].shape == (2, 3)
+    assert len(found.to_pandas()) == 6
+    shot = hc.shot(small, trace=True)
+    assert shot.to_xarray()["contact_10"].attrs["units"] == "N"
+    assert shot.to_pandas()["tof_incident_s"] == shot.tof_incident_s
+    assert shot.trace.to_pandas().attrs["units"]["bead_3"] == "N"
+
+
+def test_results_and_experiments_pickle(small):
+    changed = small.set({"young_modulus": 200e9}).set({"beads[0].radius": "6 mm"})
+    assert pickle.loads(pickle.dumps(changed)).numbers() == changed.numbers()
+    for result in (hc.shot(changed, trace=True), hc.sweep(changed, [0.2, 0.5]), hc.ensemble(changed, [0.2, 0.5]), hc.theory(changed)):
+        assert repr(pickle.loads(pickle.dumps(result))) == repr(result)
+
+
+def test_results_print_well(small):
+    shot, swept = hc.shot(small), hc.sweep(small, [0.2, 0.5, 1.0])
+    assert "incident ToF" in repr(shot) and " s" in repr(shot)
+    assert "3 speeds" in repr(swept) and "v^-0.2" in repr(swept)
+    assert "10 beads" in repr(small) and "Trace of" in repr(hc.shot(small, trace=True).trace)
+    assert "shape (2,)" in repr(hc.ensemble(small, [0.2, 0.5]))
+
+
+def test_dimensionless_chains_have_no_units():
+    chain = hc.build(
+        units="dimensionless",
+        striker={"speed": 1.0},
+        beads=[{"count": 10, "mass": 1.0}],
+        contacts=[{"laws": [{"law": "elastic_hertz", "stiffness": 1.0}]}],
+        sensors={"bead": 3},
+    )
+    swept = hc.sweep(chain, [0.5, 1.0])
+    assert swept.to_xarray()["tof_incident_s"].attrs["units"] == "1"
+    with pytest.raises(hc.OptionError, match="dimensionless"):
+        hc.shot(chain, "1 m/s")
