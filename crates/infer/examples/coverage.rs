@@ -1,12 +1,14 @@
-//! How often intervals hold the truth: the tables of `docs/inferring.md`.
+//! How often intervals hold the truth: a table of `docs/inferring.md`.
 //!
 //! ```sh
-//! cargo run --release -p hertzchain-infer --example coverage -- 500 50  # data sets, of them by posterior
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50        # data sets, of them by posterior
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet    # one case: dry, rk4, contacts, wet
 //! ```
 //!
-//! Curves are computed a hundred times as accurately as a fit's and measured at
-//! the paper's noise: 20 shots a speed, speeds ±0.003 m/s. Fits use a surrogate
-//! of the model, whose error is printed in standard errors.
+//! Curves are computed a hundred times as accurately as a fit's, once by
+//! Runge–Kutta of order 4 with a fixed step, and measured at the paper's noise:
+//! 20 shots a speed, speeds ±0.003 m/s. Fits use a surrogate of the model, whose
+//! error is printed in standard errors.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -14,164 +16,207 @@ mod common;
 use common::{Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Chain, Covariance, Fit, Fitting, Problem, Profiling, Requirements, Sampling, Surrogate, fit,
-    profile,
+    Chain, Covariance, Fit, Fitting, Problem, Profiling, Requirements, Sampling, SamplingError,
+    Surrogate, fit, profile,
 };
+use rayon::prelude::*;
 use std::error::Error;
 
-/// A chain, what is free, and the true values.
-type Case = (&'static str, &'static str, Vec<&'static str>, Vec<f64>);
+/// What is inferred from which curve.
+struct Case {
+    name: &'static str,
+    preset: &'static str,
+    free: [&'static str; 2],
+    exact: [f64; 2],
+    /// Numbers of the file that differ from the preset's.
+    set: [(&'static str, f64); 2],
+    /// Whether Runge–Kutta makes the curve.
+    by_rk4: bool,
+}
+
+const STIFFNESS: f64 = 8.792_630_379_6e9;
+const RELAXATION_S: f64 = 3.385_289_514_9e-7;
+
+const CASES: [Case; 4] = [
+    Case {
+        name: "dry",
+        preset: "dry",
+        free: ["eta", "B"],
+        exact: [3.2e4, 77.0],
+        set: [
+            ("aisi316.shear_viscosity", 3.2e4),
+            ("aisi316.bulk_viscosity", 3.2e4),
+        ],
+        by_rk4: false,
+    },
+    Case {
+        name: "rk4",
+        preset: "dry",
+        free: ["eta", "B"],
+        exact: [3.2e4, 77.0],
+        set: [
+            ("aisi316.shear_viscosity", 3.2e4),
+            ("aisi316.bulk_viscosity", 3.2e4),
+        ],
+        by_rk4: true,
+    },
+    Case {
+        name: "contacts",
+        preset: "hertz-viscoelastic",
+        free: ["K", "A"],
+        exact: [STIFFNESS, RELAXATION_S],
+        set: [
+            ("contacts[0].laws.elastic_hertz.stiffness", STIFFNESS),
+            (
+                "contacts[0].laws.damping_viscoelastic.relaxation_time",
+                RELAXATION_S,
+            ),
+        ],
+        by_rk4: false,
+    },
+    Case {
+        name: "wet",
+        preset: "pump",
+        free: ["wet.K", "wet.A"],
+        exact: [9e9, 8e-7],
+        set: [
+            ("contacts[1].laws.elastic_hertz.stiffness", 9e9),
+            (
+                "contacts[1].laws.damping_viscoelastic.relaxation_time",
+                8e-7,
+            ),
+        ],
+        by_rk4: false,
+    },
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut counts = std::env::args().skip(1).map(|text| text.parse::<usize>());
-    let sets = counts.next().transpose()?.unwrap_or(500);
-    let sampled = counts.next().transpose()?.unwrap_or(50);
-    let wet_section = vec!["wet.K", "wet.A"];
-    let cases: [Case; 3] = [
-        ("dry pair", "dry", vec!["eta", "B"], vec![3.2e4, 77.0]),
-        (
-            "dry contacts",
-            "hertz-viscoelastic",
-            vec!["K", "A"],
-            vec![8.792_630_379_6e9, 3.385_289_514_9e-7],
-        ),
-        ("wet section", "pump", wet_section, vec![9e9, 8e-7]),
-    ];
-    for case in cases {
-        study(case, sets, sampled)?;
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let count = |at: usize, usual| words.get(at).map_or(Ok(usual), |word| word.parse());
+    let (sets, sampled): (usize, usize) = (count(0, 500)?, count(1, 50)?);
+    let asked = |case: &&Case| words.get(2).is_none_or(|name| name == case.name);
+    for case in CASES.iter().filter(asked) {
+        study(case, sets, sampled).map_err(|error| error.to_string())?;
     }
     Ok(())
 }
 
-/// Shares of data sets whose intervals of 68 and 95 % hold the truth.
-#[derive(Default)]
-struct Held {
-    of: usize,
-    counts: [[usize; 2]; 2],
-}
+/// Which levels of an interval hold the true value, for both parameters.
+type Held = [[bool; 2]; 2];
 
-impl Held {
-    fn count(&mut self, exact: &[f64], intervals: impl Fn(usize, usize) -> [f64; 2]) {
-        self.of += 1;
-        for (at, exact) in exact.iter().enumerate() {
-            for level in 0..2 {
-                let [lower, upper] = intervals(at, level);
-                let held = lower <= *exact && *exact <= upper;
-                self.counts[at][level] += usize::from(held);
-            }
-        }
-    }
+/// What one data set says, by covariance, profile and, if asked, posterior.
+type Said = Result<[Option<Held>; 3], String>;
 
-    fn told(&self) -> String {
-        let share = |count: usize| count as f64 / self.of.max(1) as f64;
-        let cells = self.counts.iter().flatten().map(|count| {
-            let share = share(*count);
-            let error = (share * (1.0 - share) / self.of.max(1) as f64).sqrt();
-            format!("{:.1} ± {:.1}", 100.0 * share, 100.0 * error)
-        });
-        cells.collect::<Vec<_>>().join(" | ")
-    }
-}
-
-fn study(
-    (name, file, free, exact): Case,
-    sets: usize,
-    sampled: usize,
-) -> Result<(), Box<dyn Error>> {
-    let mut experiment = preset(file)?;
-    let model = model(&experiment, &free);
-    if file == "pump" {
-        let paths = [
-            ("contacts[1].laws.elastic_hertz.stiffness", exact[0]),
-            (
-                "contacts[1].laws.damping_viscoelastic.relaxation_time",
-                exact[1],
-            ),
-        ];
-        experiment = experiment.set(&paths)?;
-    }
-    let truth = Truth::of(&experiment, &speeds_m_s(25));
+fn study(case: &Case, sets: usize, sampled: usize) -> Result<(), Box<dyn Error>> {
+    let truth = truth(case)?;
+    let model = model(&preset(case.preset)?, &case.free);
     let first = problem(&model, truth.measured(0));
     let best = fit(&first, &Fitting::default())?;
     let around = Covariance::new(first.parameters(), &best);
-    let surrogate = Surrogate::new(&first, &best, &around)?;
-    let [mut covariances, mut profiles, mut posteriors] =
-        [Held::default(), Held::default(), Held::default()];
-    for seed in 0..sets {
-        let repeated = surrogate.with_data(truth.measured(1 + seed as u64))?;
-        let best = fit(&repeated, &Fitting::default())?;
-        let covariance = Covariance::new(repeated.parameters(), &best);
-        covariances.count(&exact, |at, level| {
-            let reach = [1.0, 1.959_964][level] * covariance.sd[at];
-            [best.point[at] - reach, best.point[at] + reach]
-        });
-        by_profile(&repeated, &best, &covariance, &exact, &mut profiles)?;
-        if seed < sampled {
-            by_posterior(
-                &repeated,
-                (&best, &covariance),
-                seed,
-                &exact,
-                &mut posteriors,
-            )?;
-        }
-    }
+    let surrogate = Surrogate::within(REACH, &first, &best, &around)?;
+    let one = |seed: usize| -> Said {
+        let repeated = surrogate.with_data(truth.measured(1 + seed as u64));
+        let repeated = repeated.map_err(|error| error.to_string())?;
+        said(&repeated, case, seed, seed < sampled).map_err(|error| error.to_string())
+    };
+    let said: Vec<_> = (0..sets)
+        .into_par_iter()
+        .map(one)
+        .collect::<Result<_, _>>()?;
     println!(
-        "{name}: {} and {}; surrogate right to {:.3} standard errors",
-        free[0], free[1], surrogate.error
+        "{}: {} and {}; surrogate right to {:.4} standard errors",
+        case.name, case.free[0], case.free[1], surrogate.error
     );
     println!(
         "| method | data sets | {0} 68 % | {0} 95 % | {1} 68 % | {1} 95 % |",
-        free[0], free[1]
+        case.free[0], case.free[1]
     );
-    for (method, held) in [
-        ("covariance", &covariances),
-        ("profile", &profiles),
-        ("posterior", &posteriors),
-    ] {
-        if held.of > 0 {
-            println!("| {method} | {} | {} |", held.of, held.told());
-        }
+    for (at, method) in ["covariance", "profile", "posterior"].iter().enumerate() {
+        let held: Vec<Held> = said.iter().filter_map(|methods| methods[at]).collect();
+        println!("| {method} | {} | {} |", held.len(), shares(&held));
     }
     Ok(())
 }
 
-fn by_profile(
+/// Half the surrogate's box: best fits scatter about the first one's, and
+/// samples about each.
+const REACH: f64 = 10.0;
+
+/// The curve that is measured.
+fn truth(case: &Case) -> Result<Truth, Box<dyn Error>> {
+    let experiment = preset(case.preset)?.set(&case.set)?;
+    let mut truth = Truth::of(&experiment, &speeds_m_s(25));
+    if case.by_rk4 {
+        truth.shot_by_rk4(&experiment, 1e-7);
+    }
+    Ok(truth)
+}
+
+/// Shares in percent with their binomial errors.
+fn shares(held: &[Held]) -> String {
+    let of = held.len().max(1) as f64;
+    let share = |at: usize, level: usize| {
+        let share = held.iter().filter(|held| held[at][level]).count() as f64 / of;
+        let error = (share * (1.0 - share) / of).sqrt();
+        format!("{:.1} ± {:.1}", 100.0 * share, 100.0 * error)
+    };
+    [(0, 0), (0, 1), (1, 0), (1, 1)]
+        .map(|(at, level)| share(at, level))
+        .join(" | ")
+}
+
+fn said(
     problem: &Surrogate,
-    best: &Fit,
-    covariance: &Covariance,
-    exact: &[f64],
-    held: &mut Held,
-) -> Result<(), Box<dyn Error>> {
-    let found = profile(problem, best, covariance, &[0, 1], &Profiling::default())?;
-    held.count(exact, |at, level| {
-        let interval = found[at].intervals[level];
+    case: &Case,
+    seed: usize,
+    sampled: bool,
+) -> Result<[Option<Held>; 3], Box<dyn Error>> {
+    let best = fit(problem, &Fitting::default())?;
+    let covariance = Covariance::new(problem.parameters(), &best);
+    let held = |interval: &dyn Fn(usize, usize) -> [f64; 2]| -> Held {
+        [0, 1].map(|at| {
+            [0, 1].map(|level| {
+                let [lower, upper] = interval(at, level);
+                lower <= case.exact[at] && case.exact[at] <= upper
+            })
+        })
+    };
+    let by_covariance = held(&|at, level| {
+        let reach = [1.0, 1.959_964][level] * covariance.sd[at];
+        [best.point[at] - reach, best.point[at] + reach]
+    });
+    let profiles = profile(problem, &best, &covariance, &[0, 1], &Profiling::default())?;
+    let by_profile = held(&|at, level| {
+        let interval = profiles[at].intervals[level];
         let lower = interval.lower.closed().unwrap_or(f64::NEG_INFINITY);
         [lower, interval.upper.closed().unwrap_or(f64::INFINITY)]
     });
-    Ok(())
+    let mut by_posterior = None;
+    if sampled {
+        let posterior = posterior(problem, (&best, &covariance), seed)?;
+        by_posterior = Some(held(&|at, level| {
+            posterior.interval(at, [0.682_689, 0.95][level])
+        }));
+    }
+    Ok([Some(by_covariance), Some(by_profile), by_posterior])
 }
 
-fn by_posterior(
+/// A posterior sampled until its quantiles may be believed.
+fn posterior(
     problem: &Surrogate,
     (best, covariance): (&Fit, &Covariance),
     seed: usize,
-    exact: &[f64],
-    held: &mut Held,
-) -> Result<(), Box<dyn Error>> {
+) -> Result<hertzchain_infer::Posterior, Box<dyn Error>> {
     let how = Sampling {
         seed: seed as u64,
         ..Sampling::default()
     };
     let mut chain = Chain::start(problem, best, covariance, &how)?;
-    let posterior = loop {
-        match chain.posterior(&Requirements::default()) {
-            Ok(posterior) => break posterior,
-            Err(unconverged) => chain.advance(problem, unconverged.more_steps().max(300))?,
-        }
-    };
-    held.count(exact, |at, level| {
-        posterior.interval(at, [0.682_689, 0.95][level])
-    });
-    Ok(())
+    let found = chain.lead(problem, &Requirements::default(), MOST_STEPS, &mut |_| {
+        Ok::<(), SamplingError>(())
+    })?;
+    Ok(found?)
 }
+
+/// Most steps of walkers.
+const MOST_STEPS: u64 = 50_000;

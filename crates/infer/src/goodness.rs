@@ -21,12 +21,19 @@ impl Goodness {
     /// Of a fit. A parameter held by a bound does not count as fitted.
     #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit) -> Self {
+        Self::beside(0, parameters, fit)
+    }
+
+    /// Of a fit in whose residuals so many more numbers were at their best, such as
+    /// an offset of each record.
+    #[must_use]
+    pub fn beside(nuisances: usize, parameters: &[Parameter], fit: &Fit) -> Self {
         let priors = parameters.iter().zip(&fit.point);
         let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
         let rows: Vec<Estimate> = (fit.residuals.iter().copied().chain(priors))
             .map(|value| Estimate { value, sigma: 1.0 })
             .collect();
-        let fitted = parameters.len() - fit.binding.len();
+        let fitted = nuisances + parameters.len() - fit.binding.len();
         let chi_square = chi_square(&rows, &vec![0.0; rows.len()], fitted);
         let ratio = |found: ChiSquare| (found.value / found.freedom as f64).sqrt();
         let numbered = fit.residuals.iter().copied().enumerate();

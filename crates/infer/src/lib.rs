@@ -20,6 +20,7 @@ mod linear;
 mod parameter;
 mod problem;
 mod profile;
+mod pulses;
 mod sampler;
 
 pub use batch::{Batch, Compute, Outcomes, Spread};
@@ -40,6 +41,7 @@ pub use least_squares::{Binding, Ending, Fit, FitError, Fitting, Jacobian, Loss,
 pub use parameter::{Parameter, ParameterError, Prior};
 pub use problem::{ModelError, Problem, Residuals};
 pub use profile::{End, Interval, Profile, ProfileError, Profiling, RISE_OF_95_PERCENT, profile};
+pub use pulses::{PulseError, PulseProblem, Pulses, RecordError, Respond};
 pub use sampler::{
     Autocorrelation, Chain, Diagnosis, Posterior, Requirements, Sampling, SamplingError, Shortfall,
     Unconverged, autocorrelation_time, split_r_hat,

@@ -13,5 +13,6 @@ mod mistakes;
 mod nonlinear;
 mod peers;
 mod posterior;
+mod pulses;
 mod round_trip;
 mod toys;

@@ -298,6 +298,51 @@ fn a_chain_saved_and_continued_has_the_bits_of_an_uninterrupted_one() {
     ));
 }
 
+/// Why a chain was broken off: its state where it was killed, or an error.
+#[derive(Debug)]
+struct Broken(String);
+
+impl From<SamplingError> for Broken {
+    fn from(error: SamplingError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
+    let data = line();
+    let (_, _, begun) = started(&data, &Sampling::default());
+    let asked = Requirements::default();
+    let mut whole = begun.clone();
+    let unbroken = whole.lead(&data, &asked, 20_000, &mut |_| Ok::<(), Broken>(()));
+    let unbroken = unbroken.unwrap().unwrap();
+    for dies_at in [130, 500, 510] {
+        assert!(dies_at < whole.steps());
+        let mut part = begun.clone();
+        let killed = part.lead(
+            &data,
+            &asked,
+            20_000,
+            &mut |chain| match chain.steps() == dies_at {
+                true => Err(Broken(serde_json::to_string(chain).unwrap())),
+                false => Ok(()),
+            },
+        );
+        let Err(Broken(saved)) = killed else {
+            unreachable!("{killed:?}")
+        };
+        let mut read: Chain = serde_json::from_str(&saved).unwrap();
+        read.belongs_to(&data).unwrap();
+        let continued = read.lead(&data, &asked, 20_000, &mut |_| Ok::<(), Broken>(()));
+        assert_eq!(continued.unwrap().unwrap(), unbroken);
+        assert_eq!(read, whole);
+    }
+    // Nobody goes on with other data by accident.
+    let mut other = line();
+    other.y[0] += 1.0;
+    assert_eq!(whole.belongs_to(&other), Err(SamplingError::OtherProblem));
+}
+
 /// A line whose residuals are computed by as many threads as there are.
 struct Threaded(Line);
 

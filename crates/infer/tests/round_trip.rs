@@ -6,7 +6,6 @@ use hertzchain_infer::{
     Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,
 };
 use hertzchain_signal::coverage;
-use hertzchain_study::{Plan, Solver, shoot};
 
 const SPEEDS: usize = 12;
 
@@ -132,16 +131,9 @@ fn one_speed_and_one_time_tell_one_number() {
 
 #[test]
 fn data_of_another_integrator_give_the_same_pair() {
-    // Classical Runge–Kutta with a step of 0.1 µs, as a reader of the paper would.
     let dry = preset("dry").unwrap();
-    let speeds = speeds_m_s(6);
-    let mut truth = Truth::of(&dry, &speeds);
-    for (row, speed) in truth.curve.iter_mut().zip(&speeds) {
-        let (mut plan, _) = Plan::from_experiment(&dry, Some(*speed)).unwrap();
-        plan.solver = Solver::Rk4 { step_s: Some(1e-7) };
-        let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
-        (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
-    }
+    let mut truth = Truth::of(&dry, &speeds_m_s(6));
+    truth.shot_by_rk4(&dry, 1e-7);
     let problem = problem(&model(&dry, &["eta", "B"]), truth.measured(5));
     let best = fit(&problem, &Fitting::default()).unwrap();
     let covariance = Covariance::new(problem.parameters(), &best);

@@ -120,6 +120,14 @@ impl ShotList {
         Ok(Self { entries, by_name })
     }
 
+    /// The speed of a file's shot and its standard error in m/s, as far as the
+    /// table tells.
+    #[must_use]
+    pub fn speed(&self, file: &Path, shot: Option<u64>) -> Option<(f64, Option<f64>)> {
+        let entry = self.find(file, shot)?;
+        Some((entry.speed_m_s?, entry.speed_error_m_s))
+    }
+
     /// What is said of a shot, by the first line that does.
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&Entry> {
         let lines = self.by_name.get(file.file_name()?)?;

@@ -64,7 +64,7 @@ fn curve(fitted: &fitting::Fitted) -> serde_json::Value {
 
 /// Samples of a posterior, parameter by parameter, and how many parameters there are.
 fn samples(fitted: &fitting::Fitted) -> Option<(usize, Vec<f64>)> {
-    match &fitted.more {
+    match &fitted.inferred.more {
         fitting::More::Sampled(sampled) => {
             let posterior = sampled.posterior.as_ref().ok()?;
             let parameters = posterior.mean.len();

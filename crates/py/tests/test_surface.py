@@ -18,7 +18,7 @@ CHAIN = hc.build(
 )
 NAME = "elastic_hertz.stiffness"
 
-few = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+few = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 dtypes = st.sampled_from(["f8", "f4", "f2", ">f8", "i4", "u1", "?", "c16", "U3", "O", "M8[s]", "g"])
 shapes = hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=3)
 anything = st.one_of(

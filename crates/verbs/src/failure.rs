@@ -3,6 +3,7 @@
 use crate::arguments::How;
 use crate::given::has_unit;
 use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
+use hertzchain_infer::SamplingError;
 use hertzchain_study::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 
@@ -27,6 +28,12 @@ impl From<Mistakes> for Failure {
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
+        Self::User(error.to_string())
+    }
+}
+
+impl From<SamplingError> for Failure {
+    fn from(error: SamplingError) -> Self {
         Self::User(error.to_string())
     }
 }

@@ -1,6 +1,7 @@
-//! `hertzchain fit`: times of flight to parameters.
+//! `hertzchain fit`: times of flight, or whole pulses, to parameters.
 
 mod pictures;
+mod pulses;
 mod report;
 mod uncertainty;
 
@@ -8,12 +9,16 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_verbs::arguments::infer::Fit as Arguments;
-use hertzchain_verbs::fit::{self, Fitted, More};
+use hertzchain_verbs::fit::{self, Fitted, Inferred, More};
 use hertzchain_verbs::inference;
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let data = inference::data(&arguments.data, &arguments.measured)?;
+    let table = match &arguments.data[..] {
+        [one] if inference::is_table(one)? => one,
+        _ => return pulses::run(arguments),
+    };
+    let data = inference::data(table, &arguments.measured)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     let problem = inference::problem(model, data, &arguments.freed)?;
@@ -29,29 +34,35 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {
-    folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
     folder.write("fit.csv", fit::rows_csv(fitted).as_bytes())?;
-    folder.write("parameters.csv", fit::parameters_csv(fitted).as_bytes())?;
     folder.figure("fit", &pictures::fit(fitted))?;
+    write_inferred(&mut folder, &fitted.inferred, all)?;
+    eprint!("Written:\n{}", folder.list());
+    Ok(())
+}
+
+/// Files that any fit has.
+fn write_inferred(
+    folder: &mut Folder,
+    fitted: &Inferred,
+    all: &serde_json::Value,
+) -> Result<(), Failure> {
+    folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
+    folder.write("parameters.csv", fit::parameters_csv(fitted).as_bytes())?;
     folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
     match &fitted.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            folder.write(
-                "profiles.csv",
-                fit::profiles_csv(fitted, profiles).as_bytes(),
-            )?;
+            let table = fit::profiles_csv(fitted, profiles);
+            folder.write("profiles.csv", table.as_bytes())?;
             folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
         }
         More::Sampled(sampled) => {
-            let chain = serde_json::to_vec(&sampled.chain);
-            let chain = chain.map_err(|error| Failure::Ours(error.to_string()))?;
-            folder.write(fit::CHAIN, &chain)?;
+            folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;
             if let Ok(posterior) = &sampled.posterior {
                 folder.figure("corner", &uncertainty::corner(fitted, posterior))?;
             }
         }
     }
-    eprint!("Written:\n{}", folder.list());
     Ok(())
 }

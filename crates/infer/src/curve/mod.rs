@@ -14,6 +14,7 @@ mod whiten;
 pub use band::FittedCurve;
 pub use candidates::{ExpectedErrors, Way, WayError, usual_ways};
 pub use joint::{Joint, Part, Supply};
+pub(crate) use model::Shooting;
 pub use model::{Model, Predicted, Speeds};
 pub use problem::{CurveError, CurveProblem};
 pub use surrogate::{Surrogate, SurrogateError};

@@ -42,8 +42,15 @@ pub struct Model {
     pub set: InstructionSet,
 }
 
-/// A shot to be computed, and what its wall signal is multiplied by.
-type Planned = Result<(Plan, f64), ModelError>;
+/// A shot to be computed, and what its signals are multiplied by.
+#[derive(Clone, Debug)]
+pub(crate) struct Shooting {
+    pub(crate) plan: Plan,
+    /// Sensitivity of the wall's sensor over that of the bead's.
+    pub(crate) wall_gain: f64,
+    /// That of the bead's sensor and its amplifier in V/N.
+    pub(crate) sensor_gain_v_n: f64,
+}
 
 impl Model {
     /// A fit's accuracy: on the paper's chains the steps it takes leave errors
@@ -92,14 +99,14 @@ impl Model {
         points: &[Vec<f64>],
         speeds: &Speeds,
     ) -> Vec<Result<Vec<Predicted>, ModelError>> {
-        let planned: Vec<Result<Vec<(Plan, f64)>, ModelError>> = points
+        let planned: Vec<Result<Vec<Shooting>, ModelError>> = points
             .par_iter()
             .map(|point| self.plans(point, speeds))
             .collect();
         let mut plans = Vec::new();
-        let mut part = |(plan, gain)| {
-            plans.push(plan);
-            gain
+        let mut part = |one: Shooting| {
+            plans.push(one.plan);
+            one.wall_gain
         };
         let gains: Vec<Result<Vec<f64>, ModelError>> = planned
             .into_iter()
@@ -127,7 +134,7 @@ impl Model {
     /// What is in the way of a shot.
     pub fn accuracy_reached(&self, point: &[f64], speeds: &Speeds) -> Result<f64, ModelError> {
         let plans = self.plans(point, speeds)?;
-        let plans: Vec<Plan> = plans.into_iter().map(|(plan, _)| plan).collect();
+        let plans: Vec<Plan> = plans.into_iter().map(|one| one.plan).collect();
         let shots = shoot_all(&plans, self.set, true, &|| {});
         let mut worst: f64 = 0.0;
         for (shot, (_, speed)) in shots.into_iter().zip(&speeds.at) {
@@ -138,9 +145,15 @@ impl Model {
     }
 
     /// A point's shots.
-    fn plans(&self, point: &[f64], speeds: &Speeds) -> Result<Vec<(Plan, f64)>, ModelError> {
+    pub(crate) fn plans(
+        &self,
+        point: &[f64],
+        speeds: &Speeds,
+    ) -> Result<Vec<Shooting>, ModelError> {
+        let amplifier = &self.experiment.campaign().amplifier;
+        let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
         let mut latest: Option<(Settings, Experiment)> = None;
-        let mut plan = |&(row, speed_m_s): &(usize, f64)| -> Planned {
+        let mut plan = |&(row, speed_m_s): &(usize, f64)| -> Result<Shooting, ModelError> {
             let settings = self.numbers.settings(point, speeds.rows, (row, speed_m_s));
             let experiment = match latest.take() {
                 Some((same, experiment)) if same == settings => experiment,
@@ -150,9 +163,13 @@ impl Model {
             };
             let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
             let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, told(&mistakes)))?;
-            let gain = settings.wall_gain;
+            let shooting = Shooting {
+                plan: plan.for_flights().with_accuracy(self.accuracy),
+                wall_gain: settings.wall_gain,
+                sensor_gain_v_n: settings.sensor_gain_v_n.unwrap_or(usual_v_n),
+            };
             latest = Some((settings, experiment));
-            Ok((plan.for_flights().with_accuracy(self.accuracy), gain))
+            Ok(shooting)
         };
         speeds.at.iter().map(&mut plan).collect()
     }

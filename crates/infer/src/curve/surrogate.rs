@@ -10,9 +10,10 @@ use super::problem::{CurveError, CurveProblem};
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, Parameter};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Half the box's width in standard errors.
+/// Half the box's width in standard errors, unless another is asked for.
 const REACH: f64 = 6.0;
 
 /// Nodes a parameter, for one to four parameters: some hundreds of curves in all.
@@ -39,7 +40,7 @@ pub enum SurrogateError {
         name: String,
     },
     /// A curve in the box that does not exist.
-    #[error("the model fails within six standard errors of the best fit: {0}")]
+    #[error("the model fails near the best fit: {0}")]
     ModelFails(ModelError),
 }
 
@@ -50,19 +51,34 @@ pub struct Surrogate {
     /// Middle and half width of each parameter's side.
     sides: Vec<(f64, f64)>,
     nodes: usize,
-    /// ln of predictions at all nodes, the last parameter's running fastest.
-    table: Vec<Vec<[Option<f64>; 4]>>,
+    /// ln of predictions at all nodes, the last parameter's running fastest; not
+    /// a number where there is none.
+    table: Vec<Vec<[f64; 4]>>,
     /// Largest difference of any residual from the model's own, in standard
     /// errors, at points drawn evenly in the box.
     pub error: f64,
 }
 
 impl Surrogate {
-    /// Around a fit.
+    /// Around a fit, six standard errors to either side.
     ///
     /// # Errors
     /// See [`SurrogateError`].
     pub fn new(
+        problem: &CurveProblem,
+        fit: &Fit,
+        covariance: &Covariance,
+    ) -> Result<Self, SurrogateError> {
+        Self::within(REACH, problem, fit, covariance)
+    }
+
+    /// Around a fit, so many standard errors to either side: for repetitions
+    /// whose best fits scatter about this one.
+    ///
+    /// # Errors
+    /// See [`SurrogateError`].
+    pub fn within(
+        reach: f64,
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
@@ -73,7 +89,7 @@ impl Surrogate {
             .and_then(|at| NODES.get(at))
             .ok_or(SurrogateError::TooMany(count))?;
         let sides: Vec<(f64, f64)> = (problem.parameters().iter().enumerate())
-            .map(|(at, parameter)| side(parameter, fit.point[at], covariance.sd[at]))
+            .map(|(at, parameter)| side(parameter, fit.point[at], reach, covariance.sd[at]))
             .collect::<Result<_, _>>()?;
         let mut surrogate = Self {
             problem: problem
@@ -89,7 +105,7 @@ impl Surrogate {
             .collect();
         for curve in surrogate.problem.all_curves(&points) {
             let curve = curve.map_err(SurrogateError::ModelFails)?;
-            let ln = |row: &Predicted| row.map(|value| value.map(f64::ln));
+            let ln = |row: &Predicted| row.map(|value| value.map_or(f64::NAN, f64::ln));
             surrogate.table.push(curve.iter().map(ln).collect());
         }
         surrogate.error = surrogate.measured_error()?;
@@ -131,7 +147,7 @@ impl Surrogate {
     /// The curve inside the box.
     fn interpolated(&self, weights: &[Vec<f64>]) -> Vec<Predicted> {
         let rows = self.table.first().map_or(0, Vec::len);
-        let mut sums = vec![[Some(0.0); 4]; rows];
+        let mut sums = vec![[0.0; 4]; rows];
         for (number, curve) in self.table.iter().enumerate() {
             let mut rest = number;
             let mut weight = 1.0;
@@ -139,14 +155,12 @@ impl Surrogate {
                 weight *= along[rest % self.nodes];
                 rest /= self.nodes;
             }
-            for (sum, row) in sums.iter_mut().zip(curve) {
-                for (sum, value) in sum.iter_mut().zip(row) {
-                    *sum = sum.zip(*value).map(|(sum, value)| sum + weight * value);
-                }
+            for (sum, row) in sums.as_flattened_mut().iter_mut().zip(curve.as_flattened()) {
+                *sum += weight * row;
             }
         }
-        let exp = |row: &Predicted| row.map(|value| value.map(f64::exp));
-        sums.iter().map(exp).collect()
+        let exp = |ln: f64| (!ln.is_nan()).then(|| ln.exp());
+        sums.iter().map(|row| row.map(exp)).collect()
     }
 
     /// Against the model, at places that fill the box evenly.
@@ -180,13 +194,18 @@ impl Surrogate {
 }
 
 /// A side of the box, within the parameter's bounds.
-fn side(parameter: &Parameter, value: f64, sd: f64) -> Result<(f64, f64), SurrogateError> {
+fn side(
+    parameter: &Parameter,
+    value: f64,
+    reach: f64,
+    sd: f64,
+) -> Result<(f64, f64), SurrogateError> {
     if !(sd > 0.0 && sd.is_finite()) {
         let name = parameter.name.clone();
         return Err(SurrogateError::NoWidth { name });
     }
-    let lower = (value - REACH * sd).max(parameter.lower);
-    let upper = (value + REACH * sd).min(parameter.upper);
+    let lower = (value - reach * sd).max(parameter.lower);
+    let upper = (value + reach * sd).min(parameter.upper);
     Ok((0.5 * (lower + upper), 0.5 * (upper - lower)))
 }
 
@@ -221,15 +240,19 @@ impl Problem for Surrogate {
     }
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
-        let one = |point: &Vec<f64>| match self.weights(point) {
-            Some(weights) => self.problem.residuals_of(&self.interpolated(&weights)),
-            None => {
-                let outside = self.problem.residuals(std::slice::from_ref(point));
-                let none = || Err(ModelError("no residuals were computed".into()));
-                outside.into_iter().next().unwrap_or_else(none)
-            }
+        let inside = |point: &Vec<f64>| {
+            let weights = self.weights(point)?;
+            Some(self.problem.residuals_of(&self.interpolated(&weights)))
         };
-        points.iter().map(one).collect()
+        let inside: Vec<_> = points.par_iter().map(inside).collect();
+        // Side by side, as they are dear.
+        let beyond = points.iter().zip(&inside).filter(|(_, own)| own.is_none());
+        let beyond: Vec<Vec<f64>> = beyond.map(|(point, _)| point.clone()).collect();
+        let mut computed = self.problem.residuals(&beyond).into_iter();
+        let none = || Err(ModelError("no residuals were computed".into()));
+        let all = inside.into_iter();
+        all.map(|own| own.unwrap_or_else(|| computed.next().unwrap_or_else(none)))
+            .collect()
     }
 
     fn residual_label(&self, index: usize) -> String {

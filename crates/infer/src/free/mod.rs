@@ -215,6 +215,9 @@ pub(crate) struct Settings {
     pub(crate) numbers: Vec<(String, f64)>,
     /// Sensitivity of the wall's sensor over that of the bead's.
     pub(crate) wall_gain: f64,
+    /// That of the bead's sensor with its amplifier in V/N, if it is not the
+    /// experiment's.
+    pub(crate) sensor_gain_v_n: Option<f64>,
 }
 
 impl FreeNumbers {

@@ -4,7 +4,7 @@ use super::{FreeError, Settings};
 use hertzchain_experiment::{Experiment, Place};
 
 /// Short names: what each stands for, and the end of its path.
-pub const SHORT_NAMES: [(&str, &str, &str); 7] = [
+pub const SHORT_NAMES: [(&str, &str, &str); 8] = [
     ("Y", "Young modulus", "young_modulus"),
     ("nu", "Poisson ratio", "poisson_ratio"),
     ("eta", "viscosity", "shear_viscosity"),
@@ -20,10 +20,16 @@ pub const SHORT_NAMES: [(&str, &str, &str); 7] = [
         "sensitivity of the wall's sensor over that of the bead's",
         "",
     ),
+    (
+        SENSOR_GAIN,
+        "sensitivity of the bead's sensor with its amplifier",
+        "",
+    ),
 ];
 
-/// A number of the instruments, not of the experiment.
+/// Numbers of the instruments, not of the chain.
 const WALL_GAIN: &str = "wall_gain";
+const SENSOR_GAIN: &str = "sensor_gain";
 
 /// Where a free number goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +40,8 @@ pub(super) enum Target {
     Scaled { prefactor: String, exponent: String },
     /// Sensitivity of the wall's sensor over that of the bead's.
     WallGain,
+    /// Sensitivity of the bead's sensor with its amplifier in V/N.
+    SensorGain,
 }
 
 impl Target {
@@ -42,7 +50,7 @@ impl Target {
         match self {
             Self::Number(path) => Some(path),
             Self::Scaled { prefactor, .. } => prefactor.strip_suffix(".prefactor"),
-            Self::WallGain => None,
+            Self::WallGain | Self::SensorGain => None,
         }
     }
 
@@ -58,6 +66,7 @@ impl Target {
                 settings.numbers.push((exponent.clone(), 0.0));
             }
             Self::WallGain => settings.wall_gain = value,
+            Self::SensorGain => settings.sensor_gain_v_n = Some(value),
         }
     }
 }
@@ -77,6 +86,14 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeErr
             target: Target::WallGain,
             unit: String::new(),
             given: Some((1.0, 0.0)),
+        });
+    }
+    if name == SENSOR_GAIN {
+        let amplifier = &experiment.campaign().amplifier;
+        return Ok(Found {
+            target: Target::SensorGain,
+            unit: "V/N".to_owned(),
+            given: Some((amplifier.sensitivity_c_n * amplifier.gain_v_c, 0.0)),
         });
     }
     let (owner, last) = match name.rsplit_once('.') {

@@ -134,13 +134,7 @@ impl Chain {
     /// # Errors
     /// A chain of other parameters, or one that was damaged on disk.
     pub fn advance(&mut self, problem: &dyn Problem, steps: u64) -> Result<(), SamplingError> {
-        self.sound()?;
-        if names(problem) != self.names {
-            return Err(SamplingError::OtherParameters {
-                chain: self.names.clone(),
-                problem: names(problem),
-            });
-        }
+        self.matches(problem)?;
         for _ in 0..steps {
             self.half_step(problem, 0);
             self.half_step(problem, 1);
@@ -204,6 +198,18 @@ impl Chain {
         }
     }
 
+    /// Whether the chain is sound and of the problem's parameters.
+    pub(super) fn matches(&self, problem: &dyn Problem) -> Result<(), SamplingError> {
+        self.sound()?;
+        match names(problem) == self.names {
+            true => Ok(()),
+            false => Err(SamplingError::OtherParameters {
+                chain: self.names.clone(),
+                problem: names(problem),
+            }),
+        }
+    }
+
     /// Whether a chain from disk is one.
     pub(super) fn sound(&self) -> Result<(), SamplingError> {
         let (walkers, parameters) = (self.places.len(), self.names.len());
@@ -221,6 +227,21 @@ impl Chain {
         } else {
             Err(SamplingError::Damaged)
         }
+    }
+
+    /// What outliers cost.
+    pub(super) fn loss(&self) -> Loss {
+        self.loss
+    }
+
+    /// Where walkers stand.
+    pub(super) fn places(&self) -> &[Vec<f64>] {
+        &self.places
+    }
+
+    /// ln of the density at each walker's place.
+    pub(super) fn ln_densities(&self) -> &[f64] {
+        &self.ln_densities
     }
 
     /// Names of the parameters.

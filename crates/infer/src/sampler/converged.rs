@@ -79,6 +79,9 @@ impl fmt::Display for Unconverged {
     }
 }
 
+/// Chains of fewer steps do not tell how many are needed.
+const TOO_SHORT: f64 = 100.0;
+
 impl Chain {
     /// State of each parameter's chains.
     ///
@@ -146,7 +149,10 @@ impl Chain {
         let mut missing = Vec::new();
         let mut miss = |reason: String, factor: f64| {
             // The first fifth is left out of the longer chain too.
-            let needed = 1.25 * factor.clamp(1.1, 1e3) * steps.max(100.0);
+            let needed = match steps < TOO_SHORT {
+                true => 5.0 * TOO_SHORT,
+                false => 1.25 * factor.clamp(1.1, 1e3) * steps,
+            };
             missing.push(Shortfall {
                 name: name.to_owned(),
                 reason,

@@ -34,6 +34,11 @@ pub enum SamplingError {
         /// Names in the problem.
         problem: Vec<String>,
     },
+    /// A saved chain's densities are not the problem's.
+    #[error(
+        "the chain was sampled from other data, another model or other priors: continue it with what it was begun with, or start anew"
+    )]
+    OtherProblem,
     /// A saved chain's numbers of walkers, parameters and samples do not fit together.
     #[error(
         "the saved chain is damaged: its walkers, parameters and samples do not fit together; start anew"

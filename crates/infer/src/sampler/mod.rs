@@ -6,6 +6,7 @@ mod chain;
 mod converged;
 mod density;
 mod error;
+mod lead;
 mod moves;
 mod posterior;
 

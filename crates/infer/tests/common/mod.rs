@@ -10,6 +10,7 @@ use hertzchain_infer::{
     CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Model, Observable, Predicted, Speeds,
 };
 use hertzchain_signal::Estimate;
+use hertzchain_study::{Plan, Solver, shoot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -66,6 +67,19 @@ impl Truth {
             slopes: (0..curve.len()).map(slope).collect(),
             speeds_m_s: speeds_m_s.to_vec(),
             curve,
+        }
+    }
+
+    /// Its times again, by classical Runge–Kutta with a fixed step, as a reader of
+    /// the paper would.
+    pub fn shot_by_rk4(&mut self, experiment: &Experiment, step_s: f64) {
+        for (row, speed) in self.curve.iter_mut().zip(&self.speeds_m_s) {
+            let (mut plan, _) = Plan::from_experiment(experiment, Some(*speed)).unwrap();
+            plan.solver = Solver::Rk4 {
+                step_s: Some(step_s),
+            };
+            let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
+            (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
         }
     }
 

@@ -88,9 +88,13 @@ pub struct Freed {
 /// Arguments of `fit`.
 #[derive(Debug, Args)]
 pub struct Fit {
-    /// Table (CSV) of times of flight against speed, such as speeds.csv of `measure`
-    #[arg(value_name = "DATA")]
-    pub data: PathBuf,
+    /// Table (CSV) of times of flight against speed, such as speeds.csv of `measure`; or recordings
+    /// of any format that `measure` reads, to fit whole pulses sample by sample
+    #[arg(value_name = "DATA", required = true)]
+    pub data: Vec<PathBuf>,
+    /// Of recordings.
+    #[command(flatten)]
+    pub recorded: Recorded,
     /// The curve.
     #[command(flatten)]
     pub measured: Measured,
@@ -131,6 +135,23 @@ pub struct Fit {
     /// Write fit.json, tables (CSV) and figures (SVG, PNG) into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// Recordings whose pulses are fitted whole.
+#[derive(Debug, Args)]
+pub struct Recorded {
+    /// Table (CSV) with a line a recording, as `measure` takes it: file, case, speed, speed error
+    #[arg(long, value_name = "CSV")]
+    pub shots: Option<PathBuf>,
+    /// Sampling rate where a recording does not say, such as 1MHz; a plain number is in Hz
+    #[arg(long, value_name = "RATE", value_parser = super::measure::rate)]
+    pub rate: Option<f64>,
+    /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
+    #[arg(long, value_name = "NAME")]
+    pub channel: Vec<String>,
+    /// Most shots that are fitted, spread evenly over those that are good
+    #[arg(long, value_name = "COUNT", default_value = "40", value_parser = count)]
+    pub most_shots: usize,
 }
 
 /// Arguments of `design`.

@@ -163,7 +163,8 @@ fn volts(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected volts such as 0.2 or -0.2".to_owned())
 }
 
-fn rate(text: &str) -> Result<f64, String> {
+/// A sampling rate in Hz, with or without a unit.
+pub fn rate(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let with_unit = RATES.iter().find_map(|(unit, size)| {
         let number = text.strip_suffix(unit)?;

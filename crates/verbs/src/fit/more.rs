@@ -9,8 +9,11 @@ use hertzchain_infer::{
     Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
     compare, cross_validate, fit, profile,
 };
+use hertzchain_study::reproduce::write_atomically;
 use hertzchain_study::{StudyError, stopped};
 use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// What a method tells beside the covariance.
 pub enum More {
@@ -33,11 +36,32 @@ pub struct Sampled {
     pub surrogate_error: Option<f64>,
 }
 
-/// As the method asks.
+/// As the method asks, by interpolated curves where that is as good.
 pub fn more(
     problem: &CurveProblem,
     fit: &Fit,
     covariance: &Covariance,
+    arguments: &Arguments,
+) -> Result<More, Failure> {
+    let surrogate = match (arguments.method, arguments.direct) {
+        (Method::Posterior, false) => Surrogate::new(problem, fit, covariance).ok(),
+        _ => None,
+    };
+    match surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR) {
+        None => more_of(problem, (fit, covariance), None, arguments),
+        Some(found) => more_of(&found, (fit, covariance), Some(found.error), arguments),
+    }
+}
+
+/// As the method asks, of any problem; `surrogate_error` tells how far its model
+/// is from the computed one.
+///
+/// # Errors
+/// What is in the way.
+pub fn more_of(
+    problem: &dyn Problem,
+    (fit, covariance): (&Fit, &Covariance),
+    surrogate_error: Option<f64>,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
     match arguments.method {
@@ -48,64 +72,26 @@ pub fn more(
             let found = profile(problem, fit, covariance, &all, &how).map_err(user)?;
             Ok(More::Profiles(found))
         }
-        Method::Posterior => sampled(problem, fit, covariance, arguments),
+        Method::Posterior => {
+            let mut chain = started(problem, (fit, covariance), arguments)?;
+            let mut saving = Saving::new(arguments);
+            let posterior = chain.lead(
+                problem,
+                &Requirements::default(),
+                arguments.steps,
+                &mut |chain| saving.seen(chain),
+            )?;
+            Ok(More::Sampled(Box::new(Sampled {
+                chain,
+                posterior,
+                surrogate_error,
+            })))
+        }
     }
 }
-
-/// Steps before convergence is looked at for the first time.
-const FIRST_STEPS: u64 = 300;
 
 /// Interpolated curves may be off by so many standard errors.
 const SURROGATE_ERROR: f64 = 0.1;
-
-fn sampled(
-    problem: &CurveProblem,
-    fit: &Fit,
-    covariance: &Covariance,
-    arguments: &Arguments,
-) -> Result<More, Failure> {
-    let surrogate = match arguments.direct {
-        true => None,
-        false => Surrogate::new(problem, fit, covariance).ok(),
-    };
-    let surrogate = surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR);
-    let target: &dyn Problem = match &surrogate {
-        Some(surrogate) => surrogate,
-        None => problem,
-    };
-    let mut chain = started(target, (fit, covariance), arguments)?;
-    let asked = Requirements::default();
-    let posterior = loop {
-        let left = arguments.steps.saturating_sub(chain.steps());
-        let more = match chain.posterior(&asked) {
-            Ok(posterior) => break Ok(posterior),
-            Err(unconverged) if left == 0 => break Err(unconverged),
-            Err(unconverged) => unconverged.more_steps().max(FIRST_STEPS),
-        };
-        advance(&mut chain, target, more.min(left))?;
-    };
-    Ok(More::Sampled(Box::new(Sampled {
-        chain,
-        posterior,
-        surrogate_error: surrogate.map(|surrogate| surrogate.error),
-    })))
-}
-
-/// Steps between looks at whether to break off: some milliseconds.
-const TOGETHER: u64 = 20;
-
-/// Leads a chain on; steps in parts are the same steps.
-fn advance(chain: &mut Chain, target: &dyn Problem, mut steps: u64) -> Result<(), Failure> {
-    while steps > 0 {
-        if stopped() {
-            return Err(user(StudyError::Stopped));
-        }
-        let now = steps.min(TOGETHER);
-        chain.advance(target, now).map_err(user)?;
-        steps -= now;
-    }
-    Ok(())
-}
 
 /// A new chain, or the one that lies in the output folder.
 fn started(
@@ -127,7 +113,9 @@ fn started(
         Failure::User(format!("--resume: {}: {error}", path.display()))
     };
     let text = fs::read(&path).map_err(|error| unread(&error))?;
-    serde_json::from_slice(&text).map_err(|error| unread(&error))
+    let chain: Chain = serde_json::from_slice(&text).map_err(|error| unread(&error))?;
+    chain.belongs_to(problem).map_err(|error| unread(&error))?;
+    Ok(chain)
 }
 
 /// Walkers of each ensemble, unless parameters are many.
@@ -135,6 +123,52 @@ const WALKERS: usize = 32;
 
 /// The chain's file in the output folder.
 pub const CHAIN: &str = "chain.json";
+
+/// Looks at whether to break off, and saves walkers on their way, so that a run
+/// that is broken off or killed goes on with `--resume`.
+struct Saving<'a> {
+    folder: Option<&'a Path>,
+    saved: Instant,
+}
+
+/// Time between saved states: what a broken run loses.
+const SAVE_EVERY: Duration = Duration::from_secs(10);
+
+impl<'a> Saving<'a> {
+    fn new(arguments: &'a Arguments) -> Self {
+        Self {
+            folder: arguments.out.as_deref(),
+            saved: Instant::now(),
+        }
+    }
+
+    fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
+        if stopped() {
+            return Err(user(StudyError::Stopped));
+        }
+        let Some(folder) = self.folder else {
+            return Ok(());
+        };
+        if self.saved.elapsed() < SAVE_EVERY {
+            return Ok(());
+        }
+        let ours = |error: &dyn std::fmt::Display| Failure::Ours(error.to_string());
+        fs::create_dir_all(folder).map_err(|error| ours(&error))?;
+        let path = folder.join(CHAIN);
+        write_atomically(&path, &saved(chain)?).map_err(|error| ours(&error))?;
+        // From the end of writing: a long chain takes its time.
+        self.saved = Instant::now();
+        Ok(())
+    }
+}
+
+/// A chain as it lies in the output folder.
+///
+/// # Errors
+/// Numbers that are none, of which JSON knows nothing.
+pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
+    serde_json::to_vec(chain).map_err(|error| Failure::Ours(error.to_string()))
+}
 
 /// A model that was fitted to the same data.
 pub struct Rival {

@@ -1,20 +1,44 @@
 //! A fit as JSON and tables, in SI.
 
-use super::Fitted;
 use super::more::{More, Rival, Rivals};
+use super::{Fitted, Inferred};
 use crate::arguments::infer::Fit as Arguments;
 use crate::table::cell;
-use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Problem, Profile};
+use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Profile};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
 #[must_use]
 pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
-    let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     let data = fitted.problem.data();
-    json!({
+    let confused = !fitted.inferred.identifiability.confused.is_empty();
+    let own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
         "model": fitted.problem.model().experiment().name(),
+        "model_accuracy": fitted.accuracy,
+        "would_separate": match confused {
+            true => fitted.problem.would_separate(),
+            false => Vec::new(),
+        },
+        "comparison": fitted.rivals.as_ref().map(comparison),
+    });
+    joined(own, inferred(&fitted.inferred, arguments))
+}
+
+/// The entries of two objects in one.
+#[must_use]
+pub fn joined(mut one: Value, other: Value) -> Value {
+    if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
+        one.extend(other);
+    }
+    one
+}
+
+/// What any fit tells.
+#[must_use]
+pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
+    let (fit, goodness) = (&fitted.fit, &fitted.goodness);
+    json!({
         "free": arguments.freed.free,
         "seed": arguments.seed,
         "robust": arguments.robust,
@@ -36,24 +60,18 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
             "probability_fewer": r.probability_fewer, "probability_more": r.probability_more,
         })),
         "jacobian_disagreement": fit.jacobian.disagreement,
-        "model_accuracy": fitted.accuracy,
         "singular_values": fitted.identifiability.singular_values,
         "singular_value_floor": fitted.identifiability.floor,
         "not_determined": fitted.identifiability.confused.iter().map(|c| json!({
             "words": c.words, "change": c.change,
         })).collect::<Value>(),
-        "would_separate": match fitted.identifiability.confused.is_empty() {
-            true => Vec::new(),
-            false => fitted.problem.would_separate(),
-        },
         "profiles": profiles(fitted),
         "posterior": posterior(fitted),
-        "comparison": fitted.rivals.as_ref().map(comparison),
     })
 }
 
-fn parameters(fitted: &Fitted) -> Value {
-    let parameters = fitted.problem.parameters().iter().enumerate();
+fn parameters(fitted: &Inferred) -> Value {
+    let parameters = fitted.parameters.iter().enumerate();
     let one = |(at, parameter): (usize, &Parameter)| {
         let finite = |x: f64| x.is_finite().then_some(x);
         json!({
@@ -80,7 +98,7 @@ fn prior(prior: Prior) -> Value {
     }
 }
 
-fn correlations(fitted: &Fitted) -> Value {
+fn correlations(fitted: &Inferred) -> Value {
     let count = fitted.fit.point.len();
     let row = |i: usize| (0..count).map(move |j| fitted.covariance.correlation(i, j));
     (0..count)
@@ -98,13 +116,13 @@ fn end(end: End) -> Value {
     }
 }
 
-fn profiles(fitted: &Fitted) -> Value {
+fn profiles(fitted: &Inferred) -> Value {
     let More::Profiles(profiles) = &fitted.more else {
         return Value::Null;
     };
     let one = |profile: &Profile| {
         json!({
-            "name": fitted.problem.parameters()[profile.parameter].name,
+            "name": fitted.parameters[profile.parameter].name,
             "values": profile.values,
             "chi_square_rise": profile.rise,
             "intervals": profile.intervals.iter().map(|interval| json!({
@@ -115,7 +133,7 @@ fn profiles(fitted: &Fitted) -> Value {
     profiles.iter().map(one).collect()
 }
 
-fn posterior(fitted: &Fitted) -> Value {
+fn posterior(fitted: &Inferred) -> Value {
     let More::Sampled(sampled) = &fitted.more else {
         return Value::Null;
     };
@@ -180,10 +198,10 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
 
 /// One line a value of a profile.
 #[must_use]
-pub fn profiles_csv(fitted: &Fitted, profiles: &[Profile]) -> String {
+pub fn profiles_csv(fitted: &Inferred, profiles: &[Profile]) -> String {
     let mut text = "name,value,chi_square_rise\n".to_owned();
     for profile in profiles {
-        let name = &fitted.problem.parameters()[profile.parameter].name;
+        let name = &fitted.parameters[profile.parameter].name;
         for (value, rise) in profile.values.iter().zip(&profile.rise) {
             text += &format!("{name},{},{}\n", cell(*value), cell(*rise));
         }
@@ -193,9 +211,9 @@ pub fn profiles_csv(fitted: &Fitted, profiles: &[Profile]) -> String {
 
 /// One line a parameter.
 #[must_use]
-pub fn parameters_csv(fitted: &Fitted) -> String {
+pub fn parameters_csv(fitted: &Inferred) -> String {
     let mut text = "name,unit,value,standard_error\n".to_owned();
-    for (at, parameter) in fitted.problem.parameters().iter().enumerate() {
+    for (at, parameter) in fitted.parameters.iter().enumerate() {
         let sd = fitted.covariance.sd[at];
         let sd = if sd.is_finite() {
             cell(sd)
@@ -213,7 +231,7 @@ pub fn parameters_csv(fitted: &Fitted) -> String {
 pub fn rows_csv(fitted: &Fitted) -> String {
     let mut text = "line,speed_m_s,observable,measured,error,fitted,residual\n".to_owned();
     let measured = fitted.problem.measured();
-    for ((row, of), residual) in measured.into_iter().zip(&fitted.fit.residuals) {
+    for ((row, of), residual) in measured.into_iter().zip(&fitted.inferred.fit.residuals) {
         text += &row_line(fitted, (row, of), *residual);
     }
     text
@@ -259,5 +277,8 @@ pub fn rows_json(fitted: &Fitted) -> Value {
             "residual": residual,
         })
     };
-    measured.zip(&fitted.fit.residuals).map(one).collect()
+    measured
+        .zip(&fitted.inferred.fit.residuals)
+        .map(one)
+        .collect()
 }

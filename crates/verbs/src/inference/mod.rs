@@ -8,10 +8,12 @@ use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, Defaults, FreeError, FreeNumber, FreeNumbers, Model, Observable, Selection,
+    CurveProblem, Data, Defaults, FreeError, FreeNumber, FreeNumbers, Model, Observable, Problem,
+    PulseProblem, Selection,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 
 /// A mistake of the user's, told as it is.
@@ -23,6 +25,35 @@ pub fn user(error: impl std::fmt::Display) -> Failure {
 pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
     data_of(file, measured, measured.case.clone())
 }
+
+/// Whether a file is a table of curves: text whose first line names a column of
+/// speeds. What else can be read is a recording.
+pub fn is_table(file: &Path) -> Result<bool, Failure> {
+    let unread = |error: &dyn std::fmt::Display| {
+        Failure::User(format!("{} can't be read: {error}", file.display()))
+    };
+    if file.is_dir() {
+        return Ok(false);
+    }
+    let mut begin = Vec::new();
+    let mut opened = fs::File::open(file).map_err(|error| unread(&error))?;
+    let probe = opened.by_ref().take(PROBE).read_to_end(&mut begin);
+    probe.map_err(|error| unread(&error))?;
+    let binary = begin.contains(&0) || std::str::from_utf8(&begin).is_err();
+    let text = String::from_utf8_lossy(&begin);
+    let first = text.lines().next().unwrap_or_default();
+    let numbers = first
+        .split([',', ';', '\t'])
+        .all(|cell| cell.trim().parse::<f64>().is_ok());
+    let times = first.to_ascii_lowercase().contains("time");
+    Ok(!binary && !numbers && (first.contains(SPEEDS) || !times))
+}
+
+/// Bytes that tell a table from a recording.
+const PROBE: u64 = 4096;
+
+/// The column that makes a table one of curves.
+const SPEEDS: &str = "speed_m_s";
 
 /// The same of another case.
 pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
@@ -141,6 +172,13 @@ pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, 
     let mut parameters = model.numbers().parameters(&data.speeds_m_s());
     known::apply(freed, &mut parameters)?;
     CurveProblem::new(model, data, parameters).map_err(user)
+}
+
+/// Recordings against a model with what is known of its parameters.
+pub fn pulses(problem: PulseProblem, freed: &Freed) -> Result<PulseProblem, Failure> {
+    let mut parameters = problem.parameters().to_vec();
+    known::apply(freed, &mut parameters)?;
+    problem.with_parameters(parameters).map_err(user)
 }
 
 /// As many threads as asked for.

@@ -125,7 +125,11 @@ fn open_rig(file: &Path) -> Result<Experiment, Failure> {
     })
 }
 
-fn list(file: &Path) -> Result<ShotList, Failure> {
+/// The table of shots.
+///
+/// # Errors
+/// A file that can't be read, or is no such table.
+pub fn list(file: &Path) -> Result<ShotList, Failure> {
     let wrong = |error: &dyn std::error::Error| {
         Failure::User(format!("--shots {}: {error}", file.display()))
     };

@@ -94,7 +94,7 @@ fn residuals(fitted: &Fitted) -> Chart {
         .x_log()
         .h_line(0.0, "");
     let chart = chart.legend(Legend::Off);
-    let residuals = measured.into_iter().zip(&fitted.fit.residuals);
+    let residuals = measured.into_iter().zip(&fitted.inferred.fit.residuals);
     let all: Vec<((usize, Observable), &f64)> = residuals.collect();
     Observable::ALL
         .into_iter()

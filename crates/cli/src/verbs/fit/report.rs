@@ -4,7 +4,7 @@ use crate::format::{self, digits};
 use crate::print::heading;
 use crate::words::{doubt, estimate, percent};
 use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
-use hertzchain_verbs::fit::{Fitted, More, Rivals, Sampled};
+use hertzchain_verbs::fit::{Fitted, Inferred, More, Rivals, Sampled};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -23,15 +23,25 @@ pub fn text(fitted: &Fitted) -> String {
         data.file,
         data.value_count(),
         data.rows.len(),
-        values(fitted)
+        values(&fitted.inferred)
     );
-    text += &correlations(fitted);
-    text += &goodness(&fitted.goodness, &fitted.problem);
+    text += &described(&fitted.inferred, &fitted.problem);
     text += &accuracy(fitted);
-    text += &determined(fitted);
-    text += &more(fitted);
+    text += &determined(&fitted.inferred, &|| fitted.problem.would_separate());
+    text += &more(&fitted.inferred);
     text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
-    text += &doubt(&fitted.fit.ending).map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    text + &beware(&fitted.inferred)
+}
+
+/// Correlations and how well the data are described.
+pub fn described(fitted: &Inferred, problem: &dyn Problem) -> String {
+    correlations(fitted) + &goodness(&fitted.goodness, problem)
+}
+
+/// What is doubtful about the minimum.
+pub fn beware(fitted: &Inferred) -> String {
+    let doubt = doubt(&fitted.fit.ending);
+    let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
     if fitted.fit.starts.len() > 1 {
         let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
         text += &format!("{agree} of {all} starts came to this minimum.\n");
@@ -39,8 +49,9 @@ pub fn text(fitted: &Fitted) -> String {
     text
 }
 
-fn values(fitted: &Fitted) -> String {
-    let parameters = fitted.problem.parameters().iter().enumerate();
+/// The parameters with their standard errors.
+pub fn values(fitted: &Inferred) -> String {
+    let parameters = fitted.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fitted.fit.point[at], fitted.covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
@@ -51,8 +62,8 @@ fn values(fitted: &Fitted) -> String {
 /// Pairs whose correlation is worth a line.
 const TOLD: f64 = 0.5;
 
-fn correlations(fitted: &Fitted) -> String {
-    let parameters = fitted.problem.parameters();
+fn correlations(fitted: &Inferred) -> String {
+    let parameters = &fitted.parameters;
     let mut text = String::new();
     for (i, one) in parameters.iter().enumerate() {
         for (j, other) in parameters.iter().enumerate().skip(i + 1) {
@@ -119,7 +130,7 @@ fn accuracy(fitted: &Fitted) -> String {
 }
 
 /// What the data determine and what not, and what would help.
-fn determined(fitted: &Fitted) -> String {
+pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
     let found = &fitted.identifiability;
     let (known, all) = (found.determined(), found.singular_values.len());
     if known == all {
@@ -133,14 +144,14 @@ fn determined(fitted: &Fitted) -> String {
     for confusion in &found.confused {
         text += &format!("  Not determined: {}.\n", confusion.words);
     }
-    for advice in fitted.problem.would_separate() {
+    for advice in advice() {
         text += &format!("  What would help: {advice}.\n");
     }
     text
 }
 
 /// Intervals of profiles or of a posterior.
-fn more(fitted: &Fitted) -> String {
+pub fn more(fitted: &Inferred) -> String {
     match &fitted.more {
         More::Nothing => String::new(),
         More::Profiles(profiles) => intervals_of_profiles(fitted, profiles),
@@ -148,7 +159,7 @@ fn more(fitted: &Fitted) -> String {
     }
 }
 
-fn intervals_of_profiles(fitted: &Fitted, profiles: &[Profile]) -> String {
+fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
     let end = |end: End| match end {
         End::At(value) => digits(value, 6),
         End::Bound(value) => format!("{} (its bound)", digits(value, 4)),
@@ -156,7 +167,7 @@ fn intervals_of_profiles(fitted: &Fitted, profiles: &[Profile]) -> String {
         End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
     };
     let row = |profile: &Profile| {
-        let name = &fitted.problem.parameters()[profile.parameter].name;
+        let name = &fitted.parameters[profile.parameter].name;
         let ends = profile
             .intervals
             .iter()
@@ -170,7 +181,7 @@ fn intervals_of_profiles(fitted: &Fitted, profiles: &[Profile]) -> String {
     format!("\n{}", format::table(&head, &rows))
 }
 
-fn sampled_text(fitted: &Fitted, sampled: &Sampled) -> String {
+fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
     let chain = &sampled.chain;
     let how = match sampled.surrogate_error {
         None => "every curve computed".to_owned(),
@@ -207,13 +218,7 @@ fn sampled_text(fitted: &Fitted, sampled: &Sampled) -> String {
             digits(found.effective, 3),
         ]
     };
-    let rows: Vec<Vec<String>> = fitted
-        .problem
-        .parameters()
-        .iter()
-        .enumerate()
-        .map(row)
-        .collect();
+    let rows: Vec<Vec<String>> = fitted.parameters.iter().enumerate().map(row).collect();
     let head = [
         "posterior",
         "median",

@@ -2,21 +2,21 @@
 
 use hertzchain_figures::Figure;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
-use hertzchain_infer::{Parameter, Posterior, Problem, Profile, RISE_OF_95_PERCENT};
-use hertzchain_verbs::fit::Fitted;
+use hertzchain_infer::{Parameter, Posterior, Profile, RISE_OF_95_PERCENT};
+use hertzchain_verbs::fit::Inferred;
 
 /// Parameters as axes say them.
-fn labels(fitted: &Fitted) -> Vec<String> {
+fn labels(fitted: &Inferred) -> Vec<String> {
     let label = |parameter: &Parameter| match parameter.unit.as_str() {
         "" => parameter.name.clone(),
         unit => format!("{} ({unit})", parameter.name),
     };
-    fitted.problem.parameters().iter().map(label).collect()
+    fitted.parameters.iter().map(label).collect()
 }
 
 /// Rise of chi-square along each parameter, beside the parabola that the
 /// covariance stands for.
-pub fn profiles(fitted: &Fitted, profiles: &[Profile]) -> Figure {
+pub fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
     let labels = labels(fitted);
     let curves: Vec<ProfileCurve> = (profiles.iter())
         .map(|profile| ProfileCurve {
@@ -32,7 +32,7 @@ pub fn profiles(fitted: &Fitted, profiles: &[Profile]) -> Figure {
 }
 
 /// The posterior of each parameter and pair, beside the covariance's.
-pub fn corner(fitted: &Fitted, posterior: &Posterior) -> Figure {
+pub fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
     Corner {
         labels: &labels(fitted),
         samples: &posterior.samples,
@@ -43,9 +43,9 @@ pub fn corner(fitted: &Fitted, posterior: &Posterior) -> Figure {
 }
 
 /// Singular values of the Jacobian, each parameter in units of its scale.
-pub fn singular_values(fitted: &Fitted) -> Figure {
+pub fn singular_values(fitted: &Inferred) -> Figure {
     let found = &fitted.identifiability;
-    let names = fitted.problem.parameters().iter().map(|p| p.name.clone());
+    let names = fitted.parameters.iter().map(|p| p.name.clone());
     SingularValues {
         names: &names.collect::<Vec<String>>(),
         values: &found.singular_values,

@@ -1,0 +1,118 @@
+//! Whole pulses of recordings to parameters.
+
+use super::{report, write_inferred};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::format::digits;
+use crate::print::{self, heading};
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
+use hertzchain_infer::Problem;
+use hertzchain_verbs::arguments::infer::Fit as Arguments;
+use hertzchain_verbs::fit::pulses::{
+    Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown,
+};
+use hertzchain_verbs::inference;
+use serde_json::Value;
+
+/// Runs the verb on recordings.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let recorded = recorded(arguments)?;
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let pool = inference::pool(arguments.modelled.threads)?;
+    let fitted = pool.install(|| fitted(recorded, arguments))?;
+    let all = json(&fitted, arguments);
+    match arguments.json {
+        true => print::print_json(&all)?,
+        false => print::print(&text(&fitted))?,
+    }
+    folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+}
+
+/// Everything that is to be said.
+fn text(fitted: &Pulsed) -> String {
+    let records = fitted.problem.records();
+    let noise = records.iter().flat_map(|record| &record.sigma_v);
+    let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
+    let mut text = format!(
+        "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n",
+        heading(fitted.problem.model().experiment().title()),
+        records.len(),
+        fitted.problem.residual_count(),
+        digits(1e3 * noise_v, 2),
+        report::values(&fitted.inferred)
+    );
+    text += &report::described(&fitted.inferred, &fitted.problem);
+    text += &report::determined(&fitted.inferred, &advice);
+    text += &report::more(&fitted.inferred);
+    text += &report::beware(&fitted.inferred);
+    if !fitted.refused.is_empty() {
+        text += &format!("{} records were left out:\n", fitted.refused.len());
+        let told = fitted.refused.iter().take(TOLD);
+        text += &told.map(|why| format!("  {why}\n")).collect::<String>();
+    }
+    text
+}
+
+/// What pulses do not tell apart.
+fn advice() -> Vec<String> {
+    vec![
+        "shots at other speeds; K and A of the contacts in place of Y, nu and eta; a prior for \
+         what is known, such as --prior wall_gain=1+-0.02"
+            .to_owned(),
+    ]
+}
+
+fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure> {
+    let shown = shown(fitted)?;
+    folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
+    folder.figure("pulses", &picture(fitted, &shown))?;
+    write_inferred(&mut folder, &fitted.inferred, all)?;
+    eprint!("Written:\n{}", folder.list());
+    Ok(())
+}
+
+/// The slowest and the fastest record with the fit, residuals below each.
+fn picture(fitted: &Pulsed, shown: &[Shown<'_>]) -> Figure {
+    let speed = |one: &&Shown<'_>| one.record.speed_m_s.value;
+    let first = shown.iter().filter(|one| one.channel == 0);
+    let slowest = first.clone().min_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let fastest = first.max_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let mut figure = Figure::single_column(170.0);
+    let one_speed = slowest.map(|s| speed(&s)) == fastest.map(|f| speed(&f));
+    for one in slowest.into_iter().chain(fastest.filter(|_| !one_speed)) {
+        figure = figure.panel(signal(fitted, one)).panel(residuals(one));
+    }
+    figure
+}
+
+fn in_us(times: &[f64]) -> Vec<f64> {
+    times.iter().map(|time| 1e6 * time).collect()
+}
+
+fn signal(fitted: &Pulsed, shown: &Shown<'_>) -> Chart {
+    let [times, measured, model] = &shown.columns;
+    let title = fitted.problem.model().experiment().title();
+    let speed = digits(shown.record.speed_m_s.value, 4);
+    Chart::new("Time after the passing maximum (µs)", "Signal (V)")
+        .title(&format!("{title}: {speed} m/s"))
+        .with(
+            Series::points("measured", &in_us(times), measured)
+                .colour(Colour::BLUE)
+                .marker(Marker::Circle),
+        )
+        .with(Series::line("fit", &in_us(times), model).colour(Colour::VERMILION))
+}
+
+fn residuals(shown: &Shown<'_>) -> Chart {
+    let [times, measured, model] = &shown.columns;
+    let sigma = shown.record.sigma_v[shown.channel];
+    let pairs = measured.iter().zip(model);
+    let residuals: Vec<f64> = pairs.map(|(a, b)| (a - b) / sigma).collect();
+    Chart::new(
+        "Time after the passing maximum (µs)",
+        "Residual (standard errors)",
+    )
+    .h_line(0.0, "")
+    .legend(Legend::Off)
+    .with(Series::line("", &in_us(times), &residuals).colour(Colour::BLUE))
+}

@@ -1,0 +1,90 @@
+//! What a fit costs, and what builds on it: `bench/inference.md`.
+//!
+//! `cargo bench -p hertzchain-infer`; one thread, 25 speeds, both times of flight,
+//! η and B free and started a factor of three off.
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on should fail")]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{Truth, model, problem, speeds_m_s};
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use hertzchain_experiment::preset;
+use hertzchain_infer::{
+    Covariance, CurveProblem, Fit, Fitting, Problem, Profiling, Surrogate, fit, profile,
+};
+
+fn main() {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build_global();
+    pool.unwrap();
+    divan::main();
+}
+
+fn dry() -> CurveProblem {
+    let experiment = preset("dry").unwrap();
+    let truth = Truth::of(&experiment, &speeds_m_s(25));
+    let dry = problem(&model(&experiment, &["eta", "B"]), truth.measured(1));
+    let mut parameters = dry.parameters().to_vec();
+    (parameters[0].start, parameters[1].start) = (1e4, 25.0);
+    CurveProblem::new(dry.model().clone(), dry.data().clone(), parameters).unwrap()
+}
+
+fn fitted(dry: &CurveProblem) -> (Fit, Covariance) {
+    let best = fit(dry, &Fitting::default()).unwrap();
+    let covariance = Covariance::new(dry.parameters(), &best);
+    (best, covariance)
+}
+
+#[divan::bench]
+fn fit_with_covariance(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    bencher.bench_local(|| fitted(black_box(&dry)));
+}
+
+#[divan::bench(sample_count = 20)]
+fn profiles_of_both(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    let (best, covariance) = fitted(&dry);
+    let how = Profiling::default();
+    bencher.bench_local(|| profile(&dry, &best, &covariance, &[0, 1], &how).unwrap());
+}
+
+#[divan::bench(sample_count = 10)]
+fn surrogate(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    let (best, covariance) = fitted(&dry);
+    bencher.bench_local(|| Surrogate::new(&dry, &best, &covariance).unwrap());
+}
+
+/// Walkers of one half step.
+const POINTS: usize = 32;
+
+fn likelihoods(bencher: Bencher<'_, '_>, problem: &dyn Problem, best: &Fit, sd: &[f64]) {
+    let point = |n: usize| -> Vec<f64> {
+        let aside = n as f64 / POINTS as f64 - 0.5;
+        let pairs = best.point.iter().zip(sd);
+        pairs.map(|(value, sd)| value + aside * sd).collect()
+    };
+    let points: Vec<Vec<f64>> = (0..POINTS).map(point).collect();
+    bencher
+        .counter(ItemsCount::new(POINTS))
+        .bench_local(|| problem.residuals(black_box(&points)));
+}
+
+#[divan::bench]
+fn likelihoods_of_the_model(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    let (best, covariance) = fitted(&dry);
+    likelihoods(bencher, &dry, &best, &covariance.sd);
+}
+
+#[divan::bench]
+fn likelihoods_of_the_surrogate(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    let (best, covariance) = fitted(&dry);
+    let found = Surrogate::new(&dry, &best, &covariance).unwrap();
+    likelihoods(bencher, &found, &best, &covariance.sd);
+}

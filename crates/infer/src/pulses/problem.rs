@@ -1,0 +1,333 @@
+//! Records against a model with free numbers.
+
+use super::align::{Traced, residuals};
+use super::record::Pulses;
+use crate::curve::{Model, Shooting, Speeds};
+use crate::problem::{ModelError, Problem, Residuals};
+use crate::{Parameter, ParameterError};
+use hertzchain_chain::Sensor;
+use hertzchain_study::{Shot, shoot};
+use rayon::prelude::*;
+use std::fmt;
+use std::sync::Arc;
+
+/// What stands between the sensors' forces and the recorder, with a gain of one
+/// in the middle of its band: samples of a signal and their interval in s to
+/// samples of the filtered one.
+#[derive(Clone)]
+pub struct Respond(Arc<dyn Fn(&[f64], f64) -> Vec<f64> + Send + Sync>);
+
+impl Respond {
+    /// From a function.
+    pub fn new(filter: impl Fn(&[f64], f64) -> Vec<f64> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(filter))
+    }
+}
+
+impl Default for Respond {
+    /// Nothing stands between.
+    fn default() -> Self {
+        Self::new(|signal, _| signal.to_vec())
+    }
+}
+
+impl fmt::Debug for Respond {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("Respond")
+    }
+}
+
+/// Why records can't be fitted with a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PulseError {
+    /// No record.
+    #[error("no record is left to be fitted")]
+    NoRecords,
+    /// No parameter.
+    #[error("no parameter is free: name some, such as eta,B,sensor_gain")]
+    NothingFree,
+    /// A parameter that is not sound.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The model has no pulse to compare with.
+    #[error("the model where it starts: {0}")]
+    Model(#[from] ModelError),
+}
+
+/// Shots recorded sample by sample against those of a model.
+///
+/// A residual is (mean of neighbouring samples − model's)/σ, σ from the noise
+/// before the pulses. Each record's offset, moment of impact and error of the
+/// speed are at their best for every set of parameters.
+#[derive(Clone, Debug)]
+pub struct PulseProblem {
+    model: Model,
+    respond: Respond,
+    records: Vec<Pulses>,
+    /// Which of the speeds that the striker was told each record has.
+    rows: Vec<usize>,
+    speeds_m_s: Vec<f64>,
+    parameters: Vec<Parameter>,
+    /// How long each record's shot is followed, and how densely, in s.
+    grids: Vec<(f64, f64)>,
+}
+
+/// Share of the model's first passing time by which it may become later.
+const LATER: f64 = 0.5;
+
+/// Samples of the model in an incident time of flight, at the least.
+const LEAST_SAMPLES: f64 = 500.0;
+
+/// Relative change of the speed by which its effect is told.
+const ASIDE: f64 = 1e-3;
+
+/// The name of the sensors' sensitivity.
+const GAIN: &str = "sensor_gain";
+
+impl PulseProblem {
+    /// A model against records. Its parameters start where the model has them,
+    /// the sensors' sensitivity where the first record has it.
+    ///
+    /// # Errors
+    /// See [`PulseError`].
+    pub fn new(model: Model, records: Vec<Pulses>, respond: Respond) -> Result<Self, PulseError> {
+        let mut speeds_m_s: Vec<f64> = records.iter().map(|r| r.programmed_m_s).collect();
+        speeds_m_s.sort_by(f64::total_cmp);
+        speeds_m_s.dedup();
+        let row = |record: &Pulses| {
+            let own = speeds_m_s.iter().position(|v| *v == record.programmed_m_s);
+            own.unwrap_or_default()
+        };
+        let mut problem = Self {
+            rows: records.iter().map(row).collect(),
+            parameters: model.numbers().parameters(&speeds_m_s),
+            grids: Vec::new(),
+            model,
+            respond,
+            records,
+            speeds_m_s,
+        };
+        problem.lay_out()?;
+        Ok(problem)
+    }
+
+    /// The same with other starts, bounds and priors of its parameters.
+    ///
+    /// # Errors
+    /// Parameters that are not sound, or none.
+    pub fn with_parameters(mut self, parameters: Vec<Parameter>) -> Result<Self, PulseError> {
+        parameters.iter().try_for_each(Parameter::check)?;
+        if parameters.is_empty() {
+            return Err(PulseError::NothingFree);
+        }
+        self.parameters = parameters;
+        Ok(self)
+    }
+
+    /// The records.
+    #[must_use]
+    pub fn records(&self) -> &[Pulses] {
+        &self.records
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Numbers fitted to single records: offsets, moments and errors of speeds.
+    #[must_use]
+    pub fn nuisance_count(&self) -> usize {
+        self.records.iter().map(Pulses::nuisance_count).sum()
+    }
+
+    /// Times in s after the passing maximum, measured means and the model's, of
+    /// one channel of a record at a point: for a picture.
+    ///
+    /// # Errors
+    /// What is in the way of the shot.
+    pub fn picture(
+        &self,
+        point: &[f64],
+        record: usize,
+        channel: usize,
+    ) -> Result<[Vec<f64>; 3], ModelError> {
+        let of = &self.records[record];
+        let found = self.record_residuals(point, record)?;
+        let count = of.means_v[channel].len();
+        let before: usize = of.means_v[..channel].iter().map(Vec::len).sum();
+        let sigma = of.sigma_v[channel];
+        let mean_s = of.width as f64 * of.interval_s;
+        let time = |at: usize| of.start_s - of.passing_s + (at as f64 + 0.5) * mean_s;
+        let model = |at: usize| of.means_v[channel][at] - sigma * found[before + at];
+        Ok([
+            (0..count).map(time).collect(),
+            of.means_v[channel].clone(),
+            (0..count).map(model).collect(),
+        ])
+    }
+
+    /// Follows each record's first shot to learn how long others need to be.
+    fn lay_out(&mut self) -> Result<(), PulseError> {
+        if self.records.is_empty() {
+            return Err(PulseError::NoRecords);
+        }
+        if self.parameters.is_empty() {
+            return Err(PulseError::NothingFree);
+        }
+        let start: Vec<f64> = self.parameters.iter().map(|p| p.start).collect();
+        for (at, record) in self.records.iter().enumerate() {
+            let [shooting, _] = self.shootings(&start, at)?;
+            let (gain, shot) = (shooting.sensor_gain_v_n, shoot(&shooting.plan));
+            let shot = shot.map_err(|error| named(record, error))?;
+            let passage = shot
+                .passage
+                .as_ref()
+                .map_err(|error| named(record, error))?;
+            let (passing, wall) = (passage.incident, passage.wall);
+            let length_s = (1.0 + LATER) * passing.time_s + record.after_s();
+            let least_s = (wall.time_s - passing.time_s) / LEAST_SAMPLES;
+            self.grids.push((length_s, least_s.min(record.interval_s)));
+            let own = self.parameters.iter_mut().find(|p| p.name == GAIN);
+            if let (0, Some(parameter)) = (at, own) {
+                let start = gain * record.height_v / (gain * passing.value);
+                (parameter.start, parameter.scale) = (start, start);
+            }
+        }
+        Ok(())
+    }
+
+    /// A record's shot at its speed, and a little faster.
+    fn shootings(&self, point: &[f64], record: usize) -> Result<[Shooting; 2], ModelError> {
+        let speed = self.records[record].speed_m_s.value;
+        let row = self.rows[record];
+        let speeds = Speeds {
+            at: vec![(row, speed), (row, speed * (1.0 + ASIDE))],
+            rows: self.speeds_m_s.len(),
+        };
+        let mut found = self.model.plans(point, &speeds)?.into_iter();
+        let none = || ModelError("no shot was planned".into());
+        let (one, other) = (found.next(), found.next());
+        Ok([one.ok_or_else(none)?, other.ok_or_else(none)?])
+    }
+
+    fn record_residuals(&self, point: &[f64], at: usize) -> Result<Vec<f64>, ModelError> {
+        let record = &self.records[at];
+        let [shooting, faster] = self.shootings(point, at)?;
+        let (shot, volts) = self.traced(&shooting, at)?;
+        let (_, moved) = self.traced(&faster, at)?;
+        let passage = shot
+            .passage
+            .as_ref()
+            .map_err(|error| named(record, error))?;
+        let slopes = |(one, other): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
+            let pairs = one.iter().zip(other);
+            pairs.map(|(a, b)| (b - a) / ASIDE.ln_1p()).collect()
+        };
+        let traced = Traced {
+            interval_s: self.grids[at].1,
+            passing_s: passage.incident.time_s,
+            by_ln_speed: volts.iter().zip(&moved).map(slopes).collect(),
+            volts,
+        };
+        Ok(residuals(record, &traced))
+    }
+
+    /// A shot and its channels in V.
+    fn traced(&self, shooting: &Shooting, at: usize) -> Result<(Shot, Vec<Vec<f64>>), ModelError> {
+        let record = &self.records[at];
+        let (length_s, interval_s) = self.grids[at];
+        let wall = Sensor::Contact(shooting.plan.chain.beads.len());
+        let sensors = vec![Sensor::Bead(shooting.plan.sensor_bead), wall];
+        let mut plan = shooting.plan.clone().watching(sensors, Some(interval_s));
+        plan.duration_s = Some(length_s);
+        let shot = shoot(&plan).map_err(|error| named(record, error))?;
+        let columns = shot.trace.as_ref().map_or(&[][..], |trace| &trace.columns);
+        let [bead, wall] = columns else {
+            return Err(named(record, "nothing was sampled"));
+        };
+        let gain = shooting.sensor_gain_v_n;
+        let wall_gain = gain * shooting.wall_gain;
+        let channels: Vec<Vec<f64>> = match record.means_v.len() {
+            1 => {
+                let both = bead.iter().zip(wall);
+                vec![both.map(|(b, w)| gain * b + wall_gain * w).collect()]
+            }
+            _ => vec![
+                bead.iter().map(|b| gain * b).collect(),
+                wall.iter().map(|w| wall_gain * w).collect(),
+            ],
+        };
+        let filtered = channels
+            .iter()
+            .map(|channel| (self.respond.0)(channel, interval_s));
+        let filtered = filtered.collect();
+        Ok((shot, filtered))
+    }
+
+    /// Which record a residual belongs to, and its number there.
+    fn place(&self, index: usize) -> Option<(&Pulses, usize)> {
+        let mut rest = index;
+        for record in &self.records {
+            let count = record.residual_count();
+            if rest < count {
+                return Some((record, rest));
+            }
+            rest -= count;
+        }
+        None
+    }
+}
+
+fn named(record: &Pulses, error: impl fmt::Display) -> ModelError {
+    ModelError(format!("{}: {error}", record.source))
+}
+
+impl Problem for PulseProblem {
+    fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    fn residual_count(&self) -> usize {
+        self.records.iter().map(Pulses::residual_count).sum()
+    }
+
+    fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
+        let records = self.records.len();
+        let all: Vec<Result<Vec<f64>, ModelError>> = (0..points.len() * records)
+            .into_par_iter()
+            .map(|n| self.record_residuals(&points[n / records], n % records))
+            .collect();
+        let mut all = all.into_iter();
+        let point = |_| {
+            let own: Vec<_> = all.by_ref().take(records).collect();
+            let own: Result<Vec<Vec<f64>>, ModelError> = own.into_iter().collect();
+            own.map(|own| Residuals::new(own.concat()))
+        };
+        points.iter().map(point).collect()
+    }
+
+    fn residual_label(&self, index: usize) -> String {
+        let Some((record, at)) = self.place(index) else {
+            return String::new();
+        };
+        let means = record.means_v.first().map_or(1, Vec::len).max(1);
+        if at >= means * record.means_v.len() {
+            return format!("{}, speed", record.source);
+        }
+        let samples = ((at % means) as f64 + 0.5) * record.width as f64;
+        let time_s = record.start_s - record.passing_s + samples * record.interval_s;
+        let which = match (record.means_v.len(), at / means) {
+            (1, _) => "",
+            (_, 0) => " of the bead",
+            _ => " of the wall",
+        };
+        format!(
+            "{}, {:.1} µs after the passing maximum{which}",
+            record.source,
+            1e6 * time_s
+        )
+    }
+}

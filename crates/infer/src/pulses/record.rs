@@ -1,0 +1,177 @@
+//! One shot's samples, ready to be fitted.
+
+use hertzchain_signal::{
+    Channels, Doubt, Estimate, Flight, Measuring, Polarity, SignalError, Upright, measure, upright,
+};
+
+/// Samples are used from so many incident times of flight before the passing
+/// pulse's maximum.
+const BEFORE: f64 = 0.3;
+
+/// And to so many after it: one to the wall, a little more than one back, and
+/// the returning pulse's tail.
+const AFTER: f64 = 2.5;
+
+/// Means of neighbouring samples are taken, so many in an incident time of
+/// flight: thirty in a pulse of the paper's chain.
+const PER_FLIGHT: f64 = 300.0;
+
+/// Quiet samples that tell a channel's offset and noise.
+const QUIET: usize = 32;
+
+/// Why a record can't be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// Nobody tells how fast the striker was.
+    #[error("{0}: nobody tells the striker's speed")]
+    NoSpeed(String),
+    /// Pulses that are not there.
+    #[error("{source_name}: {error}")]
+    NoPulses {
+        /// Which record.
+        source_name: String,
+        /// What is missing.
+        error: SignalError,
+    },
+    /// Pulses that are not whole.
+    #[error("{source_name}: {doubt}")]
+    Doubtful {
+        /// Which record.
+        source_name: String,
+        /// What is wrong.
+        doubt: Doubt,
+    },
+    /// No noise to weigh samples by.
+    #[error(
+        "{0}: fewer than 32 quiet samples before the first pulse, or no noise in them: their scatter is what samples are weighed by"
+    )]
+    NoNoise(String),
+}
+
+/// The samples of one shot around its pulses, as means of neighbours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pulses {
+    /// Which record, as it is told to people.
+    pub source: String,
+    /// Speed of the striker in m/s, as measured.
+    pub speed_m_s: Estimate,
+    /// Speed that the striker was told, in m/s: shots of one such speed share
+    /// values a speed.
+    pub programmed_m_s: f64,
+    /// Time between samples in s.
+    pub interval_s: f64,
+    /// Samples in a mean.
+    pub width: usize,
+    /// Time of the first sample, in s from the record's beginning.
+    pub start_s: f64,
+    /// Means in V, pulses up, the quiet offset taken off; a row a channel: one that sums both
+    /// sensors, or the bead's and the wall's.
+    pub means_v: Vec<Vec<f64>>,
+    /// Standard error of each channel's means in V.
+    pub sigma_v: Vec<f64>,
+    /// When the passing pulse is highest, in s from the record's beginning.
+    pub passing_s: f64,
+    /// Its height in V.
+    pub height_v: f64,
+}
+
+impl Pulses {
+    /// From a record's channels in V.
+    ///
+    /// # Errors
+    /// See [`RecordError`].
+    pub fn of(
+        source: &str,
+        (speed_m_s, programmed_m_s): (Option<Estimate>, Option<f64>),
+        interval_s: f64,
+        volts: &[Vec<f64>],
+    ) -> Result<Self, RecordError> {
+        let speed_m_s = speed_m_s.ok_or_else(|| RecordError::NoSpeed(source.to_owned()))?;
+        let flight = flight(source, interval_s, volts)?;
+        let incident = flight.incident_s.value / interval_s;
+        let passing = flight.picks.passing.time_s / interval_s;
+        let from = (passing - BEFORE * incident).max(0.0) as usize;
+        let to = (passing + AFTER * incident) as usize;
+        let width = ((incident / PER_FLIGHT) as usize).max(1);
+        let no_noise = || RecordError::NoNoise(source.to_owned());
+        let mut pulses = Self {
+            source: source.to_owned(),
+            speed_m_s,
+            programmed_m_s: programmed_m_s.unwrap_or(speed_m_s.value),
+            interval_s,
+            width,
+            start_s: from as f64 * interval_s,
+            means_v: Vec::new(),
+            sigma_v: Vec::new(),
+            passing_s: flight.picks.passing.time_s,
+            height_v: flight.picks.passing.height,
+        };
+        for samples in volts {
+            let up = upright(samples, Polarity::default()).map_err(|_| no_noise())?;
+            let sigma_v = sigma(&up, width).ok_or_else(no_noise)?;
+            let window = samples.get(from..to.min(samples.len())).unwrap_or(&[]);
+            let mean = |chunk: &[f64]| {
+                let sum: f64 = chunk.iter().map(|sample| up.height(*sample)).sum();
+                sum / width as f64
+            };
+            pulses
+                .means_v
+                .push(window.chunks_exact(width).map(mean).collect());
+            pulses.sigma_v.push(sigma_v);
+        }
+        Ok(pulses)
+    }
+
+    /// Time in s from the passing maximum to the last sample.
+    pub(super) fn after_s(&self) -> f64 {
+        let samples = self.means_v.first().map_or(0, Vec::len) * self.width;
+        self.start_s + samples as f64 * self.interval_s - self.passing_s
+    }
+
+    /// Standard error of the logarithm of the speed; 0 if it is exact.
+    pub(super) fn ln_speed_error(&self) -> f64 {
+        self.speed_m_s.sigma / self.speed_m_s.value
+    }
+
+    /// Residuals of its own: one a mean, and one for the speed if that has an error.
+    pub(super) fn residual_count(&self) -> usize {
+        let means: usize = self.means_v.iter().map(Vec::len).sum();
+        means + usize::from(self.ln_speed_error() > 0.0)
+    }
+
+    /// Numbers that are fitted to this record alone.
+    pub(super) fn nuisance_count(&self) -> usize {
+        self.means_v.len() + 1 + usize::from(self.ln_speed_error() > 0.0)
+    }
+}
+
+/// Where the pulses are.
+fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, RecordError> {
+    let channels = match volts {
+        [sensor, wall, ..] => Channels::Separate { sensor, wall },
+        one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
+    };
+    let named = |error| RecordError::NoPulses {
+        source_name: source.to_owned(),
+        error,
+    };
+    let found = measure(channels, interval_s, &Measuring::default()).map_err(named)?;
+    let grave = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_) | Doubt::Order);
+    if let Some(doubt) = found.found.doubts.iter().copied().find(grave) {
+        return Err(RecordError::Doubtful {
+            source_name: source.to_owned(),
+            doubt,
+        });
+    }
+    found.flight.map_err(named)
+}
+
+/// Standard error of a mean of so many samples: their noise, as much correlated as
+/// it is before the pulses, and the digitiser's steps.
+fn sigma(up: &Upright, width: usize) -> Option<f64> {
+    let noise = up.level.noise;
+    let known = up.level.quiet_samples >= QUIET && noise > 0.0 && noise.is_finite();
+    let over = up.level.correlation.clamp(1.0, width as f64) / width as f64;
+    known.then(|| noise * over.sqrt())
+}

@@ -1,0 +1,244 @@
+//! Whole pulses of recordings to parameters.
+
+use super::{Inferred, best, inferred, joined, more};
+use crate::arguments::infer::Fit as Arguments;
+use crate::failure::Failure;
+use crate::inference::{self, user};
+use crate::measure::{files, list};
+use crate::table::cell;
+use hertzchain_experiment::{Amplifier as Numbers, Experiment};
+use hertzchain_infer::{
+    Covariance, Goodness, Identifiability, Model, Problem, PulseProblem, Pulses, Respond,
+};
+use hertzchain_measure::ShotList;
+use hertzchain_measure::records::{ReadOptions, Record, read};
+use hertzchain_rig::Amplifier;
+use hertzchain_signal::Estimate;
+use serde_json::{Value, json};
+
+/// A fit of recordings.
+pub struct Pulsed {
+    /// What was fitted.
+    pub problem: PulseProblem,
+    /// What came of it.
+    pub inferred: Inferred,
+    /// What was left out, and why.
+    pub refused: Vec<String>,
+}
+
+/// The model of recordings, and those of them that can be fitted.
+pub struct Recorded {
+    model: Model,
+    records: Vec<Pulses>,
+    refused: Vec<String>,
+    respond: Respond,
+}
+
+/// Reads recordings, and the model they are to be held against.
+///
+/// # Errors
+/// Mistakes in the model or in what is free; files that are not there.
+pub fn recorded(arguments: &Arguments) -> Result<Recorded, Failure> {
+    let case = arguments.measured.case.as_deref();
+    let experiment = inference::experiment(&arguments.modelled, case)?;
+    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    let (records, refused) = records(&experiment, arguments)?;
+    Ok(Recorded {
+        model,
+        records: spread(records, arguments.recorded.most_shots),
+        refused,
+        respond: respond(&experiment.campaign().amplifier),
+    })
+}
+
+/// Refused records that are told one by one.
+pub const TOLD: usize = 5;
+
+/// An error, and what was refused before it.
+fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {
+    let lines: Vec<String> = refused
+        .iter()
+        .take(TOLD)
+        .map(|r| format!("\n  {r}"))
+        .collect();
+    Failure::User(format!("{error}{}", lines.concat()))
+}
+
+/// Every record that can be fitted, and why others can't.
+fn records(
+    experiment: &Experiment,
+    arguments: &Arguments,
+) -> Result<(Vec<Pulses>, Vec<String>), Failure> {
+    let recorded = &arguments.recorded;
+    let told = recorded.shots.as_deref().map(list).transpose()?;
+    let reading = ReadOptions {
+        rate_hz: recorded.rate,
+        channels: recorded.channel.clone(),
+        ..ReadOptions::default()
+    };
+    let (mut good, mut refused) = (Vec::new(), Vec::new());
+    for file in files(&arguments.data, recorded.shots.as_deref())? {
+        for record in read(&file, &reading) {
+            let record = match record {
+                Ok(record) => record,
+                Err(error) => {
+                    refused.push(error.to_string());
+                    continue;
+                }
+            };
+            let asked = arguments.measured.case.as_ref();
+            if asked.is_some_and(|case| record.case.as_ref().is_some_and(|own| own != case)) {
+                continue;
+            }
+            let speed = speed(&record, told.as_ref(), experiment, arguments);
+            let volts: Vec<Vec<f64>> = record.channels.iter().map(|c| c.samples.volts()).collect();
+            let speeds = (speed, record.programmed_speed_m_s);
+            match Pulses::of(&record.source, speeds, record.interval_s, &volts) {
+                Ok(pulses) => good.push(pulses),
+                Err(error) => refused.push(error.to_string()),
+            }
+        }
+    }
+    Ok((good, refused))
+}
+
+/// The speed of a record's striker: as the table of shots says, or the record;
+/// its error as either says, or the command line, or the model's photogate.
+fn speed(
+    record: &Record,
+    told: Option<&ShotList>,
+    experiment: &Experiment,
+    arguments: &Arguments,
+) -> Option<Estimate> {
+    let listed = told.and_then(|list| list.speed(&record.file, record.shot));
+    let (value, error) = listed.or(Some((record.speed_m_s?, record.speed_error_m_s)))?;
+    let usual = experiment.campaign().photogate.error_m_s;
+    Some(Estimate {
+        value,
+        sigma: error.or(arguments.measured.speed_error).unwrap_or(usual),
+    })
+}
+
+/// At most so many, spread evenly.
+fn spread(records: Vec<Pulses>, most: usize) -> Vec<Pulses> {
+    let count = records.len();
+    let kept = |at: &usize| at * most / count.max(1) != (at + 1) * most / count.max(1);
+    let all = records.into_iter().enumerate();
+    all.filter(|(at, _)| count <= most || kept(at))
+        .map(|(_, r)| r)
+        .collect()
+}
+
+/// The amplifier's filters.
+fn respond(numbers: &Numbers) -> Respond {
+    let plain = Numbers {
+        sensitivity_c_n: 1.0,
+        wall_sensitivity_c_n: 1.0,
+        gain_v_c: 1.0,
+        ..*numbers
+    };
+    Respond::new(move |signal, interval_s| {
+        let mut amplifier = Amplifier::new(&plain, interval_s);
+        signal
+            .iter()
+            .map(|force| amplifier.next(*force, 0.0))
+            .collect()
+    })
+}
+
+/// Fits whole pulses and tells the uncertainty as the method asks.
+///
+/// # Errors
+/// What is in the way of a fit; where no record is left, why.
+pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
+    let refused = recorded.refused;
+    let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
+    let problem = problem.map_err(|error| none_left(&error, &refused))?;
+    let problem = inference::pulses(problem, &arguments.freed)?;
+    let fit = best(&problem, arguments)?;
+    let parameters = problem.parameters();
+    let covariance = Covariance::new(parameters, &fit);
+    let label = |at: usize| problem.residual_label(at);
+    let found = Inferred {
+        parameters: parameters.to_vec(),
+        identifiability: Identifiability::new(parameters, &fit, label),
+        goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
+        more: more::more_of(&problem, (&fit, &covariance), None, arguments)?,
+        covariance,
+        fit,
+    };
+    Ok(Pulsed {
+        problem,
+        inferred: found,
+        refused,
+    })
+}
+
+/// Everything, to be read by programs and to be repeated.
+#[must_use]
+pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
+    let records = fitted.problem.records().iter();
+    let own = json!({
+        "model": fitted.problem.model().experiment().name(),
+        "residuals": fitted.problem.residual_count(),
+        "fitted_to_single_records": fitted.problem.nuisance_count(),
+        "records": records.map(|record| json!({
+            "source": record.source,
+            "speed_m_s": record.speed_m_s.value,
+            "speed_error_m_s": record.speed_m_s.sigma,
+            "samples_in_a_mean": record.width,
+            "error_of_means_v": record.sigma_v,
+        })).collect::<Value>(),
+        "left_out": fitted.refused,
+    });
+    joined(own, inferred(&fitted.inferred, arguments))
+}
+
+/// A record's channel as it was measured and as the fit has it.
+pub struct Shown<'a> {
+    /// The record.
+    pub record: &'a Pulses,
+    /// The channel's number from 0.
+    pub channel: usize,
+    /// Times in s, measured and fitted voltages.
+    pub columns: [Vec<f64>; 3],
+}
+
+/// All records at the best fit.
+///
+/// # Errors
+/// What is in the way of a shot.
+pub fn shown(fitted: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
+    let records = fitted.problem.records().iter().enumerate();
+    let all = records.flat_map(|(at, record)| {
+        (0..record.means_v.len()).map(move |channel| {
+            let point = &fitted.inferred.fit.point;
+            let columns = fitted.problem.picture(point, at, channel).map_err(user)?;
+            Ok(Shown {
+                record,
+                channel,
+                columns,
+            })
+        })
+    });
+    all.collect()
+}
+
+/// One line a mean of samples.
+#[must_use]
+pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
+    let mut text = "source,channel,time_s,measured_V,error_V,fitted_V\n".to_owned();
+    for Shown {
+        record,
+        channel,
+        columns: [times, measured, model],
+    } in shown
+    {
+        let source = record.source.replace('"', "\"\"");
+        for (at, time) in times.iter().enumerate() {
+            let cells = [*time, measured[at], record.sigma_v[*channel], model[at]].map(cell);
+            text += &format!("\"{source}\",{},{}\n", channel + 1, cells.join(","));
+        }
+    }
+    text
+}
