@@ -50,7 +50,7 @@ pub fn merge(plan: &Plan, folders: &[&Path], out: &Path) -> Result<Merged, RigEr
     let (mut copied, mut bytes) = (0, 0);
     for (series, file) in &found {
         let place = whole.file(series);
-        match only(&[whole.clone()], series)? {
+        match only(std::slice::from_ref(&whole), series)? {
             Some(there) => same(&there, file)?,
             None => {
                 copy(file, &place).map_err(|error| RigError::folder(&place, error))?;

@@ -113,7 +113,9 @@ fn part(mut header: Header, table: Table) -> Result<Part, &'static str> {
     };
     for (name, values) in table.columns {
         let at = COLUMNS.iter().position(|column| *column == name);
-        at.map(|at| rows.columns[at] = values);
+        if let Some(at) = at {
+            rows.columns[at] = values;
+        }
     }
     let count = shard.places(header.shots).count();
     if rows.columns.iter().any(|column| column.len() != count) {

@@ -172,7 +172,6 @@ impl Rows {
 
     /// The power law of a time of flight, and what accuracies leave open of it:
     /// those reached, where known, else the one asked.
-    #[must_use]
     pub fn law(&self, of: Column, asked: f64) -> Law {
         let times = self.column(of).iter();
         let rows = times

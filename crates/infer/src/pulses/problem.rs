@@ -15,7 +15,10 @@ use std::sync::Arc;
 /// in the middle of its band: samples of a signal and their interval in s to
 /// samples of the filtered one.
 #[derive(Clone)]
-pub struct Respond(Arc<dyn Fn(&[f64], f64) -> Vec<f64> + Send + Sync>);
+pub struct Respond(Arc<Filter>);
+
+/// Samples and their interval in s to samples.
+type Filter = dyn Fn(&[f64], f64) -> Vec<f64> + Send + Sync;
 
 impl Respond {
     /// From a function.
