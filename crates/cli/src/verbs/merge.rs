@@ -38,7 +38,7 @@ fn sweep(folders: &[&Path], out: &Path) -> Result<(), Failure> {
     let part = hertzchain_shards::gather(folders).map_err(shard::failure)?;
     let folder = Folder::open(out)?;
     shard::told(&part);
-    print(&told::all(&part))?;
+    told::show(&part)?;
     told::write(folder, &part)?;
     judge(&part)
 }

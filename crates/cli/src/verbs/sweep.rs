@@ -139,7 +139,7 @@ fn show(
         let why = no_flight(swept, plan, experiment.units());
         return print::print(&(told::rows(part) + &why));
     }
-    print::print(&told::all(part))
+    told::show(part)
 }
 
 /// Why no speed has a time of flight.

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::format::{self, Style};
 use crate::pictures;
-use crate::print::heading;
+use crate::print::{heading, print};
 use hertzchain_experiment::Units;
 use hertzchain_study::{COLUMNS, Column, Part, Rows};
 use hertzchain_verbs::table::{self, cell};
@@ -28,17 +28,17 @@ pub fn nothing(part: &Part) -> bool {
     part.rows.failed.len() == part.rows.len()
 }
 
-/// The table with its power laws; nothing where no speed has a shot, which is
-/// told instead.
-pub fn all(part: &Part) -> String {
+/// Prints the table with its power laws; nothing where no speed has a shot,
+/// which is told instead.
+pub fn show(part: &Part) -> Result<(), Failure> {
     if nothing(part) {
-        return String::new();
+        return Ok(());
     }
     let mut text = rows(part) + &fits::lines(part);
     if let Some(tuned) = &part.tuned {
         text += &format!("Times of flight: {tuned}\n");
     }
-    text
+    print(&text)
 }
 
 /// The table under its heading.
