@@ -4,7 +4,7 @@ use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
 use crate::crushed;
-use crate::document::{self, Node, Value};
+use crate::document::{self, Entry, Node, Value};
 use crate::effort;
 use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
@@ -343,9 +343,31 @@ impl Experiment {
         }
         let chosen = Self {
             written,
+            tree: self.tree_of_case(name),
             ..self.clone()
         };
         Some(chosen.with_reading(&self.spec.reading))
+    }
+
+    /// The file with the contacts and the liquid of a case in the places of its
+    /// own, so that paths lead to them and setting a number keeps them.
+    fn tree_of_case(&self, name: &str) -> Node {
+        let mut tree = self.tree.clone();
+        let cases = self
+            .tree
+            .get("campaign")
+            .and_then(|table| table.get("cases"));
+        let is_named = |case: &&Node| {
+            let own = case.get("name").map(|node| &node.value);
+            matches!(own, Some(Value::Text(own)) if own == name)
+        };
+        let case = cases.and_then(|cases| cases.members().iter().find(is_named));
+        for key in ["contacts", "liquid"] {
+            if let Some(node) = case.and_then(|case| case.get(key)) {
+                put(&mut tree, key, node);
+            }
+        }
+        tree
     }
 
     /// Coefficient of dry friction between beads and track, which acts
@@ -366,6 +388,21 @@ impl Experiment {
     #[must_use]
     pub fn sections(&self) -> &[SectionSpec] {
         &self.spec.sections
+    }
+}
+
+/// Puts a value in the place of a table's entry, or behind all others.
+fn put(table: &mut Node, key: &str, node: &Node) {
+    let Value::Table(entries) = &mut table.value else {
+        return;
+    };
+    match entries.iter_mut().find(|entry| entry.key == key) {
+        Some(entry) => entry.node = node.clone(),
+        None => entries.push(Entry {
+            key: key.to_owned(),
+            key_span: node.span.clone(),
+            node: node.clone(),
+        }),
     }
 }
 
