@@ -284,3 +284,55 @@ fn a_bound_that_binds_is_no_error_bar() {
     let text = String::from_utf8(run(&with_errors(&fit)).stdout).unwrap();
     assert!(text.contains("80 kg s/m^2, at its bound"), "{text}");
 }
+
+/// The small rig, its chains laid compact and pushed by nothing, so that they are
+/// the model's.
+fn compact() -> String {
+    let small = include_str!("../../rig/tests/small.toml");
+    let changes = [
+        ("force = \"0.24 N\"", "force = \"0 N\""),
+        ("stiffness = \"100 N/m\"", "stiffness = \"0 N/m\""),
+        ("incline = \"0.2 deg\"", "incline = \"0 deg\""),
+        ("taps = 2", "taps = 0"),
+        ("shots = 3", "shots = 1"),
+        ("gap_scatter = \"5 um\"", "gap_scatter = \"0 um\""),
+    ];
+    changes.iter().fold(small.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+#[test]
+fn whole_pulses_of_a_campaign_give_back_what_its_rig_was_made_of() {
+    let folder = folder("pulses");
+    let rig = file(&folder, "rig.toml", &compact());
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (records, out) = (path("records"), path("out"));
+    assert!(run(&["campaign", &rig, "--out", &records]).status.success());
+    let free = "eta,sensor_gain";
+    let fit = [
+        "fit", &records, "-m", &rig, "--case", "dry", "--free", free, "--start", "eta=2e4",
+        "--json", "-o", &out,
+    ];
+    let found = json(&fit);
+    assert_eq!(found["records"].as_array().unwrap().len(), 3);
+    // 10 pC/N at 1 mV/pC.
+    for (at, exact) in [3.2e4, 0.01].into_iter().enumerate() {
+        let parameter = &found["parameters"][at];
+        let value = parameter["value"].as_f64().unwrap();
+        let sd = parameter["standard_error"].as_f64().unwrap();
+        // Of a thousand seeds three would fail.
+        assert!((value - exact).abs() < 3.0 * sd, "{parameter}");
+        assert!(sd < 0.02 * exact, "{parameter}");
+    }
+    for name in ["pulses.csv", "pulses.png", "fit.json", "parameters.csv"] {
+        assert!(Path::new(&out).join(name).exists(), "{name}");
+    }
+    // What is left out says why.
+    let silent: String = (0..3000).map(|n| format!("{}e-6,0\n", n)).collect();
+    let silent = file(&folder, "silent.csv", &format!("time_s,volts\n{silent}"));
+    let message = refused(&["fit", &silent, "-m", &rig, "--case", "dry", "--free", "eta"]);
+    assert!(message.contains("no record is left"), "{message}");
+    assert!(message.contains("striker's speed"), "{message}");
+}

@@ -4,7 +4,7 @@ use crate::apply::apply;
 use crate::assemble;
 use crate::check::Check;
 use crate::crushed;
-use crate::document::{self, Node, Value};
+use crate::document::{self, Entry, Node, Value};
 use crate::effort;
 use crate::file;
 use crate::finding::{Mistakes, Problem, Source, Warning};
@@ -32,8 +32,6 @@ pub struct Experiment {
     written: Spec,
     /// What holds in the reading.
     spec: Spec,
-    /// The case whose contacts and liquid were chosen.
-    case: Option<String>,
 }
 
 /// Why an experiment file can't be used.
@@ -106,7 +104,6 @@ impl Experiment {
         let reading = *reading.unwrap_or(&written.reading);
         let experiment = Self {
             spec: written.clone(),
-            case: None,
             source,
             folder,
             tree,
@@ -193,17 +190,15 @@ impl Experiment {
         Mistakes::one(problem, &self.source)
     }
 
-    /// The experiment of a changed tree, in the present reading and case.
+    /// The experiment of a changed tree, in the present reading.
     pub(crate) fn with_tree(&self, tree: Node) -> Result<Self, Mistakes> {
         let reading = self.spec.reading;
-        let changed = Self::from_tree(
+        Self::from_tree(
             self.source.clone(),
             self.folder.clone(),
             tree,
             Some(&reading),
-        )?;
-        let case = self.case.as_ref().and_then(|name| changed.case(name));
-        case.unwrap_or(Ok(changed))
+        )
     }
 
     pub(crate) fn tree(&self) -> &Node {
@@ -348,10 +343,31 @@ impl Experiment {
         }
         let chosen = Self {
             written,
-            case: Some(name.to_owned()),
+            tree: self.tree_of_case(name),
             ..self.clone()
         };
         Some(chosen.with_reading(&self.spec.reading))
+    }
+
+    /// The file with the contacts and the liquid of a case in the places of its
+    /// own, so that paths lead to them and setting a number keeps them.
+    fn tree_of_case(&self, name: &str) -> Node {
+        let mut tree = self.tree.clone();
+        let cases = self
+            .tree
+            .get("campaign")
+            .and_then(|table| table.get("cases"));
+        let is_named = |case: &&Node| {
+            let own = case.get("name").map(|node| &node.value);
+            matches!(own, Some(Value::Text(own)) if own == name)
+        };
+        let case = cases.and_then(|cases| cases.members().iter().find(is_named));
+        for key in ["contacts", "liquid"] {
+            if let Some(node) = case.and_then(|case| case.get(key)) {
+                put(&mut tree, key, node);
+            }
+        }
+        tree
     }
 
     /// Coefficient of dry friction between beads and track, which acts
@@ -372,6 +388,21 @@ impl Experiment {
     #[must_use]
     pub fn sections(&self) -> &[SectionSpec] {
         &self.spec.sections
+    }
+}
+
+/// Puts a value in the place of a table's entry, or behind all others.
+fn put(table: &mut Node, key: &str, node: &Node) {
+    let Value::Table(entries) = &mut table.value else {
+        return;
+    };
+    match entries.iter_mut().find(|entry| entry.key == key) {
+        Some(entry) => entry.node = node.clone(),
+        None => entries.push(Entry {
+            key: key.to_owned(),
+            key_span: node.span.clone(),
+            node: node.clone(),
+        }),
     }
 }
 

@@ -144,3 +144,18 @@ fn the_schema_knows_the_campaign() {
     assert!(campaign["cases"]["items"]["properties"]["contacts"].is_object());
     assert!(campaign["amplifier"]["properties"]["gain"].is_object());
 }
+
+#[test]
+fn a_case_stays_itself_when_its_numbers_are_set() {
+    let pump = preset("paper").unwrap().case("pump").unwrap().unwrap();
+    let softer = pump.set(&[("pump-oil.young_modulus", 200e9)]).unwrap();
+    let wet = |found: &Experiment| -> Vec<bool> {
+        found.sections().iter().map(|section| section.wet).collect()
+    };
+    assert_eq!(wet(&softer), wet(&pump));
+    assert_eq!(wet(&softer), [false, true]);
+    let stiffness = "contacts[1].laws.elastic_hertz.stiffness";
+    let known = pump.set(&[(stiffness, 9e9)]).unwrap();
+    assert_eq!(known.get(stiffness).unwrap(), 9e9);
+    assert_eq!(wet(&known), wet(&pump));
+}
