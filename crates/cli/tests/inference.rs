@@ -67,7 +67,17 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
     let out = folder.join("out");
     let out = out.to_str().unwrap();
     let fit = [
-        "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "eta=2e4", "--json", "-o", out,
+        "fit",
+        &data,
+        "-p",
+        "dry",
+        "--free",
+        "eta,B",
+        "--start",
+        "steel.eta=2e4",
+        "--json",
+        "-o",
+        out,
     ];
     let found = json(&with_errors(&fit));
     for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
@@ -310,10 +320,21 @@ fn whole_pulses_of_a_campaign_give_back_what_its_rig_was_made_of() {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let (records, out) = (path("records"), path("out"));
     assert!(run(&["campaign", &rig, "--out", &records]).status.success());
-    let free = "eta,sensor_gain";
+    let free = "steel.eta,sensor_gain";
     let fit = [
-        "fit", &records, "-m", &rig, "--case", "dry", "--free", free, "--start", "eta=2e4",
-        "--json", "-o", &out,
+        "fit",
+        &records,
+        "-m",
+        &rig,
+        "--case",
+        "dry",
+        "--free",
+        free,
+        "--start",
+        "steel.eta=2e4",
+        "--json",
+        "-o",
+        &out,
     ];
     let found = json(&fit);
     assert_eq!(found["records"].as_array().unwrap().len(), 3);
@@ -332,7 +353,16 @@ fn whole_pulses_of_a_campaign_give_back_what_its_rig_was_made_of() {
     // What is left out says why.
     let silent: String = (0..3000).map(|n| format!("{}e-6,0\n", n)).collect();
     let silent = file(&folder, "silent.csv", &format!("time_s,volts\n{silent}"));
-    let message = refused(&["fit", &silent, "-m", &rig, "--case", "dry", "--free", "eta"]);
+    let message = refused(&[
+        "fit",
+        &silent,
+        "-m",
+        &rig,
+        "--case",
+        "dry",
+        "--free",
+        "steel.eta",
+    ]);
     assert!(message.contains("no record is left"), "{message}");
-    assert!(message.contains("striker's speed"), "{message}");
+    assert!(message.contains("was the sensor connected"), "{message}");
 }
