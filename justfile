@@ -17,6 +17,10 @@ lint:
 ci:
     .ci/run
 
+# What README.md says of Python, in a fresh virtual environment, and the package's tests
+test-python:
+    .ci/python
+
 # Everything in the paper, into reproduction/
 reproduce *options:
     cargo run --release -- reproduce {{options}}
