@@ -41,7 +41,12 @@ pub fn programmed(actuator: &Actuator, asked_m_s: f64) -> Result<f64, OutOfRange
 #[must_use]
 pub fn fired_m_s(actuator: &Actuator, programmed_m_s: f64, chance: &mut Chance) -> f64 {
     let speed = programmed_m_s + actuator.spread_m_s * chance.normal();
-    speed.max(SLOWEST_SHARE * actuator.least_speed_m_s)
+    let slowest_m_s = SLOWEST_SHARE * actuator.least_speed_m_s;
+    // Not `max`, which would make a speed of what is not a number.
+    match speed < slowest_m_s {
+        true => slowest_m_s,
+        false => speed,
+    }
 }
 
 /// How far from its place the striker was put before a shot, in m.
