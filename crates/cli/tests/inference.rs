@@ -67,17 +67,7 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
     let out = folder.join("out");
     let out = out.to_str().unwrap();
     let fit = [
-        "fit",
-        &data,
-        "-p",
-        "dry",
-        "--free",
-        "eta,B",
-        "--start",
-        "steel.eta=2e4",
-        "--json",
-        "-o",
-        out,
+        "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "eta=2e4", "--json", "-o", out,
     ];
     let found = json(&with_errors(&fit));
     for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
