@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import hertzchain as hc
-from hertzchain.inferring import _csv
+from hertzchain._posing import csv
 
 ERROR_S = 3e-7
 
@@ -28,7 +28,7 @@ def dry_data() -> dict[str, np.ndarray]:
 @pytest.fixture
 def table(tmp_path, dry_data):
     path = tmp_path / "speeds.csv"
-    path.write_text(_csv(dry_data))
+    path.write_text(csv(dry_data))
     return path
 
 
@@ -83,7 +83,7 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     assert (found.ranked, found.series) == (told["ranked"], told["series"])
     assert len(found.to_pandas()) == len(found.ranked) and "measure next" in repr(found)
     wet = noisy("motor", 2, 2)
-    (tmp_path / "wet.csv").write_text(_csv(wet))
+    (tmp_path / "wet.csv").write_text(csv(wet))
     told = cli("gauge", tmp_path / "wet.csv", "--dry", table, "--preset", "motor")
     gauged = hc.gauge(wet, dry_data, model="motor")
     assert gauged.details == told and gauged.verdict in repr(gauged)

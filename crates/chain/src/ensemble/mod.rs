@@ -27,5 +27,5 @@ mod touch;
 mod weights;
 mod window;
 
-pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire};
+pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while};
 pub use passing::End;

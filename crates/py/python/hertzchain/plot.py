@@ -408,7 +408,7 @@ def _marginal(ax: Axes, fitted: Fitted, at: int, bins: int) -> None:
     grid = np.linspace(low, high, 200)
     normal = np.exp(-0.5 * ((grid - best) / spread) ** 2) / (spread * np.sqrt(2 * np.pi))
     if fitted.samples is not None:
-        ax.hist(fitted.samples[:, at], bins, (low, high), density=True, color="C0", alpha=0.35)
+        ax.hist(fitted.samples[:, at], bins, range=(low, high), density=True, color="C0", alpha=0.35)
     ax.plot(grid, normal, color="C1", linewidth=0.8)
     ax.axvline(best, color="0.3", linewidth=0.6)
     ax.set(xlim=(low, high), yticks=[])

@@ -70,6 +70,32 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
     let fit = best(&problem, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
+    let more = more::more(&problem, &fit, &covariance, arguments)?;
+    told(problem, (fit, covariance, more), arguments)
+}
+
+/// The same where `computed` has the problem's residuals from elsewhere, such as
+/// [`Spread`](hertzchain_infer::Spread): every curve of a posterior is computed, as
+/// with `--direct`.
+///
+/// # Errors
+/// As [`fitted`].
+pub fn fitted_elsewhere(
+    problem: CurveProblem,
+    computed: &dyn Problem,
+    arguments: &Arguments,
+) -> Result<Fitted, Failure> {
+    let fit = best(computed, arguments)?;
+    let covariance = Covariance::new(computed.parameters(), &fit);
+    let more = more::more_of(computed, (&fit, &covariance), None, arguments)?;
+    told(problem, (fit, covariance, more), arguments)
+}
+
+fn told(
+    problem: CurveProblem,
+    (fit, covariance, more): (Fit, Covariance, More),
+    arguments: &Arguments,
+) -> Result<Fitted, Failure> {
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
@@ -81,7 +107,7 @@ pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Fa
             parameters: problem.parameters().to_vec(),
             identifiability: Identifiability::new(problem.parameters(), &fit, label),
             goodness: Goodness::new(problem.parameters(), &fit),
-            more: more::more(&problem, &fit, &covariance, arguments)?,
+            more,
             covariance,
             fit,
         },
