@@ -35,7 +35,14 @@ pub fn setting(case: Case, accuracy: f64) -> String {
 type Setting = (Precision, f64, bool);
 
 /// Settings to choose from, the cheapest first.
-const SETTINGS: [Setting; 36] = [
+const SETTINGS: [Setting; 43] = [
+    (Precision::Single, 0.3, false),
+    (Precision::Single, 0.29, false),
+    (Precision::Single, 0.28, false),
+    (Precision::Single, 0.27, false),
+    (Precision::Single, 0.26, false),
+    (Precision::Single, 0.25, false),
+    (Precision::Single, 0.235, false),
     (Precision::Single, 0.22, false),
     (Precision::Single, 0.215, false),
     (Precision::Single, 0.21, false),
