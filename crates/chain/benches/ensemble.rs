@@ -46,7 +46,8 @@ fn settings(set: &str, beads: usize) -> Settings {
     }
 }
 
-/// As many shots of the paper's row as run side by side.
+/// As many shots of the paper's row as run side by side. An item is a body
+/// that is looked at in a step.
 fn block(bencher: Bencher<'_, '_>, precision: Precision, set: &str, name: &str) {
     let system = System::new(&row(40, 0.5, laws(name))).unwrap();
     let shot = Shot {
@@ -56,9 +57,9 @@ fn block(bencher: Bencher<'_, '_>, precision: Precision, set: &str, name: &str) 
         precision,
     };
     let settings = settings(set, 40);
-    let steps = fire(&[shot], &settings)[0].as_ref().unwrap().work.steps;
     let shots = vec![shot; precision.lanes()];
-    let items = ItemsCount::new(steps as usize * 42 * shots.len());
+    let looked_at = fire(&shots, &settings)[0].as_ref().unwrap().bodies_looked_at;
+    let items = ItemsCount::new(looked_at as usize * shots.len());
     bencher
         .counter(items)
         .bench(|| black_box(fire(&shots, &settings)));
