@@ -57,8 +57,8 @@ pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,
 };
 pub use reduce::{
-    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups, ratios_at_common,
-    summary,
+    ChiSquare, Coverage, Point, Ratio, Summary, alone, chi_square, coverage, groups,
+    ratios_at_common, shared, summary,
 };
 pub use saturation::Rails;
 pub use zero_phase::LowPass;
