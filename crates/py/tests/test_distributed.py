@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, pickled
 from dask.distributed import Client, LocalCluster
 from test_inference import noisy
 
@@ -58,6 +58,7 @@ def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path
     assert (there.shards, there.kept, there.poisoned) == (17, 0, {})
     again = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "there", client=client, shards=17)
     assert again.kept == 17 and "17 of them kept" in repr(again)
+    assert pickled(again) and not again.load().errors
 
 
 def test_shards_have_the_bytes_of_the_command_line(cli_shards, dry, client, tmp_path):
