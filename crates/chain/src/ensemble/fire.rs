@@ -1,5 +1,6 @@
 //! Firing shots: blocks of lanes, each lane to its own end.
 
+use super::behind::Behind;
 use super::block::Block;
 use super::number::Number;
 use super::passing::{End, Passing};
@@ -117,7 +118,8 @@ pub struct Flown {
     pub time_s: f64,
     /// Whether the shot came to its own end before its longest duration.
     pub finished: bool,
-    /// Velocities of all bodies at the end in m/s.
+    /// Velocities of all bodies at the end in m/s; of bodies that a returning
+    /// pulse has left behind ([`End::Passed`]) at that time.
     pub velocity_m_s: Vec<f64>,
     /// Step in s.
     pub step_s: f64,
@@ -316,6 +318,8 @@ fn fly<N: Number<W>, const W: usize>(
     (settings, wanted): (&Settings, &dyn Fn() -> bool),
     systems: &[&System],
 ) {
+    let leaves = settings.end == End::Passed && systems.iter().all(|s| s.flies_free());
+    let mut behind = Behind::new(systems.len(), systems[0].contacts(), &settings.sensors);
     while lanes.iter().any(|lane| lane.state == State::Flying) {
         if !wanted() {
             lanes
@@ -345,6 +349,9 @@ fn fly<N: Number<W>, const W: usize>(
             }
         }
         recorder.looked();
+        if leaves {
+            block.leave_behind(&mut behind);
+        }
         block.look(LOOK_EVERY);
     }
 }

@@ -10,6 +10,7 @@
 //! Its accuracy is a property of the step: see `docs/numerics.md`.
 
 mod aligned;
+mod behind;
 mod block;
 mod bodies;
 mod changes;
