@@ -35,16 +35,27 @@ pub fn setting(case: Case, accuracy: f64) -> String {
 type Setting = (Precision, f64, bool);
 
 /// Settings to choose from, the cheapest first.
-const SETTINGS: [Setting; 25] = [
+const SETTINGS: [Setting; 36] = [
+    (Precision::Single, 0.22, false),
+    (Precision::Single, 0.215, false),
     (Precision::Single, 0.21, false),
+    (Precision::Single, 0.205, false),
     (Precision::Single, 0.2, false),
+    (Precision::Single, 0.195, false),
     (Precision::Single, 0.19, false),
+    (Precision::Single, 0.185, false),
     (Precision::Single, 0.18, false),
+    (Precision::Single, 0.175, false),
     (Precision::Single, 0.17, false),
+    (Precision::Single, 0.165, false),
     (Precision::Single, 0.16, false),
+    (Precision::Single, 0.155, false),
     (Precision::Single, 0.15, false),
+    (Precision::Single, 0.145, false),
     (Precision::Single, 0.14, false),
+    (Precision::Single, 0.135, false),
     (Precision::Single, 0.13, false),
+    (Precision::Single, 0.125, false),
     (Precision::Single, 0.12, false),
     (Precision::Single, 0.11, false),
     (Precision::Single, 0.1, false),

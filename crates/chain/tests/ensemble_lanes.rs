@@ -7,9 +7,12 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{
+    End, EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while,
+};
 use hertzchain_chain::laws::{DampingLinear, DampingPower, ElasticPlasticThornton, Law, law};
 use hertzchain_chain::*;
+use std::cell::Cell;
 use std::sync::Arc;
 
 const DURATION_S: f64 = 2e-3;
@@ -234,6 +237,29 @@ fn lanes_with_their_own_steps_and_durations_give_the_bits_of_each_shot_alone() {
         for (shot, flown) in shots.iter().zip(fire(&shots, &settings)) {
             let alone = fire(std::slice::from_ref(shot), &settings).remove(0);
             same(&flown.unwrap(), &alone.unwrap(), || format!("{end:?}"));
+        }
+    }
+}
+
+#[test]
+fn shots_that_nobody_wants_any_more_are_broken_off_within_few_steps() {
+    let systems = rows(3, |v| row(12, v, dry()));
+    let settings = settings(12);
+    for precision in PRECISIONS {
+        let shot = |system| Shot {
+            system,
+            step: 0.1,
+            duration_s: DURATION_S,
+            precision,
+        };
+        let shots: Vec<Shot<'_>> = systems.iter().map(shot).collect();
+        for most in [0, 1, 5] {
+            let asked = Cell::new(0);
+            let wanted = || asked.replace(asked.get() + 1) < most;
+            for flown in fire_while(&shots, &settings, &wanted) {
+                assert_eq!(flown.unwrap_err(), EnsembleError::BrokenOff);
+            }
+            assert_eq!(asked.get(), most + 1);
         }
     }
 }

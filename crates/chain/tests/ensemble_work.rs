@@ -128,6 +128,30 @@ fn without_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
     }
 }
 
+#[test]
+fn bodies_behind_a_returning_pulse_cost_nothing_once_only_that_pulse_is_wanted() {
+    for (precision, lanes) in every_number_of_lanes() {
+        let systems: Vec<System> = (0..lanes)
+            .map(|lane| System::new(&row(100, 0.3 + 0.01 * lane as f64, dry())).unwrap())
+            .collect();
+        let [behind, all] = [false, true].map(|whole_chain| {
+            let settings = Settings {
+                whole_chain,
+                ..settings(100)
+            };
+            let flown = fire_all_in(precision, &systems, (0.1, 1e-2), &settings);
+            flown.into_iter().map(Result::unwrap).collect::<Vec<_>>()
+        });
+        for (behind, all) in behind.iter().zip(&all) {
+            if let Some(difference) = difference(behind, all) {
+                panic!("{precision:?}, {lanes} lanes: {difference}");
+            }
+            // What is ahead on the way in and behind on the way back, half in all but for whole chunks and what the pulse spans.
+            assert!(behind.bodies_looked_at * 4 < all.bodies_looked_at * 3);
+        }
+    }
+}
+
 /// Laws that run one by one, over contacts no two of which are alike.
 #[test]
 fn each_contact_keeps_its_own_coefficients_when_others_sleep() {

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// A table by name and text.
-type Table = (String, String);
+pub type Table = (String, String);
 
 fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Result<Data, Failure> {
     data(
@@ -38,28 +38,55 @@ pub fn fit<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Fit = parsed("fit", &options).map_err(Failed::from)?;
     let threads = arguments.modelled.threads.unwrap_or(0);
-    let (found, curve, samples) = Job::pooled(None, threads).run(py, |_| {
-        let data = read(&table, &arguments.measured, None)?;
-        let inner = in_case(experiment.inner.clone(), &data.case)?;
-        let inner = changed(inner, &arguments.modelled.set)?;
-        let model = model(&inner, &arguments.modelled, &arguments.freed)?;
-        let fitted = fitting::fitted(problem(model, data, &arguments.freed)?, &arguments)?;
-        let found = fitting::json(&fitted, &arguments);
-        Ok((found, curve(&fitted), samples(&fitted)))
+    let found = Job::pooled(None, threads).run(py, |_| {
+        let problem = posed(&table, experiment, &arguments)?;
+        let fitted = fitting::fitted(problem, &arguments)?;
+        Ok(Found::of(&fitted, &arguments))
     })?;
-    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
-    told.set_item("rows", json::object(py, &curve)?)?;
-    if let Some((parameters, samples)) = samples {
-        let samples = samples.into_pyarray(py);
-        let count = samples.len()? / parameters.max(1);
-        told.set_item("samples", samples.reshape([parameters, count])?)?;
-    }
-    Ok(told.into_any())
+    found.told(py)
 }
 
-/// Every measured value beside the fitted one.
-fn curve(fitted: &fitting::Fitted) -> serde_json::Value {
-    fitting::rows_json(fitted)
+/// What is to be fitted to what.
+pub fn posed(
+    table: &Table,
+    experiment: &Experiment,
+    arguments: &Fit,
+) -> Result<CurveProblem, Failure> {
+    let data = read(table, &arguments.measured, None)?;
+    let inner = in_case(experiment.inner.clone(), &data.case)?;
+    let inner = changed(inner, &arguments.modelled.set)?;
+    let model = model(&inner, &arguments.modelled, &arguments.freed)?;
+    problem(model, data, &arguments.freed)
+}
+
+/// A fit as Python is told of it.
+pub struct Found {
+    fit: serde_json::Value,
+    rows: serde_json::Value,
+    samples: Option<(usize, Vec<f64>)>,
+}
+
+impl Found {
+    /// Of a fit.
+    pub fn of(fitted: &fitting::Fitted, arguments: &Fit) -> Self {
+        Self {
+            fit: fitting::json(fitted, arguments),
+            rows: fitting::rows_json(fitted),
+            samples: samples(fitted),
+        }
+    }
+
+    /// As a dict.
+    pub fn told(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let told = json::object(py, &self.fit)?.cast_into::<PyDict>()?;
+        told.set_item("rows", json::object(py, &self.rows)?)?;
+        if let Some((parameters, samples)) = self.samples {
+            let samples = samples.into_pyarray(py);
+            let count = samples.len()? / parameters.max(1);
+            told.set_item("samples", samples.reshape([parameters, count])?)?;
+        }
+        Ok(told.into_any())
+    }
 }
 
 /// Samples of a posterior, parameter by parameter, and how many parameters there are.
@@ -126,6 +153,7 @@ pub fn gauge<'py>(
             wet: &in_case(wet_model, &wet.case)?,
             dry: &in_case(dry_model, &dry.case)?,
             free: &arguments.dry_free,
+            own: &arguments.own,
             accuracy: arguments.accuracy,
         };
         let gauged = gauging::gauged(&chains, (dry, wet), all)?;

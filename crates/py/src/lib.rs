@@ -15,6 +15,7 @@ mod law;
 mod recordings;
 mod shards;
 mod shot;
+mod spread;
 mod sweep;
 mod theory;
 
@@ -36,6 +37,8 @@ mod _hertzchain {
     use super::shards::{Run, gather, shard};
     #[pymodule_export]
     use super::shot::shot;
+    #[pymodule_export]
+    use super::spread::{Likelihood, fit_spread};
     #[pymodule_export]
     use super::sweep::{speeds, sweep};
     #[pymodule_export]

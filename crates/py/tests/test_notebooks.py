@@ -34,8 +34,6 @@ def test_pyright_in_strict_mode_finds_nothing_in_the_examples(tmp_path):
         (tmp_path / f"{path.stem}.py").write_text(code(path))
     # The last expression of a cell is shown: that is no mistake in a notebook.
     settings = {"include": ["."], "typeCheckingMode": "strict", "reportUnusedExpression": False, "pythonVersion": "3.10"}
-    # Libraries without complete types of their own are not ours to judge.
-    settings |= {name: False for name in ("reportUnknownMemberType", "reportMissingTypeStubs")}
     (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings))
     done = subprocess.run([sys.executable, "-m", "pyright", "-p", tmp_path, "--pythonpath", sys.executable], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout

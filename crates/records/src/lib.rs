@@ -8,6 +8,7 @@
 //! its samples, so that no analysis peeks by accident.
 
 mod arrays;
+mod beside;
 mod channels;
 mod check;
 mod csv;
@@ -25,6 +26,7 @@ mod table;
 mod tdms;
 mod wav;
 
+pub use beside::beside;
 pub use error::RecordError;
 pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};

@@ -1,13 +1,13 @@
 //! Tables of numbers as HDF5, each with a text that tells what they are: for
 //! results that many processes write and one puts together.
 
+use crate::beside;
 use crate::error::{RecordError, name};
 use crate::hdf5::damaged;
 use crate::series::{column, describe, unit};
 use rust_hdf5::{H5File, Hdf5Error};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::path::Path;
 
 /// Name of the text's dataset.
 const ABOUT: &str = "about";
@@ -95,16 +95,4 @@ impl Table {
             columns: read,
         })
     }
-}
-
-/// A name beside the file that no other process has, on this machine or another
-/// that shares the folder.
-fn beside(path: &Path) -> PathBuf {
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    let nanoseconds = now.map_or(0, |now| now.as_nanos());
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(
-        ".{file}.{}-{nanoseconds:x}.part",
-        std::process::id()
-    ))
 }

@@ -114,12 +114,27 @@ fn a_series_has_its_name_only_when_it_is_complete() {
 }
 
 #[test]
-fn a_part_that_was_left_is_started_anew() {
-    let folder = folder("anew");
+fn writers_of_one_series_at_a_time_do_not_meet() {
+    let folder = folder("together");
     let path = folder.join("series.h5");
-    fs::write(folder.join("series.h5.part"), "half a file").unwrap();
-    write(&path, 2, 100).unwrap();
-    assert_eq!(all(&path).len(), 2);
+    let mut writers = [0, 1].map(|_| SeriesWriter::create(&path, &info(100)).unwrap());
+    for shot in 0..3 {
+        for writer in &mut writers {
+            let samples = &samples(shot, 100);
+            let row = ShotRow {
+                shot,
+                programmed_speed_m_s: 0.5,
+                measured_speed_m_s: 0.5,
+                samples,
+                truth: &[],
+            };
+            writer.push(&row).unwrap();
+        }
+    }
+    for writer in writers {
+        writer.finish().unwrap();
+        assert_eq!(all(&path).len(), 3);
+    }
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
 }
 

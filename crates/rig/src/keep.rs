@@ -7,6 +7,7 @@
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
 use hertzchain_experiment::Experiment;
+use hertzchain_records::beside;
 use hertzchain_study::reproduce::commit;
 use hertzchain_study::{Fingerprint, Inputs};
 use std::fs;
@@ -62,10 +63,10 @@ impl Folder {
                 folder.holds("recordings, but no campaign.toml that tells of which campaign")
             );
         }
-        let beside = path.join(format!(".{TOLD_IN}.{}", std::process::id()));
-        let written = fs::write(&beside, told).and_then(|()| fs::rename(&beside, &told_in));
+        let part = beside(&told_in);
+        let written = fs::write(&part, told).and_then(|()| fs::rename(&part, &told_in));
         written.map_err(|error| {
-            let _ = fs::remove_file(&beside);
+            let _ = fs::remove_file(&part);
             refused(error)
         })?;
         Ok(folder)

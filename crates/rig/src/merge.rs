@@ -4,6 +4,7 @@ use crate::error::RigError;
 use crate::keep::{Folder, fingerprint};
 use crate::plan::{Plan, Series};
 use crate::recording;
+use hertzchain_records::beside;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -91,7 +92,7 @@ fn same(one: &Path, other: &Path) -> Result<(), RigError> {
 
 /// Beside its place, then renamed.
 fn copy(from: &Path, to: &Path) -> io::Result<()> {
-    let part = to.with_extension(format!("{}.part", std::process::id()));
+    let part = beside(to);
     let copied = fs::copy(from, &part).and_then(|_| fs::rename(&part, to));
     copied.inspect_err(|_| {
         let _ = fs::remove_file(&part);

@@ -290,7 +290,7 @@ pub(crate) fn fire(
         whole_chain: false,
         openings: setting.openings,
     };
-    let mut flown = ensemble::fire(&shots, &settings).into_iter();
+    let mut flown = ensemble::fire_while(&shots, &settings, &|| !stopped()).into_iter();
     let one = |(plan, system): (&&Plan, &Option<System>)| {
         let system = system.as_ref()?;
         shot(plan, system, flown.next()?.ok()?)

@@ -45,6 +45,9 @@ impl<'a> Gun<'a> {
     /// Sets up the chain and decides when its shot ends.
     pub(crate) fn load(plan: &'a Plan) -> Result<Self, StudyError> {
         plan.check()?;
+        if stopped() {
+            return Err(StudyError::Stopped);
+        }
         let system = System::new(&plan.chain)?;
         let end = duration::end(plan, &system);
         Ok(Self { plan, system, end })

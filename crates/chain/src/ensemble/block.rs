@@ -1,6 +1,7 @@
 //! Shots side by side, or one alone: all that changes from step to step.
 
 use super::aligned::Aligned;
+use super::behind::Behind;
 use super::bodies::{Motion, Scaled};
 use super::changes::{Changes, Opening};
 use super::column::{Column, chunks};
@@ -21,6 +22,10 @@ const SLIGHT: f64 = 1e-10;
 
 /// Steps before an opening at which a force that pulls does so.
 const SOON: f64 = 0.1;
+
+/// How far apart bodies are set that have been left behind: further than any
+/// overlap or way, in any unit, and no limit of what numbers can hold.
+const APART: f64 = 1e20;
 
 /// Most edges that disturb steps at a time without memory being asked for.
 const RESERVED: usize = 1024;
@@ -78,25 +83,35 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     ) -> Self {
         let (lanes, first) = (systems.len(), systems[0]);
         let bodies = first.bodies();
+        // What lanes share is set up once.
+        let chains = match systems.iter().all(|system| system.is_chain_of(first)) {
+            true => &systems[..1],
+            false => systems,
+        };
+        let shared = (lanes, chains.len());
         let flat = (chunks::<W>(bodies, lanes) + 1) * W;
-        let scatter = |of: &dyn Fn(usize, usize) -> f64, count: usize| {
+        let scatter = |of: fn(&System) -> &[f64]| {
             let mut values = Aligned::of(N::default(), flat);
-            for j in 0..count {
-                for lane in 0..lanes {
-                    values[j * lanes + lane] = N::of(of(j, lane));
+            for (lane, system) in systems.iter().enumerate() {
+                let moved = of(system)
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, value)| **value != 0.0);
+                for (j, value) in moved {
+                    values[j * lanes + lane] = N::of(*value);
                 }
             }
             values
         };
-        let x = scatter(&|j, lane| systems[lane].displacement_m[j], bodies);
-        let v = scatter(&|j, lane| systems[lane].velocity_m_s[j], bodies);
-        let mut loads = systems
+        let x = scatter(|system| &system.displacement_m);
+        let v = scatter(|system| &system.velocity_m_s);
+        let mut loads = chains
             .iter()
             .flat_map(|system| system.static_force_n.iter());
         let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
-        let offset_m = Column::new(bodies, lanes, f64::NEG_INFINITY, |c, lane| {
-            let offset = systems[lane].offset_m.get(c).copied();
+        let offset_m = Column::new(bodies, shared, f64::NEG_INFINITY, |c, lane| {
+            let offset = chains[lane].offset_m.get(c).copied();
             offset.unwrap_or(f64::NEG_INFINITY)
         });
         let step_s = std::array::from_fn(|lane| step_s[lane % lanes]);
@@ -104,16 +119,16 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             let scales = systems[lane % lanes].scales();
             N::slightest_m(scales.speed_m_s * scales.time_s)
         });
-        let inverse = |j: usize, lane: usize| systems[lane].inverse_mass[j];
+        let inverse = |j: usize, lane: usize| chains[lane].inverse_mass[j];
         let mut block = Self {
             edges: Vec::with_capacity(RESERVED),
             changes: follow_changes.then(|| Changes::new(chunks::<W>(bodies, lanes))),
-            window: Window::new(systems, (&x, &v), whole_chain),
-            motion: Motion::new(x, v, Column::new(bodies, lanes, 0.0, inverse), acts),
+            window: Window::new((lanes, chains), (&x, &v), whole_chain),
+            motion: Motion::new(x, v, Column::new(bodies, shared, 0.0, inverse), acts),
             weights: Scaled::new(schedule.row(0), &step_s),
             at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
             sections: (0..first.sections.len())
-                .map(|i| section(systems, i))
+                .map(|i| section((systems, chains), i))
                 .collect(),
             force_n: Aligned::of(N::default(), flat + W),
             step_s,
@@ -160,18 +175,27 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// One step of all lanes; the forces are then those of the new positions.
     #[inline(always)]
     pub fn step<S: Simd>(&mut self, simd: S) {
-        self.push();
+        // What few chains need is not even called for the others.
+        if self.motion.external.is_some() {
+            self.push();
+        }
         if self.steps <= self.schedule.last_row() {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
         }
         self.motion
             .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
-        self.mend_edges();
-        self.close_ring();
+        if !self.edges.is_empty() {
+            self.mend_edges();
+        }
+        if self.systems[0].periodic {
+            self.close_ring();
+        }
         self.window.follow(simd, places!(self));
         self.starting = false;
         self.forces();
-        self.look_at_changes(true);
+        if self.changes.is_some() {
+            self.look_at_changes(true);
+        }
         self.steps += 1;
         self.bodies_looked_at += (self.window.bodies.len() * W) as u64;
     }
@@ -212,6 +236,23 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     pub fn look(&mut self, steps: usize) {
         let ahead_s = self.step_s.map(|h| N::of((steps + 1) as f64 * h));
         self.window.look(self.set, places!(self), &ahead_s);
+    }
+
+    /// Lets go of what each lane's reflected pulse has left behind.
+    pub fn leave_behind(&mut self, behind: &mut Behind<W>) {
+        let force = &self.force_n[self.lanes..];
+        let left = behind.look(self.set, force, self.window.contacts.clone());
+        for (lane, bodies) in left {
+            for body in bodies {
+                let at = body * self.lanes + lane;
+                self.motion.set_apart(at, N::of(APART * (body + 1) as f64));
+                // Of the contact on its left.
+                self.force_n[at] = N::default();
+                if let Some(changes) = &mut self.changes {
+                    changes.opened(at - self.lanes);
+                }
+            }
+        }
     }
 
     /// Finds openings and closings within the last step.

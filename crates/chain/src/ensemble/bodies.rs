@@ -65,6 +65,14 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
         &self.accelerations[(self.newest + age) % USED]
     }
 
+    /// Sets a body where no other is; nothing has ever moved it.
+    pub fn set_apart(&mut self, at: usize, x: N) {
+        self.x[at] = x;
+        for accelerations in &mut self.accelerations {
+            accelerations[at] = N::default();
+        }
+    }
+
     /// The newest accelerations.
     pub fn newest_mut(&mut self) -> &mut [N] {
         &mut self.accelerations[self.newest]

@@ -22,6 +22,11 @@ impl<const W: usize> Changes<W> {
         }
     }
 
+    /// A contact, by its place in the flat array, is open from now on.
+    pub fn opened(&mut self, at: usize) {
+        self.open[at / W] |= 1 << (at % W);
+    }
+
     /// Notes what has changed since the last look.
     pub fn look<N: Number<W>>(
         &mut self,

@@ -22,12 +22,23 @@ pub(super) struct Column<N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Column<N, W> {
-    /// From values of element `j` of lane `l`; `rest` fills the last chunk up.
-    pub fn new(count: usize, lanes: usize, rest: f64, value: impl Fn(usize, usize) -> f64) -> Self {
+    /// From values of element `j` of chain `l`: of all lanes, or of the one
+    /// that all share. `rest` fills the last chunk up.
+    pub fn new(
+        count: usize,
+        (lanes, chains): (usize, usize),
+        rest: f64,
+        value: impl Fn(usize, usize) -> f64,
+    ) -> Self {
         let mut values = Aligned::of(N::of(rest), chunks::<W>(count, lanes) * W);
-        for j in 0..count {
-            for lane in 0..lanes {
-                values[j * lanes + lane] = N::of(value(j, lane));
+        for (j, row) in values.chunks_exact_mut(lanes).take(count).enumerate() {
+            match chains {
+                1 => row.fill(N::of(value(j, 0))),
+                _ => {
+                    for (lane, cell) in row.iter_mut().enumerate() {
+                        *cell = N::of(value(j, lane));
+                    }
+                }
             }
         }
         let all = values.as_chunks::<W>().0;

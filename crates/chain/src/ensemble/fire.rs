@@ -1,5 +1,6 @@
 //! Firing shots: blocks of lanes, each lane to its own end.
 
+use super::behind::Behind;
 use super::block::Block;
 use super::number::Number;
 use super::passing::{End, Passing};
@@ -103,6 +104,9 @@ pub enum EnsembleError {
         /// Step in s.
         step_s: f64,
     },
+    /// Nobody wanted the shot any more.
+    #[error("the shot was broken off")]
+    BrokenOff,
 }
 
 /// One shot to its end.
@@ -114,7 +118,8 @@ pub struct Flown {
     pub time_s: f64,
     /// Whether the shot came to its own end before its longest duration.
     pub finished: bool,
-    /// Velocities of all bodies at the end in m/s.
+    /// Velocities of all bodies at the end in m/s; of bodies that a returning
+    /// pulse has left behind ([`End::Passed`]) at that time.
     pub velocity_m_s: Vec<f64>,
     /// Step in s.
     pub step_s: f64,
@@ -142,6 +147,17 @@ const RESERVED: usize = 1 << 16;
 /// otherwise. Results are in order; a shot that fails stops no other.
 #[must_use]
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
+    fire_while(shots, settings, &|| true)
+}
+
+/// The same for as long as somebody wants it, who is asked every few steps; what
+/// has not come to its end then is [`EnsembleError::BrokenOff`].
+#[must_use]
+pub fn fire_while(
+    shots: &[Shot<'_>],
+    settings: &Settings,
+    wanted: &dyn Fn() -> bool,
+) -> Vec<Result<Flown, EnsembleError>> {
     let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; shots.len()];
     let mut ready = Vec::with_capacity(shots.len());
     for (shot, fired) in shots.iter().enumerate() {
@@ -153,8 +169,8 @@ pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, Ensemb
     for block in blocks(shots, &ready) {
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
         let results = match side_by_side[0].precision {
-            Precision::Double => fire_block::<f64, 8>(&side_by_side, settings),
-            Precision::Single => fire_block::<f32, 16>(&side_by_side, settings),
+            Precision::Double => fire_block::<f64, 8>(&side_by_side, settings, wanted),
+            Precision::Single => fire_block::<f32, 16>(&side_by_side, settings, wanted),
         };
         for (shot, result) in block.into_iter().zip(results) {
             flown[shot] = Some(result);
@@ -218,12 +234,14 @@ enum State {
     Flying,
     Finished { step: usize, early: bool },
     Failed { step: usize },
+    BrokenOff { step: usize },
 }
 
 /// Fires alike shots, one or up to `W`.
 fn fire_block<N: Number<W>, const W: usize>(
     shots: &[Shot<'_>],
     settings: &Settings,
+    wanted: &dyn Fn() -> bool,
 ) -> Vec<Result<Flown, EnsembleError>> {
     let schedule = Schedule::shared();
     // One shot runs alone; several fill the lanes, the last ones idly.
@@ -245,7 +263,8 @@ fn fire_block<N: Number<W>, const W: usize>(
         settings.set,
         (settings.whole_chain, settings.openings),
     );
-    fly(&mut block, &mut recorder, &mut flying, settings, &fired);
+    let ends = (settings, wanted);
+    fly(&mut block, &mut recorder, &mut flying, ends, &fired);
     let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
     let looked_at = block.bodies_looked_at / lanes as u64;
     let result = |(at, lane): (usize, Lane)| {
@@ -296,10 +315,18 @@ fn fly<N: Number<W>, const W: usize>(
     block: &mut Block<'_, N, W>,
     recorder: &mut Recorder<N, W>,
     lanes: &mut [Lane],
-    settings: &Settings,
+    (settings, wanted): (&Settings, &dyn Fn() -> bool),
     systems: &[&System],
 ) {
+    let leaves = settings.end == End::Passed && systems.iter().all(|s| s.flies_free());
+    let mut behind = Behind::new(systems.len(), systems[0].contacts(), &settings.sensors);
     while lanes.iter().any(|lane| lane.state == State::Flying) {
+        if !wanted() {
+            lanes
+                .iter_mut()
+                .for_each(|lane| lane.break_off(block.steps));
+            return;
+        }
         dispatch!(settings.set.level(), simd => simd.vectorize(
             #[inline(always)]
             || {
@@ -322,6 +349,9 @@ fn fly<N: Number<W>, const W: usize>(
             }
         }
         recorder.looked();
+        if leaves {
+            block.leave_behind(&mut behind);
+        }
         block.look(LOOK_EVERY);
     }
 }
@@ -344,6 +374,12 @@ impl Lane {
             if !correction.is_finite() {
                 self.state = State::Failed { step };
             }
+        }
+    }
+
+    fn break_off(&mut self, step: usize) {
+        if self.state == State::Flying {
+            self.state = State::BrokenOff { step };
         }
     }
 
@@ -370,7 +406,9 @@ impl Lane {
     /// Step at which the lane came to its end.
     fn ended(&self) -> usize {
         match self.state {
-            State::Finished { step, .. } | State::Failed { step } => step,
+            State::Finished { step, .. } | State::Failed { step } | State::BrokenOff { step } => {
+                step
+            }
             State::Flying => self.last_step,
         }
     }
@@ -388,6 +426,7 @@ impl Lane {
                 let (time_s, step_s) = (clock.time_s(step), clock.step_s);
                 return Err(EnsembleError::NotFinite { time_s, step_s });
             }
+            State::BrokenOff { .. } => return Err(EnsembleError::BrokenOff),
         };
         let finite = self.velocity_m_s.iter().all(|v| v.is_finite());
         if !finite {

@@ -10,6 +10,7 @@
 //! Its accuracy is a property of the step: see `docs/numerics.md`.
 
 mod aligned;
+mod behind;
 mod block;
 mod bodies;
 mod changes;
@@ -26,5 +27,5 @@ mod touch;
 mod weights;
 mod window;
 
-pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire};
+pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while};
 pub use passing::End;

@@ -15,7 +15,9 @@ pub enum End {
     /// When the first sensor has fallen below 5 % of its maximum since the
     /// wall's peak, once the pulse has had the time to return. A later and
     /// larger maximum, which is then not seen, would be none of the first
-    /// pulse to return.
+    /// pulse to return. On chains on which nothing but contacts acts, bodies
+    /// far behind that pulse on its way back are left as they are: they cannot
+    /// overtake it.
     Passed,
 }
 
@@ -59,8 +61,9 @@ pub(super) struct Passing {
     incident: Peak,
     wall: Peak,
     returned: Peak,
-    /// The sensor's latest sample.
+    /// The sensor's latest sample and the one before it.
     now: f64,
+    before: f64,
     seen: usize,
 }
 
@@ -72,41 +75,39 @@ impl Passing {
         wall: Samples<'_, N, W>,
         step: usize,
     ) {
-        let unseen = self.seen + 1..step + 1;
+        let first = self.seen + 1;
         // A wall that is pressed harder than ever tells of a larger pulse: what
         // the sensor has shown until then is that pulse on its way in.
         let at_wall = wall.crest() > self.wall.value;
         let at_sensor = sensor.crest().max(self.now) > self.highest.value;
         if at_wall || at_sensor {
-            for at in unseen.clone() {
-                self.look_for_maximum(sensor, at);
-                if at_wall && self.wall.look(wall.at(at), at) {
+            let mut pressed = wall.since(first);
+            for (at, after) in (first..).zip(sensor.since(first)) {
+                self.look_for_maximum(at, after);
+                if at_wall && pressed.next().is_some_and(|wall| self.wall.look(wall, at)) {
                     (self.incident, self.returned) = (self.highest, Peak::default());
                 }
             }
         }
         let back = self.back();
         if step as f64 > back && sensor.crest() > self.returned.value {
-            for at in unseen.filter(|&at| at as f64 > back) {
-                self.returned.look(sensor.at(at), at);
+            let later = (first..).zip(sensor.since(first));
+            for (at, value) in later.filter(|&(at, _)| at as f64 > back) {
+                self.returned.look(value, at);
             }
         }
+        self.before = sensor.at(step.saturating_sub(1).max(1));
         self.now = sensor.at(step);
         self.seen = step;
     }
 
-    /// Keeps the sample before one, if it is a maximum and the highest yet.
-    fn look_for_maximum<N: Number<W>, const W: usize>(
-        &mut self,
-        sensor: Samples<'_, N, W>,
-        at: usize,
-    ) {
-        if at > 2 {
-            let [before, value, after] = [at - 2, at - 1, at].map(|at| sensor.at(at));
-            if value >= before && value > after {
-                self.highest.look(value, at - 1);
-            }
+    /// Keeps the latest sample, if it is a maximum and the highest yet, now that
+    /// the one after it is known.
+    fn look_for_maximum(&mut self, at: usize, after: f64) {
+        if at > 2 && self.now >= self.before && self.now > after {
+            self.highest.look(self.now, at - 1);
         }
+        (self.before, self.now) = (self.now, after);
     }
 
     /// Step from which on a maximum can be the returned pulse; never before

@@ -162,7 +162,7 @@ fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
             0.5 * (low + high)
         };
         // What is left is the square of the last change, about.
-        if (next - at).abs() <= 1e-7 {
+        if (next - at).abs() <= 1e-5 {
             return next;
         }
         at = next;

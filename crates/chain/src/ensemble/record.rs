@@ -125,10 +125,18 @@ pub(super) struct Samples<'a, N, const W: usize> {
     lane: usize,
 }
 
-impl<N: Number<W>, const W: usize> Samples<'_, N, W> {
+impl<'a, N: Number<W>, const W: usize> Samples<'a, N, W> {
     /// The largest since the last look.
     pub fn crest(self) -> f64 {
         self.rows.crest[self.lane].into()
+    }
+
+    /// The samples from a step, 1 or later, to the latest.
+    #[inline]
+    pub fn since(self, step: usize) -> impl Iterator<Item = f64> + use<'a, N, W> {
+        let first = (step - 1) * self.lanes + self.lane;
+        let values = self.rows.values.get(first..).unwrap_or_default();
+        values.iter().step_by(self.lanes).map(|&value| value.into())
     }
 
     /// The sample of a step from 1 to the latest.

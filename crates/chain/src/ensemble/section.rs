@@ -45,10 +45,11 @@ pub(super) trait Sweep<N, const W: usize>: Send {
 
 /// The sweep over section `index` of systems that share their shape.
 pub(super) fn section<N: Number<W>, const W: usize>(
-    systems: &[&System],
+    (systems, chains): (&[&System], &[&System]),
     index: usize,
 ) -> Box<dyn Sweep<N, W>> {
-    let sections: Vec<&SectionColumns> = systems.iter().map(|s| &s.sections[index]).collect();
+    let lanes = systems.len();
+    let sections: Vec<&SectionColumns> = chains.iter().map(|s| &s.sections[index]).collect();
     let plain = systems[0].tension == Tension::Allowed && sections[0].ungated.is_empty();
     let names: Vec<&str> = sections[0]
         .gated
@@ -57,21 +58,29 @@ pub(super) fn section<N: Number<W>, const W: usize>(
         .collect();
     let contacts = sections[0].contacts.clone();
     plain
-        .then(|| fuse(&names, contacts, systems.len(), coefficients(&sections)))
+        .then(|| fuse(&names, contacts, lanes, coefficients(lanes, &sections)))
         .flatten()
-        .unwrap_or_else(|| Box::new(Unfused::new(systems, &sections, W)))
+        .unwrap_or_else(|| Box::new(Unfused::new(systems, index, W)))
 }
 
 /// Coefficients of all gated terms from the chunk on in which the section
 /// begins; 0 before it.
-fn coefficients<N: Number<W>, const W: usize>(sections: &[&SectionColumns]) -> Vec<Column<N, W>> {
-    let (lanes, contacts) = (sections.len(), &sections[0].contacts);
+fn coefficients<N: Number<W>, const W: usize>(
+    lanes: usize,
+    sections: &[&SectionColumns],
+) -> Vec<Column<N, W>> {
+    let contacts = &sections[0].contacts;
     let first = contacts.start * lanes / W * W / lanes;
     let column = |term: usize, j: usize| {
-        Column::new(contacts.end - first, lanes, 0.0, |c, lane| {
-            let inside = (first + c).checked_sub(contacts.start);
-            inside.map_or(0.0, |c| sections[lane].gated[term].columns.column(j)[c])
-        })
+        Column::new(
+            contacts.end - first,
+            (lanes, sections.len()),
+            0.0,
+            |c, lane| {
+                let inside = (first + c).checked_sub(contacts.start);
+                inside.map_or(0.0, |c| sections[lane].gated[term].columns.column(j)[c])
+            },
+        )
     };
     let terms = sections[0].gated.iter().enumerate();
     terms
@@ -109,7 +118,8 @@ fn merged<'a>(of: impl Fn(usize) -> &'a [TermColumns], lanes: usize) -> Vec<Term
 
 impl Unfused {
     /// For chunks of `width`.
-    fn new(systems: &[&System], sections: &[&SectionColumns], width: usize) -> Self {
+    fn new(systems: &[&System], index: usize, width: usize) -> Self {
+        let sections: Vec<&SectionColumns> = systems.iter().map(|s| &s.sections[index]).collect();
         let (lanes, contacts) = (sections.len(), sections[0].contacts.clone());
         let first = contacts.start * lanes / width * width;
         let count = (contacts.end * lanes).next_multiple_of(width) - first;

@@ -68,11 +68,10 @@ pub(super) struct Window {
 
 impl Window {
     pub fn new<N: Number<W>, const W: usize>(
-        systems: &[&System],
+        (lanes, systems): (usize, &[&System]),
         (x, v): (&[N], &[N]),
         whole_chain: bool,
     ) -> Self {
-        let lanes = systems.len();
         let all = chunks::<W>(systems[0].bodies(), lanes);
         let with_contacts = chunks::<W>(systems[0].contacts(), lanes);
         let rest = N::default();

@@ -175,13 +175,30 @@ impl System {
         };
         self.bodies() == other.bodies()
             && self.sections.len() == other.sections.len()
-            && self.sections.iter().zip(other.sections.iter()).all(alike)
+            && (Arc::ptr_eq(&self.sections, &other.sections)
+                || self.sections.iter().zip(other.sections.iter()).all(alike))
             && self.tension == other.tension
             && self.periodic == other.periodic
             && self.has_striker == other.has_striker
             && self.spring.is_some() == other.spring.is_some()
             && (self.slope_m_s2 != 0.0) == (other.slope_m_s2 != 0.0)
             && (self.pendulum_per_s2 > 0.0) == (other.pendulum_per_s2 > 0.0)
+    }
+
+    /// Whether two chains are one, set in motion in two ways: what does not
+    /// move is the same in both.
+    pub(crate) fn is_chain_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.sections, &other.sections)
+            && Arc::ptr_eq(&self.offset_m, &other.offset_m)
+            && Arc::ptr_eq(&self.inverse_mass, &other.inverse_mass)
+            && Arc::ptr_eq(&self.static_force_n, &other.static_force_n)
+            && self.push_n == other.push_n
+            && self.slope_m_s2 == other.slope_m_s2
+            && self.pendulum_per_s2 == other.pendulum_per_s2
+            && self.spring.is_none()
+            && other.spring.is_none()
+            && self.motion.is_none()
+            && other.motion.is_none()
     }
 
     /// Characteristic speed and time.

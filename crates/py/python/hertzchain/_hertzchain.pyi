@@ -88,6 +88,23 @@ class Run:
     def speeds(self) -> Floats: ...
     def values(self) -> list[Floats]: ...
 
+_Outcome = tuple[list[float], list[float]] | str
+_Batches = list[tuple[str, list[list[float]]]]
+
+@final
+class Likelihood:
+    """Measurements against a model with free numbers; picklable."""
+
+    def __new__(cls, table: _Table, experiment: Experiment, options: Sequence[str]) -> Likelihood: ...
+    @property
+    def name(self) -> str: ...
+    def outcomes(self, points: Sequence[Sequence[float]]) -> list[_Outcome]: ...
+
+def fit_spread(
+    likelihood: Likelihood,
+    size: int,
+    compute: Callable[[_Batches], Callable[[float], list[list[_Outcome]] | None]] | None,
+) -> dict[str, Any]: ...
 def shard(
     run: Run, number: int, of: int, folder: str, threads: int, progress: _Progress
 ) -> bool: ...

@@ -26,8 +26,9 @@ def text(tables: Mapping[str, object]) -> str:
 def _is_table(value: object) -> bool:
     if isinstance(value, Mapping):
         return True
-    is_list = isinstance(value, Sequence) and not isinstance(value, str)
-    return is_list and len(value) > 0 and all(isinstance(member, Mapping) for member in value)
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        return False
+    return len(value) > 0 and all(isinstance(member, Mapping) for member in value)
 
 
 def _table(name: str, fields: Mapping[str, object]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Sweeps, ensembles and campaigns on a ``dask.distributed`` client, shard by shard.
+"""Sweeps, ensembles, campaigns and posteriors on a ``dask.distributed`` client, shard by shard.
 
 ``pip install hertzchain[dask]``. A shard is a part of a run, named by a hash of
 everything that its numbers follow from; its bits depend neither on where nor
@@ -17,37 +17,35 @@ from __future__ import annotations
 
 import os
 import pickle
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from . import _dask
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
+from ._posing import FitOptions, modelled, table, words
 from ._table import lines
-from .errors import HertzchainError, OptionError
+from .errors import OptionError
+from .inferring import Fitted, fitted
 from .results import Ensemble
 from .shooting import broadcast, units_of
 
 if TYPE_CHECKING:
     from dask.distributed import Client
+    from typing_extensions import Unpack
 
-__all__ = ["Distributed", "campaign", "sweep"]
+__all__ = ["Distributed", "campaign", "fit", "sweep"]
 
 SHOTS_A_SHARD = 20_000
 """So many that a shard takes seconds: what a scheduler spends on one is then below 2 %."""
-
-AHEAD = 4
-"""Shards handed out for each thread of the workers: enough that none waits."""
-
-RETRIES = 3
-"""How often a shard is computed again whose worker has died with it, or that raised."""
-
 
 @dataclass(frozen=True)
 class Distributed:
@@ -69,8 +67,9 @@ class Distributed:
     shards: int
     kept: int
     poisoned: dict[int, str]
-    _shape: tuple[int, ...] | None = None
+    _run: _native.Run | None = None
     _experiment: Experiment | None = None
+    _shape: tuple[int, ...] = ()
     _names: tuple[str, ...] = ()
 
     def load(self) -> Ensemble:
@@ -81,9 +80,9 @@ class Distributed:
         OptionError
             Shards that are missing, damaged, or of several runs.
         """
-        if self._shape is None or self._experiment is None:
+        if self._run is None or self._experiment is None:
             raise OptionError("recordings of a campaign are measured, not loaded: see hertzchain.measure")
-        run = _opened(str(self.folder / RUN))
+        run = self._run
         found = _native.gather(str(self.folder))
         shape = self._shape
         columns = {name: column.reshape(shape) for name, column in found["columns"].items() if name != "speed_m_s"}
@@ -105,93 +104,43 @@ class Distributed:
         return lines(f"Distributed run in {self.folder}", rows)
 
 
-RUN = "run.pickle"
-
-
-@lru_cache(maxsize=2)
-def _opened(path: str) -> _native.Run:
-    """A run from its file; a worker reads it once."""
+@lru_cache(maxsize=4)
+def _opened(path: str) -> Any:
+    """What is to be computed, from its file; a worker reads it once."""
     return pickle.loads(Path(path).read_bytes())
 
 
-def _written(run: _native.Run, folder: Path) -> str:
-    """The run's file, whole or not at all."""
+def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
+    """Its file, whole or not at all, by a name that no other work has."""
     folder.mkdir(parents=True, exist_ok=True)
-    path, beside = folder / RUN, folder / f".{RUN}.{os.getpid()}"
-    beside.write_bytes(pickle.dumps(run))
+    path = folder.resolve() / f"run-{work.name}.pickle"
+    beside = path.with_name(f".{path.name}.{uuid4().hex}.part")
+    beside.write_bytes(pickle.dumps(work))
     beside.replace(path)
-    _opened.cache_clear()
-    return str(path.resolve())
+    return str(path)
 
 
-def _shard(path: str, number: int, of: int) -> tuple[int, bool]:
-    """Computes a shard on a worker; tells its number and whether it was there."""
+def _shard(path: str, number: int, of: int) -> tuple[int, bool | str]:
+    """Computes a shard of a sweep on a worker."""
     folder = str(Path(path).parent)
-    return number, _native.shard(_opened(path), number, of, folder, 1, None)
+    return _dask.poisoned_or(number, lambda: _native.shard(_opened(path), number, of, folder, 1, None))
 
 
-def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None) -> tuple[int, bool]:
-    done = _native.campaign(experiment, out, f"{number}/{of}", seed, 1, None)
-    if done["failed"]:
-        raise OptionError("; ".join(done["failed"]))
-    return number, done["run"] == 0
+def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None) -> tuple[int, bool | str]:
+    """Runs a part of a campaign on a worker."""
+
+    def kept() -> bool:
+        done = _native.campaign(experiment, out, f"{number}/{of}", seed, 1, None)
+        if done["failed"]:
+            raise OptionError("; ".join(done["failed"]))
+        return done["kept"] > 0 and done["run"] == 0
+
+    return _dask.poisoned_or(number, kept)
 
 
-Task = Callable[..., tuple[int, bool]]
-
-
-def _run(
-    task: Task, arguments: Callable[[int], tuple[Any, ...]], of: int, client: Client | None, name: str, tell: Any
-) -> tuple[int, dict[int, str]]:
-    """Runs all shards: how many were kept, and why others failed."""
-    kept, poisoned = 0, dict[int, str]()
-    results = _here(task, arguments, of) if client is None else _there(task, arguments, of, client, name)
-    for number, outcome in results:
-        if isinstance(outcome, str):
-            poisoned[number] = outcome
-        else:
-            kept += outcome
-        if tell is not None:
-            tell(1)
-    return kept, poisoned
-
-
-def _here(task: Task, arguments: Callable[[int], tuple[Any, ...]], of: int) -> Iterator[tuple[int, bool | str]]:
-    for number in range(1, of + 1):
-        try:
-            yield task(*arguments(number))
-        except HertzchainError as error:
-            yield number, str(error)
-
-
-def _there(
-    task: Task, arguments: Callable[[int], tuple[Any, ...]], of: int, client: Client, name: str
-) -> Iterator[tuple[int, bool | str]]:
-    """Hands shards out as workers finish others, so that a scheduler never has them all."""
-    from dask.distributed import as_completed
-
-    threads = sum(client.nthreads().values()) or 1
-    waiting = iter(range(1, of + 1))
-    numbers: dict[str, int] = {}
-
-    def hand_out(number: int) -> Any:
-        key = f"hertzchain-{name}-{number}-of-{of}"
-        numbers[key] = number
-        return client.submit(task, *arguments(number), key=key, pure=False, retries=RETRIES)
-
-    first = [hand_out(number) for number, _ in zip(waiting, range(AHEAD * threads - 1), strict=False)]
-    if (last := next(waiting, None)) is not None:
-        first.append(hand_out(last))
-    running = as_completed(first)
-    for future in running:
-        number = numbers.pop(future.key)
-        if future.status == "finished":
-            yield future.result()
-        else:
-            yield number, f"{type(error).__name__}: {error}" if (error := future.exception()) else str(future.status)
-        future.release()
-        if (following := next(waiting, None)) is not None:
-            running.add(hand_out(following))
+def _outcomes(path: str, points: list[list[float]]) -> list[Any]:
+    """Residuals of points on a worker."""
+    return _opened(path).outcomes(points)
 
 
 def sweep(
@@ -233,6 +182,8 @@ def sweep(
     ------
     OptionError, ExperimentError
         Arrays and names that do not fit.
+    ConnectionError
+        The scheduler is lost: the same call goes on where this one stood.
 
     Notes
     -----
@@ -248,11 +199,11 @@ def sweep(
     of = shards or max(1, -(-speeds.size // SHOTS_A_SHARD))
     update, bar = options.progress(progress, of, "shard")
     try:
-        kept, poisoned = _run(_shard, lambda number: (path, number, of), of, client, run.name, update)
+        kept, poisoned = _dask.run(_shard, lambda number: (path, number, of), of, client, update)
     finally:
         if bar is not None:
             bar.close()  # type: ignore[attr-defined]
-    return Distributed(Path(folder), of, kept, poisoned, speeds.shape, experiment, tuple(named))
+    return Distributed(Path(folder), of, kept, poisoned, run, experiment, speeds.shape, tuple(named))
 
 
 def campaign(
@@ -282,14 +233,72 @@ def campaign(
     OptionError, ExperimentError
         As for `hertzchain.campaign`, where no shard can be run.
     """
-    into = os.fspath(out)
-    name = f"{Path(into).name}-{seed}"
+    into = str(Path(out).resolve())
     update, bar = options.progress(progress, shards, "shard")
     try:
-        kept, poisoned = _run(_series, lambda number: (experiment, into, number, shards, seed), shards, client, name, update)
+        kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed), shards, client, update)
     finally:
         if bar is not None:
             bar.close()  # type: ignore[attr-defined]
     if len(poisoned) == shards:
         raise OptionError(next(iter(poisoned.values())))
     return Distributed(Path(out), shards, kept, poisoned)
+
+
+POINTS = 32
+"""Points of the model that a step of the sampler asks for at a time."""
+
+CHAIN = "chain.json"
+
+
+def fit(
+    data: Any,
+    model: Experiment | str | None = None,
+    *,
+    free: str | Iterable[str],
+    folder: str | os.PathLike[str],
+    client: Client | None = None,
+    points: int | None = None,
+    **how: Unpack[FitOptions],
+) -> Fitted:
+    """Fits contact parameters with the model's curves computed on a cluster.
+
+    Residuals of the descent, the profiles or the sampler's walkers are computed in
+    batches of points, each named by a hash of the problem and its points.
+
+    Parameters
+    ----------
+    data, model, free
+        As for `hertzchain.fit`.
+    folder : path
+        Where the problem and the walkers' chain are, seen by all workers under this
+        name. The same folder again goes on with the walkers of a run that was broken off.
+    client : dask.distributed.Client, optional
+        Everything stays in this process when absent.
+    points : int, optional
+        Most points of a batch; as many as make a batch for every thread when absent.
+    **how
+        As for `hertzchain.fit`, but ``direct``, which is meant, and ``against``.
+
+    Returns
+    -------
+    Fitted
+        With the bits of ``hertzchain.fit(..., direct=True)``.
+
+    Raises
+    ------
+    OptionError, ExperimentError
+        As for `hertzchain.fit`; batches that no worker could compute.
+    """
+    into = Path(folder).resolve()
+    how["direct"] = True
+    told = [*words(**how), *options.listed("free", free), f"--out={into}"]
+    if (into / CHAIN).exists():
+        told.append("--resume")
+    name, text = table(data)
+    likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
+    if client is None:
+        return fitted(_native.fit_spread(likelihood, POINTS, None))
+    compute = _dask.batches(_outcomes, _written(likelihood, into), client)
+    size = points or max(1, POINTS // max(1, _dask.threads(client)))
+    return fitted(_native.fit_spread(likelihood, size, compute))

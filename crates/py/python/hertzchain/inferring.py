@@ -5,100 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
+from ._posing import Data, Method, What, modelled, table, words
 from ._table import Floats, lines, short
-from .errors import OptionError
-from .experiment import preset
-from .recording import Measured
-from .results import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
 __all__ = ["Data", "Designed", "Fitted", "Gauged", "Parameter", "design", "fit", "gauge"]
-
-What = Literal["incident", "reflected", "wall-ratio", "returning-ratio"]
-Data = "str | os.PathLike[str] | Mapping[str, Any] | Measured | Sweep | pd.DataFrame"
-"""A table of times of flight against speed: a CSV file, columns by name, or a result."""
-
-
-def _table(data: Any, name: str = "data") -> tuple[str, str]:
-    """The text of a table and its name in messages."""
-    if isinstance(data, (str, os.PathLike)):
-        try:
-            return os.fspath(data), Path(data).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise OptionError(f"{os.fspath(data)} can't be read: {error}") from None
-    if isinstance(data, Measured):
-        return "speeds.csv", data.tables["speeds.csv"]
-    if isinstance(data, Sweep):
-        return data.experiment, _csv({"speed_m_s": data.speed_m_s, **data.columns})
-    if isinstance(data, Mapping):
-        return name, _csv(data)
-    if hasattr(data, "to_dict") and hasattr(data, "columns"):
-        return name, _csv(data.reset_index().to_dict("list"))
-    raise OptionError(f"data of type {type(data).__name__}: expected a file, columns by name, a table, or what `measure` gives")
-
-
-def _csv(columns: Mapping[str, Any]) -> str:
-    lists = {name: np.atleast_1d(np.asarray(values)) for name, values in columns.items()}
-    lengths = {values.size for values in lists.values() if values.ndim == 1}
-    if len(lengths) != 1 or any(values.ndim != 1 for values in lists.values()):
-        shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
-        raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
-    rows = zip(*(map(_cell, values) for values in lists.values()), strict=True)
-    return "\n".join([",".join(map(str, lists)), *(",".join(row) for row in rows)]) + "\n"
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, str):
-        return f'"{value}"'
-    number = float(value)
-    return "" if np.isnan(number) else repr(number)
-
-
-def _modelled(model: Experiment | str | None) -> Experiment:
-    return model if isinstance(model, Experiment) else preset(model or "dry")
-
-
-def _shared(
-    case: str | None,
-    use: Iterable[What],
-    errors: tuple[float | None, float | None, float | None],
-    fixed: options.Assignments | None,
-    accuracy: float,
-    threads: int | None,
-) -> list[str]:
-    speed_error, tof_error, ratio_error = errors
-    told = options.words(
-        case=case, speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, threads=threads
-    )
-    return [*told, *options.listed("use", use), *options.assigned("set", fixed, "")]
-
-
-def _freed(
-    free: str | Iterable[str],
-    start: options.Assignments | None,
-    bounds: options.Assignments | None,
-    prior: options.Assignments | None,
-    scale: options.Assignments | None,
-) -> list[str]:
-    return [
-        *options.listed("free", free),
-        *options.assigned("start", start, ""),
-        *options.assigned("bounds", bounds, ":"),
-        *options.assigned("prior", prior, "+-"),
-        *options.assigned("scale", scale, ""),
-    ]
-
 
 @dataclass(frozen=True)
 class Parameter:
@@ -202,7 +123,7 @@ def fit(
     free: str | Iterable[str],
     case: str | None = None,
     use: Iterable[What] = ("incident", "reflected"),
-    method: Literal["covariance", "profile", "posterior"] = "covariance",
+    method: Method = "covariance",
     start: options.Assignments | None = None,
     bounds: options.Assignments | None = None,
     prior: options.Assignments | None = None,
@@ -256,16 +177,20 @@ def fit(
     -----
     The numbers are those of ``hertzchain fit --json``, bit for bit.
     """
-    name, text = _table(data)
+    name, text = table(data)
     rivals = {model: given if isinstance(given, str) else ",".join(given) for model, given in (against or {}).items()}
-    told = [
-        *_shared(case, use, (speed_error, tof_error, ratio_error), fixed, accuracy, threads),
-        *_freed(free, start, bounds, prior, scale),
-        *options.words(method=method, robust=robust, starts=starts, steps=steps, direct=direct, seed=seed),
-        *(f"--against={model}={given}" for model, given in rivals.items()),
-        "--", name,
-    ]  # fmt: skip
-    found = _native.fit((name, text), _modelled(model), told)
+    told = words(
+        case=case, use=use, method=method, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed,
+        speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, robust=robust,
+        starts=starts, steps=steps, direct=direct, seed=seed, threads=threads,
+    )  # fmt: skip
+    told += options.listed("free", free)
+    told += [f"--against={model}={given}" for model, given in rivals.items()]
+    return fitted(_native.fit((name, text), modelled(model), [*told, "--", name]))
+
+
+def fitted(found: dict[str, Any]) -> Fitted:
+    """A fit from what the library tells of it."""
     rows, samples = found.pop("rows"), found.pop("samples", None)
     columns = {key: [row[key] for row in rows] for key in (rows[0] if rows else {})}
     return Fitted(
@@ -357,16 +282,14 @@ ratio_error, accuracy, threads
     OptionError, ExperimentError
         As for `fit`.
     """
-    name, text = _table(data)
+    name, text = table(data)
     listed = speeds if isinstance(speeds, str) or speeds is None else ",".join(map(options.text, speeds))
-    told = [
-        *_shared(case, use, (speed_error, tof_error, ratio_error), fixed, accuracy, threads),
-        *_freed(free, start, bounds, prior, scale),
-        *options.listed("target", target),
-        *options.words(speeds=listed, picks=picks),
-        "--", name,
-    ]  # fmt: skip
-    return Designed(**_native.design((name, text), _modelled(model), told))
+    told = words(
+        case=case, use=use, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed, speed_error=speed_error,
+        tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, threads=threads,
+    )  # fmt: skip
+    told += [*options.listed("free", free), *options.listed("target", target), *options.words(speeds=listed, picks=picks)]
+    return Designed(**_native.design((name, text), modelled(model), [*told, "--", name]))
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -436,6 +359,7 @@ def gauge(
     model: Experiment | str = "pump",
     dry_model: Experiment | str = "dry",
     dry_free: str | Iterable[str] = ("aisi316.eta", "dry.B"),
+    own: str | Iterable[str] = (),
     oils: str | os.PathLike[str] | None = None,
     use: Iterable[What] = ("incident", "reflected"),
     speed_error: float | None = None,
@@ -454,6 +378,9 @@ def gauge(
         The chains; the wet one has a section with ``wet = true``.
     dry_free : iterable of str
         Free numbers of the dry contacts.
+    own : iterable of str
+        Numbers that each chain has for itself, such as the load that friction
+        holds in a tapped row (``near_end.force``).
     oils : path, optional
         Table (CSV) of further oils.
     wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads
@@ -464,15 +391,16 @@ def gauge(
     OptionError, ExperimentError
         As for `fit`.
     """
-    tables = (_table(wet, "wet"), _table(dry, "dry"))
+    tables = (table(wet, "wet"), table(dry, "dry"))
     told = [
         *options.words(
             wet_case=wet_case, dry_case=dry_case, speed_error=speed_error, tof_error=tof_error,
             ratio_error=ratio_error, accuracy=accuracy, threads=threads,
         ),
         *options.listed("use", use), *options.listed("dry-free", dry_free),
+        *options.listed("own", own),
         f"--dry={tables[1][0]}", "--", tables[0][0],
     ]  # fmt: skip
-    more = None if oils is None else _table(oils)
-    found = _native.gauge(tables, (_modelled(model), _modelled(dry_model)), more, told)
+    more = None if oils is None else table(oils)
+    found = _native.gauge(tables, (modelled(model), modelled(dry_model)), more, told)
     return Gauged(found["verdict"], found["oils"], found["contacts"], found["dry"], found)

@@ -295,6 +295,8 @@ def figure3(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -
     inset.get_legend().remove()  # type: ignore[union-attr]
     inset.set(xlabel="", ylabel="")
     inset.tick_params(labelsize=6)
+    inset.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    inset.xaxis.set_major_formatter("{x:g}")
     ax.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
     return ax
 
@@ -408,7 +410,7 @@ def _marginal(ax: Axes, fitted: Fitted, at: int, bins: int) -> None:
     grid = np.linspace(low, high, 200)
     normal = np.exp(-0.5 * ((grid - best) / spread) ** 2) / (spread * np.sqrt(2 * np.pi))
     if fitted.samples is not None:
-        ax.hist(fitted.samples[:, at], bins, (low, high), density=True, color="C0", alpha=0.35)
+        ax.hist(fitted.samples[:, at], bins, range=(low, high), density=True, color="C0", alpha=0.35)
     ax.plot(grid, normal, color="C1", linewidth=0.8)
     ax.axvline(best, color="0.3", linewidth=0.6)
     ax.set(xlim=(low, high), yticks=[])
@@ -439,7 +441,7 @@ def _corner_labels(ax: Axes, fitted: Fitted, place: tuple[int, int], count: int)
     parameters = list(fitted.parameters.values())
 
     def label(at: int) -> str:
-        unit = parameters[at].unit
+        unit = parameters[at].unit.replace("^2", "²").replace("^3", "³")
         return f"{parameters[at].name}\n({unit})" if unit else parameters[at].name
 
     if row == count - 1:

@@ -1,6 +1,7 @@
 //! Writing a series: beside its place, shot by shot, renamed when complete.
 
 use super::layout;
+use crate::beside;
 use crate::error::{RecordError, name};
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::fs;
@@ -81,9 +82,10 @@ pub struct ShotRow<'a> {
 
 /// Writes the shots of one series into one HDF5 file.
 ///
-/// The file grows beside its place, with the ending `.part`, and gets its name
-/// when it is finished: what has its name is whole, whenever the program is
-/// stopped. A writer that is dropped unfinished removes its part.
+/// The file grows beside its place, hidden and with the ending `.part`, and gets its
+/// name when it is finished: what has its name is whole, whenever the program is
+/// stopped. Several writers of one series, in one process or many, do not meet: the
+/// last one's file stays. A writer that is dropped unfinished removes its part.
 pub struct SeriesWriter {
     path: PathBuf,
     part: PathBuf,
@@ -119,7 +121,7 @@ impl std::fmt::Debug for SeriesWriter {
 }
 
 impl SeriesWriter {
-    /// Starts the file of a series; a part that was left there is started anew.
+    /// Starts the file of a series.
     ///
     /// # Errors
     /// [`RecordError::Unwritable`]; [`RecordError::Empty`] without samples.
@@ -340,13 +342,7 @@ pub(crate) fn unit(name: &str) -> &'static str {
     found.map_or("1", |ending| ending.1)
 }
 
-fn beside(path: &Path) -> PathBuf {
-    let mut part = path.as_os_str().to_owned();
-    part.push(".part");
-    PathBuf::from(part)
-}
-
-/// Best effort: what is left is started anew the next time.
+/// Best effort: what is left is nobody's, and hidden.
 fn remove(part: &Path) {
     let _ = fs::remove_file(part);
 }

@@ -98,7 +98,7 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     let before = out.recordings();
     let lost = before.keys().nth(2).unwrap();
     std::fs::remove_file(out.0.join(lost)).unwrap();
-    std::fs::write(out.0.join(format!("{lost}.part")), b"half a file").unwrap();
+    std::fs::write(out.0.join(format!(".{lost}.1-2-3.part")), b"half a file").unwrap();
     let done = campaign(&plan, &out.0, Shard::WHOLE, &quiet).unwrap();
     assert_eq!((done.kept, done.run, done.shots), (5, 1, 3));
     assert!(out.recordings() == before);

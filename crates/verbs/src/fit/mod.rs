@@ -9,7 +9,7 @@ pub use results::{inferred, joined, json, parameters_csv, profiles_csv, rows_csv
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
-use crate::inference::user;
+use crate::inference::{user, wanted};
 use hertzchain_infer::{
     Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
@@ -59,7 +59,9 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
         seed: arguments.seed,
         ..Fitting::default()
     };
-    fit(problem, &how).map_err(user)
+    let found = fit(problem, &how);
+    wanted()?;
+    found.map_err(user)
 }
 
 /// Fits a curve, tells the uncertainty as the method asks, and compares with
@@ -70,6 +72,32 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
     let fit = best(&problem, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
+    let more = more::more(&problem, &fit, &covariance, arguments)?;
+    told(problem, (fit, covariance, more), arguments)
+}
+
+/// The same where `computed` has the problem's residuals from elsewhere, such as
+/// [`Spread`](hertzchain_infer::Spread): every curve of a posterior is computed, as
+/// with `--direct`.
+///
+/// # Errors
+/// As [`fitted`].
+pub fn fitted_elsewhere(
+    problem: CurveProblem,
+    computed: &dyn Problem,
+    arguments: &Arguments,
+) -> Result<Fitted, Failure> {
+    let fit = best(computed, arguments)?;
+    let covariance = Covariance::new(computed.parameters(), &fit);
+    let more = more::more_of(computed, (&fit, &covariance), None, arguments)?;
+    told(problem, (fit, covariance, more), arguments)
+}
+
+fn told(
+    problem: CurveProblem,
+    (fit, covariance, more): (Fit, Covariance, More),
+    arguments: &Arguments,
+) -> Result<Fitted, Failure> {
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
@@ -81,7 +109,7 @@ pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Fa
             parameters: problem.parameters().to_vec(),
             identifiability: Identifiability::new(problem.parameters(), &fit, label),
             goodness: Goodness::new(problem.parameters(), &fit),
-            more: more::more(&problem, &fit, &covariance, arguments)?,
+            more,
             covariance,
             fit,
         },

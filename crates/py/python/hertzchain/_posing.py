@@ -1,0 +1,104 @@
+"""Data, models and keywords of inference as the command line has them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
+
+import numpy as np
+
+from . import _options as options
+from ._hertzchain import Experiment
+from .errors import OptionError
+from .experiment import preset
+from .recording import Measured
+from .results import Sweep
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+Method = Literal["covariance", "profile", "posterior"]
+What = Literal["incident", "reflected", "wall-ratio", "returning-ratio"]
+Data = "str | os.PathLike[str] | Mapping[str, Any] | Measured | Sweep | pd.DataFrame"
+"""A table of times of flight against speed: a CSV file, columns by name, or a result."""
+
+
+def table(data: Any, name: str = "data") -> tuple[str, str]:
+    """The text of a table and its name in messages."""
+    if isinstance(data, (str, os.PathLike)):
+        try:
+            return os.fspath(data), Path(data).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise OptionError(f"{os.fspath(data)} can't be read: {error}") from None
+    if isinstance(data, Measured):
+        return "speeds.csv", data.tables["speeds.csv"]
+    if isinstance(data, Sweep):
+        return data.experiment, csv({"speed_m_s": data.speed_m_s, **data.columns})
+    if isinstance(data, Mapping):
+        return name, csv(data)
+    if hasattr(data, "to_dict") and hasattr(data, "columns"):
+        return name, csv(data.reset_index().to_dict("list"))
+    raise OptionError(f"data of type {type(data).__name__}: expected a file, columns by name, a table, or what `measure` gives")
+
+
+def csv(columns: Mapping[str, Any]) -> str:
+    lists = {name: np.atleast_1d(np.asarray(values)) for name, values in columns.items()}
+    lengths = {values.size for values in lists.values() if values.ndim == 1}
+    if len(lengths) != 1 or any(values.ndim != 1 for values in lists.values()):
+        shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
+        raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
+    rows = zip(*(map(_cell, values) for values in lists.values()), strict=True)
+    return "\n".join([",".join(map(str, lists)), *(",".join(row) for row in rows)]) + "\n"
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, str):
+        return '"' + value.replace('"', '""') + '"'
+    number = float(value)
+    return "" if np.isnan(number) else repr(number)
+
+
+def modelled(model: Experiment | str | None) -> Experiment:
+    return model if isinstance(model, Experiment) else preset(model or "dry")
+
+
+class FitOptions(TypedDict, total=False):
+    """Keywords of a fit, as the command line has them."""
+
+    case: str | None
+    use: Iterable[What]
+    method: Method
+    start: options.Assignments | None
+    bounds: options.Assignments | None
+    prior: options.Assignments | None
+    scale: options.Assignments | None
+    fixed: options.Assignments | None
+    speed_error: float | None
+    tof_error: float | None
+    ratio_error: float | None
+    accuracy: float
+    robust: bool
+    starts: int
+    steps: int
+    direct: bool
+    seed: int
+    threads: int | None
+
+
+def words(**given: Unpack[FitOptions]) -> list[str]:
+    """Keywords of a fit as options; absent ones are left to the command line."""
+    plain = {key: value for key, value in given.items() if key not in _NOT_PLAIN}
+    return [
+        *options.words(**plain),
+        *options.listed("use", given.get("use")),
+        *options.assigned("set", given.get("fixed"), ""),
+        *options.assigned("start", given.get("start"), ""),
+        *options.assigned("bounds", given.get("bounds"), ":"),
+        *options.assigned("prior", given.get("prior"), "+-"),
+        *options.assigned("scale", given.get("scale"), ""),
+    ]
+
+
+_NOT_PLAIN = ("use", "start", "bounds", "prior", "scale", "fixed")

@@ -1,0 +1,193 @@
+//! A posterior whose likelihoods are computed on other machines, in batches.
+
+use crate::experiment::Experiment;
+use crate::failure::Failed;
+use crate::inference::{Found, Table, posed};
+use crate::job::Job;
+use hertzchain_infer::{Batch, CurveProblem, ModelError, Outcomes, Problem, Residuals, Spread};
+use hertzchain_study::reproduce::write_atomically;
+use hertzchain_study::{Stop, StudyError, stopped};
+use hertzchain_verbs::arguments::infer::Fit;
+use hertzchain_verbs::arguments::parsed;
+use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::fit as fitting;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+/// How long a look at what is computed elsewhere waits for it, in seconds.
+const WAIT_S: f64 = 0.02;
+
+/// Measurements against a model with free numbers, to be fitted; pickled, it goes
+/// to where batches are computed.
+#[pyclass(frozen, module = "hertzchain._hertzchain")]
+pub struct Likelihood {
+    inner: CurveProblem,
+    arguments: Fit,
+    table: Table,
+    experiment: Experiment,
+    options: Vec<String>,
+}
+
+/// Residuals of a point with their ln σ, or why there are none.
+#[derive(FromPyObject, IntoPyObject)]
+enum Outcome {
+    Residuals(Vec<f64>, Vec<f64>),
+    Failed(String),
+}
+
+impl From<Result<Residuals, ModelError>> for Outcome {
+    fn from(outcome: Result<Residuals, ModelError>) -> Self {
+        match outcome {
+            Ok(found) => Self::Residuals(found.standardised, found.ln_sigmas),
+            Err(ModelError(why)) => Self::Failed(why),
+        }
+    }
+}
+
+impl From<Outcome> for Result<Residuals, ModelError> {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Residuals(standardised, ln_sigmas) => Ok(Residuals {
+                standardised,
+                ln_sigmas,
+            }),
+            Outcome::Failed(why) => Err(ModelError(why)),
+        }
+    }
+}
+
+#[pymethods]
+impl Likelihood {
+    #[new]
+    #[pyo3(signature = (table, experiment, options))]
+    fn new(table: Table, experiment: &Experiment, options: Vec<String>) -> Result<Self, Failed> {
+        let arguments: Fit = parsed("fit", &options)?;
+        Ok(Self {
+            inner: posed(&table, experiment, &arguments)?,
+            arguments,
+            table,
+            experiment: experiment.clone(),
+            options,
+        })
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>().into_any();
+        let parts = (
+            self.table.clone(),
+            self.experiment.clone(),
+            self.options.clone(),
+        );
+        Ok((class, parts.into_pyobject(py)?))
+    }
+
+    /// A short name that follows from all inputs.
+    #[getter]
+    fn name(&self) -> String {
+        self.inner.fingerprint().short()
+    }
+
+    /// What becomes of points, in their order, computed in one thread.
+    fn outcomes(&self, py: Python<'_>, points: Vec<Vec<f64>>) -> PyResult<Vec<Outcome>> {
+        let wanted = self.inner.parameters().len();
+        if points.iter().any(|point| point.len() != wanted) {
+            let text = format!("every point has {wanted} numbers, one a free parameter");
+            return Err(Failed::from(Failure::User(text)).into());
+        }
+        Job::pooled(None, 1).run(py, |_| {
+            let found = self.inner.residuals(&points);
+            match stopped() {
+                true => Err(Failure::User(StudyError::Stopped.to_string())),
+                false => Ok(found.into_iter().map(Outcome::from).collect()),
+            }
+        })
+    }
+}
+
+/// Batches handed over to Python, and waited for.
+struct Elsewhere {
+    /// Given names and points of batches; gives a function that waits for some
+    /// seconds, and then gives outcomes, batch by batch, or none yet.
+    compute: Py<PyAny>,
+    stop: Stop,
+}
+
+impl Elsewhere {
+    /// Whoever asks stops once batches are lost: nothing of it would count.
+    fn outcomes(&self, batches: &[Batch]) -> Result<Vec<Outcomes>, String> {
+        self.waited(batches).map_err(|error| {
+            self.stop.ask();
+            error.to_string()
+        })
+    }
+
+    fn waited(&self, batches: &[Batch]) -> PyResult<Vec<Outcomes>> {
+        let named = batches
+            .iter()
+            .map(|batch| (batch.name.short(), &batch.points));
+        let named: Vec<_> = named.collect();
+        let waiting = Python::attach(|py| self.compute.call1(py, (named,)))?;
+        loop {
+            if stopped() {
+                return Err(Failed::from(Failure::User(StudyError::Stopped.to_string())).into());
+            }
+            let found = Python::attach(|py| {
+                let found = waiting.call1(py, (WAIT_S,))?;
+                found.extract::<Option<Vec<Vec<Outcome>>>>(py)
+            })?;
+            if let Some(found) = found {
+                let batch = |found: Vec<Outcome>| found.into_iter().map(Into::into).collect();
+                return Ok(found.into_iter().map(batch).collect());
+            }
+        }
+    }
+}
+
+/// Contact parameters from times of flight, with residuals computed elsewhere in
+/// batches of `size` points; here without `compute`.
+#[pyfunction]
+#[pyo3(signature = (likelihood, size, compute))]
+pub fn fit_spread<'py>(
+    py: Python<'py>,
+    likelihood: &Likelihood,
+    size: usize,
+    compute: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments = &likelihood.arguments;
+    let job = Job::pooled(None, arguments.modelled.threads.unwrap_or(0));
+    let stop = job.stop.clone();
+    let elsewhere = compute.map(|compute| Elsewhere { compute, stop });
+    let found = job.run(py, |_| {
+        let problem = &likelihood.inner;
+        let Some(elsewhere) = elsewhere else {
+            return fitted(problem, problem, arguments);
+        };
+        let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
+        let spread = Spread::new(problem, problem.fingerprint(), size, &compute);
+        let found = fitted(problem, &spread, arguments);
+        match spread.lost() {
+            Some(why) => Err(Failure::User(why.to_owned())),
+            None => found,
+        }
+    })?;
+    found.told(py)
+}
+
+/// A fit, whose walkers are left in the output folder.
+fn fitted(
+    problem: &CurveProblem,
+    computed: &dyn Problem,
+    arguments: &Fit,
+) -> Result<Found, Failure> {
+    let fitted = fitting::fitted_elsewhere(problem.clone(), computed, arguments)?;
+    if let (fitting::More::Sampled(sampled), Some(folder)) = (&fitted.inferred.more, &arguments.out)
+    {
+        let path = folder.join(fitting::CHAIN);
+        let written = write_atomically(&path, &fitting::saved(&sampled.chain)?);
+        written.map_err(|error| Failure::Ours(error.to_string()))?;
+    }
+    Ok(Found::of(&fitted, arguments))
+}

@@ -1,0 +1,251 @@
+"""Runs on real clusters: killed workers, a killed scheduler, poisoned shards."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, pickled
+from dask.distributed import Client, LocalCluster
+from test_inference import noisy
+
+import hertzchain as hc
+from hertzchain import distributed
+
+RIG = ROOT / "crates/rig/tests/small.toml"
+SPEEDS = np.linspace(0.1, 1.0, 120)
+MODULI = np.array([[200e9], [213e9]])
+
+
+def cluster() -> LocalCluster:
+    return LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Client]:
+    with cluster() as local, Client(local) as client:
+        yield client
+
+
+def same(found: hc.Ensemble, expected: hc.Ensemble) -> None:
+    """Every number has the same bits."""
+    assert found.shape == expected.shape and set(found.errors) == set(expected.errors)
+    # A shard tells the place in the file beside the reason.
+    assert all(found.errors[at].endswith(why) for at, why in expected.errors.items())
+    assert set(found.columns) >= {"tof_incident_s", "tof_reflected_s", "wall_peak_n"}
+    for name, column in found.columns.items():
+        assert np.array_equal(column, expected[name], equal_nan=True), name
+
+
+def recordings(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.glob("*.h5")}
+
+
+def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path):
+    parameters = {"young_modulus": MODULI}
+    there = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "there", client=client, shards=17)
+    here = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "here", shards=3)
+    whole = hc.ensemble(small, SPEEDS, parameters)
+    same(there.load(), whole)
+    same(here.load(), whole)
+    assert (there.shards, there.kept, there.poisoned) == (17, 0, {})
+    again = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "there", client=client, shards=17)
+    assert again.kept == 17 and "17 of them kept" in repr(again)
+    assert pickled(again) and not again.load().errors
+
+
+def test_shards_have_the_bytes_of_the_command_line(cli_shards, dry, client, tmp_path):
+    distributed.sweep(dry, hc.sweep(dry, "0.2:1:12").speed_m_s, folder=tmp_path / "there", client=client, shards=2)
+    assert recordings(tmp_path / "there") == cli_shards("--preset", "dry", "--speeds", "0.2:1:12")
+
+
+@pytest.fixture
+def cli_shards(tmp_path) -> Callable[..., dict[str, bytes]]:
+    """Both halves of a sweep by the program."""
+    from conftest import program
+
+    def run(*options: str) -> dict[str, bytes]:
+        for shard in ("1/2", "2/2"):
+            command = [program(), "sweep", *options, "--shard", shard, "--out", tmp_path / "cli"]
+            subprocess.run(command, check=True, capture_output=True)
+        return recordings(tmp_path / "cli")
+
+    return run
+
+
+def killed(folder: Path, ending: str, pids: Callable[[], set[int]], times: int) -> list[int]:
+    """Kills a worker each time that another file has appeared, with SIGKILL; tells when."""
+    dead: list[int] = []
+    files: list[int] = []
+    while len(dead) < times:
+        there = len(list(folder.glob(ending)))
+        if there > (files[-1] if files else 0) and (alive := pids() - set(dead)):
+            files.append(there)
+            dead.append(alive.pop())
+            os.kill(dead[-1], signal.SIGKILL)
+        time.sleep(0.01)
+    return files
+
+
+def pids(local: LocalCluster) -> set[int]:
+    """Processes of the workers that live."""
+    return {nanny.pid for nanny in local.workers.values() if nanny.pid is not None}
+
+
+@contextmanager
+def killing(folder: Path, ending: str, local: LocalCluster) -> Iterator[list[int]]:
+    """Two workers are killed meanwhile; how many files there were each time."""
+    files: list[int] = []
+    killer = threading.Thread(target=lambda: files.extend(killed(folder, ending, lambda: pids(local), 2)), daemon=True)
+    killer.start()
+    yield files
+    killer.join(timeout=60)
+    assert len(files) == 2
+
+
+def test_workers_killed_twice_lose_nothing_but_time(small, tmp_path):
+    speeds = np.linspace(0.1, 1.0, 600)
+    with cluster() as local, Client(local) as client, killing(tmp_path, "sweep-*.h5", local) as files:
+        run = distributed.sweep(small, speeds, folder=tmp_path, client=client, shards=30)
+    assert run.poisoned == {} and files[1] < 30
+    same(run.load(), hc.ensemble(small, speeds))
+
+
+def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
+    rig = hc.load(RIG)
+    hc.campaign(rig, tmp_path / "here")
+    with cluster() as local, Client(local) as client, killing(tmp_path / "there", "*.h5", local):
+        run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
+    assert run.poisoned == {}
+    assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
+    again = distributed.campaign(rig, tmp_path / "there", shards=6)
+    assert again.kept == 6
+
+
+@contextmanager
+def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
+    """A scheduler and two workers, each a process; the file that tells its address."""
+    told = folder / f"scheduler-{time.monotonic_ns()}.json"
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
+    scheduler = subprocess.Popen([*dask, "scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", told], **quiet)
+    worker = [*dask, "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", told, "--death-timeout", "30"]
+    workers = [subprocess.Popen(worker, **quiet) for _ in range(2)]
+    try:
+        yield told, scheduler
+    finally:
+        for process in (scheduler, *workers):
+            process.kill()
+            process.wait()
+
+
+def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
+    speeds = np.linspace(0.1, 1.0, 480)
+    folder = tmp_path / "run"
+    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+        done: list[int] = []
+
+        def kill(shards: int) -> None:
+            done.append(shards)
+            if len(done) == 5:
+                scheduler.kill()
+
+        with pytest.raises(ConnectionError, match="the same call goes on"):
+            distributed.sweep(small, speeds, folder=folder, client=client, shards=40, progress=kill)
+    assert 5 <= len(list(folder.glob("sweep-*.h5"))) < 40
+    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+        run = distributed.sweep(small, speeds, folder=folder, client=client, shards=40)
+    assert 5 <= run.kept < 40
+    same(run.load(), hc.ensemble(small, speeds))
+
+
+def test_bad_parameters_are_told_and_stop_nothing(small, client, tmp_path):
+    speeds = SPEEDS.copy()
+    speeds[5::10] = -1.0
+    moduli = np.where(np.arange(120) % 10 == 3, -1.0, 213e9)
+    run = distributed.sweep(small, speeds, {"young_modulus": moduli}, folder=tmp_path, client=client, shards=10)
+    found = run.load()
+    assert sorted(found.errors) == [(at,) for at in range(120) if at % 10 in (3, 5)]
+    same(found, hc.ensemble(small, speeds, {"young_modulus": moduli}))
+
+
+def test_a_poisoned_shard_is_told_and_stops_nothing(small, client, tmp_path):
+    speeds = np.linspace(0.1, 1.0, 60)
+    clean = distributed.sweep(small, speeds, folder=tmp_path / "clean", shards=6)
+    # A folder where the third shard's file should go: no worker can write it.
+    third = next((tmp_path / "clean").glob("sweep-*-3-of-6.h5")).name
+    (tmp_path / "run" / third).mkdir(parents=True)
+    run = distributed.sweep(small, speeds, folder=tmp_path / "run", client=client, shards=6)
+    assert list(run.poisoned) == [3] and "shard 3 is poisoned" in repr(run)
+    with pytest.raises(hc.OptionError, match=r"1 of 6 shards are missing"):
+        run.load()
+    (tmp_path / "run" / third).rmdir()
+    mended = distributed.sweep(small, speeds, folder=tmp_path / "run", client=client, shards=6)
+    assert mended.kept == 5 and mended.poisoned == {}
+    same(mended.load(), clean.load())
+
+
+@pytest.fixture(scope="module")
+def posterior(tmp_path_factory) -> tuple[dict[str, np.ndarray], dict[str, object], hc.Fitted]:
+    """Data, options, and the fit in this process, every curve computed."""
+    row = hc.preset("dry").set({"beads[0].count": 10.0})
+    data = noisy("dry", 1)
+    how = {"free": "eta,B", "method": "posterior", "steps": 60, "seed": 4, "tof_error": 1e-6}
+    return data, {"model": row, **how}, hc.fit(data, row, direct=True, **how)
+
+
+def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client, tmp_path):
+    data, how, here = posterior
+    there = distributed.fit(data, folder=tmp_path / "there", client=client, **how)
+    assert there.details == here.details
+    alone = distributed.fit(data, folder=tmp_path / "alone", **how)
+    assert alone.details == here.details
+    chains = [(tmp_path / name / "chain.json").read_bytes() for name in ("there", "alone")]
+    assert chains[0] == chains[1]
+
+
+def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_path):
+    data, how, here = posterior
+    with cluster() as local, Client(local) as client:
+        done = threading.Event()
+        dead: set[int] = set()
+
+        def kill() -> None:
+            while len(dead) < 2 and not done.wait(0.5):
+                if alive := pids(local) - dead:
+                    os.kill(pid := alive.pop(), signal.SIGKILL)
+                    dead.add(pid)
+
+        killer = threading.Thread(target=kill, daemon=True)
+        killer.start()
+        there = distributed.fit(data, folder=tmp_path, client=client, **how)
+        done.set()
+        killer.join()
+    assert len(dead) == 2 and there.details == here.details
+
+
+def test_a_posterior_goes_on_where_its_chain_stands(posterior, client, tmp_path):
+    data, how, here = posterior
+    distributed.fit(data, folder=tmp_path, client=client, **{**how, "steps": 20})
+    assert distributed.fit(data, folder=tmp_path, client=client, **how).details["posterior"] == here.details["posterior"]
+    other = {**data, "tof_incident_s": 1.1 * data["tof_incident_s"]}
+    with pytest.raises(hc.OptionError, match="--resume"):
+        distributed.fit(other, folder=tmp_path, client=client, **how)
+
+
+def test_what_makes_no_sense_is_refused_before_any_work(small, client, tmp_path):
+    with pytest.raises(hc.OptionError, match="broadcast"):
+        distributed.sweep(small, np.zeros(3), {"young_modulus": np.zeros(2)}, folder=tmp_path, client=client)
+    with pytest.raises(hc.OptionError):
+        distributed.sweep(small, SPEEDS, {"yung_modulus": 1.0}, folder=tmp_path, client=client)
+    with pytest.raises(hc.OptionError, match="accuracy|1e-13"):
+        distributed.sweep(small, SPEEDS, folder=tmp_path, client=client, accuracy=7.0)
+    with pytest.raises(hc.OptionError, match="--free"):
+        distributed.fit(noisy("dry", 1), free=[], folder=tmp_path, client=client)
