@@ -21,8 +21,8 @@ import hertzchain as hc
 from hertzchain import distributed
 
 EMPTY = 400
-SHARDS = 16
-SHOTS = 16_000
+SHARDS = 8
+SHOTS = 4_000
 ACCURACY = 1e-5
 TIMES = 3
 
