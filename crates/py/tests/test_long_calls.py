@@ -58,7 +58,7 @@ CALLS = {
     "shot": "hc.shot(hc.preset('dry').set({'beads[0].count': 20000.0}), 0.5, accuracy=1e-10)",
     "campaign": "hc.campaign(hc.preset('paper'), folder)",
     "posterior": "hc.fit(data, free='eta,B', method='posterior', direct=True)",
-    "gauge": "hc.gauge(data, data, model='motor', dry_free='eta,B')",
+    "gauge": "hc.gauge(data, data, model='motor')",
     "design": "hc.design(data, hc.preset('dry').set({'beads[0].count': 900.0}), free='eta,B')",
     "fit": "hc.fit(data, hc.preset('dry').set({'beads[0].count': 900.0}), free='eta,B', method='profile')",
 }
