@@ -3,6 +3,7 @@
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50        # data sets, of them by posterior
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet    # one case: dry, rk4, contacts, wet
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet 501    # other data sets: seeds from 501
 //! ```
 //!
 //! Curves are computed a hundred times as accurately as a fit's, once by
@@ -21,6 +22,7 @@ use hertzchain_infer::{
 };
 use rayon::prelude::*;
 use std::error::Error;
+use std::ops::Range;
 
 /// What is inferred from which curve.
 struct Case {
@@ -94,9 +96,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let count = |at: usize, usual| words.get(at).map_or(Ok(usual), |word| word.parse());
     let (sets, sampled): (usize, usize) = (count(0, 500)?, count(1, 50)?);
+    let from = count(3, 1)?;
     let asked = |case: &&Case| words.get(2).is_none_or(|name| name == case.name);
     for case in CASES.iter().filter(asked) {
-        study(case, sets, sampled).map_err(|error| error.to_string())?;
+        study(case, from..from + sets, sampled).map_err(|error| error.to_string())?;
     }
     Ok(())
 }
@@ -104,25 +107,29 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Which levels of an interval hold the true value, for both parameters.
 type Held = [[bool; 2]; 2];
 
-/// What one data set says, by covariance, profile and, if asked, posterior.
-type Said = Result<[Option<Held>; 3], String>;
+/// What one data set says.
+struct Said {
+    /// By covariance, profile and, if asked, posterior.
+    held: [Option<Held>; 3],
+    /// How many of its standard errors each parameter is off.
+    pulls: [f64; 2],
+    chi_square: f64,
+}
 
-fn study(case: &Case, sets: usize, sampled: usize) -> Result<(), Box<dyn Error>> {
+fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn Error>> {
     let truth = truth(case)?;
     let model = model(&preset(case.preset)?, &case.free);
     let first = problem(&model, truth.measured(0));
     let best = fit(&first, &Fitting::default())?;
     let around = Covariance::new(first.parameters(), &best);
     let surrogate = Surrogate::within(REACH, &first, &best, &around)?;
-    let one = |seed: usize| -> Said {
-        let repeated = surrogate.with_data(truth.measured(1 + seed as u64));
+    let from = seeds.start;
+    let one = |seed: usize| -> Result<Said, String> {
+        let repeated = surrogate.with_data(truth.measured(seed as u64));
         let repeated = repeated.map_err(|error| error.to_string())?;
-        said(&repeated, case, seed, seed < sampled).map_err(|error| error.to_string())
+        said(&repeated, case, seed, seed < from + sampled).map_err(|error| error.to_string())
     };
-    let said: Vec<_> = (0..sets)
-        .into_par_iter()
-        .map(one)
-        .collect::<Result<_, _>>()?;
+    let said: Vec<Said> = seeds.into_par_iter().map(one).collect::<Result<_, _>>()?;
     println!(
         "{}: {} and {}; surrogate right to {:.4} standard errors",
         case.name, case.free[0], case.free[1], surrogate.error
@@ -132,10 +139,30 @@ fn study(case: &Case, sets: usize, sampled: usize) -> Result<(), Box<dyn Error>>
         case.free[0], case.free[1]
     );
     for (at, method) in ["covariance", "profile", "posterior"].iter().enumerate() {
-        let held: Vec<Held> = said.iter().filter_map(|methods| methods[at]).collect();
+        let held: Vec<Held> = said.iter().filter_map(|said| said.held[at]).collect();
         println!("| {method} | {} | {} |", held.len(), shares(&held));
     }
+    for (at, name) in case.free.iter().enumerate() {
+        let pulls: Vec<f64> = said.iter().map(|said| said.pulls[at]).collect();
+        println!("{name} off by {} standard errors", moments(&pulls));
+    }
+    let freedom = (first.residual_count() - 2) as f64;
+    let chi_squares: Vec<f64> = said.iter().map(|said| said.chi_square / freedom).collect();
+    println!("chi-square over freedom {}", moments(&chi_squares));
     Ok(())
+}
+
+/// Mean with its error and standard deviation with its own, as of normal numbers.
+fn moments(values: &[f64]) -> String {
+    let of = values.len().max(2) as f64;
+    let mean = values.iter().sum::<f64>() / of;
+    let squares = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>();
+    let sd = (squares / (of - 1.0)).sqrt();
+    let (error, error_of_sd) = (sd / of.sqrt(), sd / (2.0 * of).sqrt());
+    format!("{mean:.3} ± {error:.3}, scattering by {sd:.3} ± {error_of_sd:.3}")
 }
 
 /// Half the surrogate's box: best fits scatter about the first one's, and
@@ -170,7 +197,7 @@ fn said(
     case: &Case,
     seed: usize,
     sampled: bool,
-) -> Result<[Option<Held>; 3], Box<dyn Error>> {
+) -> Result<Said, Box<dyn Error>> {
     let best = fit(problem, &Fitting::default())?;
     let covariance = Covariance::new(problem.parameters(), &best);
     let held = |interval: &dyn Fn(usize, usize) -> [f64; 2]| -> Held {
@@ -198,7 +225,11 @@ fn said(
             posterior.interval(at, [0.682_689, 0.95][level])
         }));
     }
-    Ok([Some(by_covariance), Some(by_profile), by_posterior])
+    Ok(Said {
+        held: [Some(by_covariance), Some(by_profile), by_posterior],
+        pulls: [0, 1].map(|at| (best.point[at] - case.exact[at]) / covariance.sd[at]),
+        chi_square: best.chi_square(),
+    })
 }
 
 /// A posterior sampled until its quantiles may be believed.

@@ -56,6 +56,7 @@ fn table(trials: u64, used: &[Observable]) -> Result<(), Box<dyn Error>> {
                 dry: &dry_model,
                 wet: &wet_model,
                 free: &free,
+                own: &[],
                 accuracy: 1e-5,
             };
             let data = |truth: &Truth, seed: u64| -> Data { truth.measured(seed).only(used) };

@@ -108,7 +108,10 @@ impl Covariance {
     /// resolved direction.
     pub(crate) fn displacement(&self, mut normal: impl FnMut() -> f64) -> Vec<f64> {
         let weights: Vec<f64> = self.axes.iter().map(|_| normal()).collect();
-        combine(&self.axes, &weights)
+        let mut displacement = combine(&self.axes, &weights);
+        // Without any axis there is none.
+        displacement.resize(self.matrix.len(), 0.0);
+        displacement
     }
 }
 

@@ -14,6 +14,7 @@ fn gauge(wet: Data, seed: u64) -> Gauge {
         dry: &dry_model,
         wet: &wet_model,
         free: &free,
+        own: &[],
         accuracy: 1e-5,
     };
     let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);

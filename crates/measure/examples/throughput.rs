@@ -71,14 +71,16 @@ fn all(folder: &Path, shots: usize, threads: usize) -> Anyhow {
     };
     let path = folder.join("rows.npy");
     npy(&path, shots, recording())?;
-    time("NPY, a row a shot", &path, &rows, threads)?;
+    let megabytes = 2e-6 * (shots * SAMPLES_A_SHOT) as f64;
+    let time = |name, path: &Path, options| time(name, path, megabytes, options, threads);
+    time("NPY, a row a shot", &path, &rows)?;
     let path = folder.join("rows.h5");
     hdf5(&path, shots, recording())?;
-    time("HDF5, a row a shot", &path, &rows, threads)?;
+    time("HDF5, a row a shot", &path, &rows)?;
     let path = folder.join("long.wav");
     wav(&path, shots, recording())?;
-    time("WAV, cut into equal lengths", &path, &parts, threads)?;
-    time("WAV, cut at a level", &path, &level, threads)
+    time("WAV, cut into equal lengths", &path, &parts)?;
+    time("WAV, cut at a level", &path, &level)
 }
 
 /// One shot as a 16-bit digitiser gives it, 50 dB above its noise.
@@ -94,8 +96,8 @@ fn shot(seed: u64) -> Vec<i16> {
     scene.summed().iter().map(digits).collect()
 }
 
-/// Measures a file and tells how long it took.
-fn time(name: &str, path: &Path, options: &Options, threads: usize) -> Anyhow {
+/// Measures a file of so many megabytes of samples and tells how long it took.
+fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usize) -> Anyhow {
     let files: [PathBuf; 1] = [path.to_owned()];
     let (start, before_s) = (Instant::now(), processor_s());
     let measured = measure(&files, options, &());
@@ -107,7 +109,6 @@ fn time(name: &str, path: &Path, options: &Options, threads: usize) -> Anyhow {
         let flight = shot.flight.as_ref();
         flight.is_ok_and(|flight| flight.reflected_s.is_some())
     });
-    let megabytes = 2e-6 * measured.samples as f64;
     println!(
         "{name}: {} of {} shots in {seconds:.2} s, {:.0} MB/s on {threads} threads; {:.0} MB in a second of one core",
         whole.count(),

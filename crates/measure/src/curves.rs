@@ -2,8 +2,8 @@
 
 use crate::Shot;
 use hertzchain_signal::{
-    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, groups, power_law,
-    power_law_both_errors, ratios_at_common, summary,
+    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
+    power_law_both_errors, ratios_at_common, shared, summary,
 };
 
 /// How shots are put together.
@@ -40,8 +40,12 @@ pub struct SpeedRow {
     pub incident_s: Summary,
     /// Reflected time of flight in s.
     pub reflected_s: Option<Summary>,
+    /// Parts in s of the errors of both that all shots share, and that their standard
+    /// errors do not hold: what lies under pulses in a summed channel moves them alike.
+    pub shared_s: [f64; 2],
     /// Incident and reflected time of flight in s at the mean speed, each shot's
-    /// taken there by its own measured speed: what power laws and ratios are made of.
+    /// taken there by its own measured speed, with all errors: what power laws and ratios are
+    /// made of.
     pub at_mean_speed_s: [Option<Estimate>; 2],
     /// Wall's peak over passing peak.
     pub wall_over_passing: Summary,
@@ -183,6 +187,7 @@ fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
     let moved = |time: usize| at_speed(&counted, speed_m_s, time);
     Some(SpeedRow {
         speed_m_s,
+        shared_s: [shared_s(&counted, 0), shared_s(&counted, 1)],
         at_mean_speed_s: [moved(0), moved(1)],
         shots: (counted.len(), group.len() - counted.len()),
         incident_s: of(&|flight| Some(flight.incident_s))?,
@@ -212,16 +217,25 @@ fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
     })
 }
 
+/// What the errors of all shots that have this time share: of both its pulses, the mean of
+/// what may have moved them.
+fn shared_s(shots: &[&&Timed<'_>], time: usize) -> f64 {
+    let has = |shot: &&&&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
+    let own = shots.iter().filter(has);
+    let own: Vec<[f64; 2]> = own.map(|shot| shot.flight.picks.under_s()[time]).collect();
+    shared(&own)
+}
+
 /// Mean of times that are taken to one speed, with the error of what scatters besides
 /// measured speeds: their errors are the mean speed's, and count there. At least
-/// that of picking.
+/// that of picking; and what all shots share on top.
 fn at_speed(shots: &[&&Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Estimate> {
     let moved = |shot: &&&Timed<'_>| {
         let of = [Some(shot.flight.incident_s), shot.flight.reflected_s][time]?;
         let factor = (speed_m_s.value / shot.speed.value).powf(EXPONENT);
         Some(Estimate {
             value: factor * of.value,
-            sigma: factor * of.sigma,
+            sigma: factor * alone(of.sigma, shot.flight.picks.under_s()[time]),
         })
     };
     let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();
@@ -232,7 +246,7 @@ fn at_speed(shots: &[&&Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<E
     let besides = summary.error.powi(2) - of_speed.powi(2);
     Some(Estimate {
         value: summary.mean,
-        sigma: besides.max(of_picking).sqrt(),
+        sigma: besides.max(of_picking).sqrt().hypot(shared_s(shots, time)),
     })
 }
 

@@ -1,7 +1,7 @@
 //! Shots cut out of a recording where it passes a level.
 
 use crate::Refused;
-use hertzchain_records::{Channel, Record, RecordError};
+use hertzchain_records::{Channel, Record, RecordError, Samples};
 use hertzchain_signal::{Cutter, Segment, Trigger, median};
 use std::collections::VecDeque;
 
@@ -24,19 +24,6 @@ const BEFORE: f64 = 0.1;
 /// Samples of a recording that tell its baseline.
 const LOOKED_AT: usize = 4096;
 
-/// One moment of all channels; the first one is the trigger's.
-#[derive(Clone, Copy)]
-struct Moment {
-    sensor: f64,
-    wall: f64,
-}
-
-impl From<Moment> for f64 {
-    fn from(moment: Moment) -> Self {
-        moment.sensor
-    }
-}
-
 /// The shots of recordings that come in pieces, one recording after the other.
 pub(crate) struct AtLevel<I> {
     pieces: I,
@@ -51,8 +38,10 @@ pub(crate) struct AtLevel<I> {
 struct UnderWay {
     /// Its first piece without samples.
     head: Record,
-    channels: Vec<Channel>,
-    cutter: Cutter<Moment>,
+    cutter: Cutter,
+    /// Pieces that a shot still to come may need.
+    kept: VecDeque<Record>,
+    /// Lowest and highest voltage until a shot was found.
     extremes_v: (f64, f64),
     found: bool,
 }
@@ -68,10 +57,10 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> AtLevel<I> {
         }
     }
 
-    fn piece(&mut self, piece: &Record) {
+    fn piece(&mut self, piece: Record) {
         if piece.first_sample == 0 {
             self.finish();
-            match UnderWay::new(piece, self.level) {
+            match UnderWay::new(&piece, self.level) {
                 Ok(begun) => self.under_way = Some(begun),
                 Err(refused) => self.ready.push_back(Err(refused)),
             }
@@ -95,7 +84,7 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> Iterator for AtLevel<I> {
     fn next(&mut self) -> Option<Self::Item> {
         while self.ready.is_empty() {
             match self.pieces.next() {
-                Some(Ok(piece)) => self.piece(&piece),
+                Some(Ok(piece)) => self.piece(piece),
                 Some(Err(error)) => {
                     self.finish();
                     self.ready.push_back(Err(error.into()));
@@ -132,11 +121,11 @@ impl UnderWay {
         });
         Ok(Self {
             head: piece.without_samples(),
-            channels: piece.channels.iter().map(empty).collect(),
             cutter: cutter.map_err(|cause| Refused::Uncuttable {
                 source_name: piece.source.clone(),
                 cause,
             })?,
+            kept: VecDeque::new(),
             extremes_v: (f64::INFINITY, f64::NEG_INFINITY),
             found: false,
         })
@@ -144,31 +133,62 @@ impl UnderWay {
 
     fn feed(
         &mut self,
-        piece: &Record,
+        piece: Record,
         shots: &mut u64,
         ready: &mut VecDeque<Result<Record, Refused>>,
     ) {
-        let mut volts = piece.channels.iter().map(|channel| channel.samples.volts());
-        let sensor = volts.next().unwrap_or_default();
-        let wall = volts.next().unwrap_or_default();
-        let wall = wall.into_iter().chain(std::iter::repeat(0.0));
-        let moments = sensor.iter().zip(wall);
-        let moments: Vec<Moment> = moments
-            .map(|(sensor, wall)| Moment {
-                sensor: *sensor,
-                wall,
-            })
-            .collect();
-        let (low, high) = &mut self.extremes_v;
-        *low = sensor.iter().copied().fold(*low, f64::min);
-        *high = sensor.iter().copied().fold(*high, f64::max);
-        let (head, channels) = (&self.head, &self.channels);
-        let before = ready.len();
-        self.cutter.feed(&moments, |segment| {
+        self.kept.push_back(piece);
+        let mut cut = Vec::new();
+        let newest = self.kept.back().and_then(|piece| piece.channels.first());
+        let Some(Channel { samples, .. }) = newest else {
+            return;
+        };
+        if !self.found {
+            let (low, high) = samples.extremes_v();
+            self.extremes_v = (self.extremes_v.0.min(low), self.extremes_v.1.max(high));
+        }
+        match samples {
+            Samples::Volts(volts) => self.cutter.feed(volts, |volt| volt, |one| cut.push(one)),
+            Samples::Counts {
+                counts,
+                volts_per_count,
+                offset_v,
+            } => {
+                let volts = |count| f64::from(count) * volts_per_count + offset_v;
+                self.cutter.feed(counts, volts, |one| cut.push(one));
+            }
+        }
+        self.hand_out(&cut, shots, ready);
+        let needed_from = self.cutter.needed_from();
+        self.kept
+            .retain(|piece| piece.first_sample + piece.len() as u64 > needed_from);
+    }
+
+    fn hand_out(
+        &mut self,
+        cut: &[Segment],
+        shots: &mut u64,
+        ready: &mut VecDeque<Result<Record, Refused>>,
+    ) {
+        self.found |= !cut.is_empty();
+        for segment in cut {
             *shots += 1;
-            ready.push_back(Ok(shot(head, channels, *shots, segment)));
-        });
-        self.found |= ready.len() > before;
+            ready.push_back(Ok(self.shot(*shots, segment)));
+        }
+    }
+
+    /// A shot that was cut out, by its number in the file.
+    fn shot(&self, number: u64, segment: &Segment) -> Record {
+        let fired_s = segment.trigger as f64 * self.head.interval_s;
+        let mut shot = Record {
+            source: format!("{}, shot {number} at {fired_s:.4} s", self.head.source),
+            shot: Some(number),
+            ..self.head.clone()
+        };
+        for piece in &self.kept {
+            add(&mut shot.channels, piece, segment);
+        }
+        shot
     }
 
     fn finish(
@@ -177,13 +197,9 @@ impl UnderWay {
         shots: &mut u64,
         ready: &mut VecDeque<Result<Record, Refused>>,
     ) {
-        let (head, channels) = (&self.head, &self.channels);
-        let before = ready.len();
-        self.cutter.finish(|segment| {
-            *shots += 1;
-            ready.push_back(Ok(shot(head, channels, *shots, segment)));
-        });
-        self.found |= ready.len() > before;
+        let mut cut = Vec::new();
+        self.cutter.finish(|one| cut.push(one));
+        self.hand_out(&cut, shots, ready);
         if !self.found {
             ready.push_back(Err(Refused::NeverPassed {
                 source_name: self.head.source.clone(),
@@ -195,27 +211,19 @@ impl UnderWay {
     }
 }
 
-fn empty(of: &Channel) -> Channel {
-    Channel {
-        name: of.name.clone(),
-        samples: of.samples.with_volts(Vec::new()),
+/// Adds what a piece has of a shot to its channels.
+fn add(channels: &mut Vec<Channel>, piece: &Record, segment: &Segment) {
+    let first = piece.first_sample;
+    let within = |sample: u64| (sample.saturating_sub(first) as usize).min(piece.len());
+    let (from, to) = (within(segment.samples.start), within(segment.samples.end));
+    if from == to {
+        return;
     }
-}
-
-/// A shot that was cut out, by its number in the file.
-fn shot(head: &Record, channels: &[Channel], number: u64, segment: Segment<'_, Moment>) -> Record {
-    let columns: [fn(&Moment) -> f64; 2] = [|moment| moment.sensor, |moment| moment.wall];
-    let channels = channels.iter().zip(columns).map(|(channel, of)| Channel {
-        name: channel.name.clone(),
-        samples: channel
-            .samples
-            .with_volts(segment.samples.iter().map(of).collect()),
-    });
-    let fired_s = segment.trigger as f64 * head.interval_s;
-    Record {
-        source: format!("{}, shot {number} at {fired_s:.4} s", head.source),
-        shot: Some(number),
-        channels: channels.collect(),
-        ..head.without_samples()
+    if channels.is_empty() {
+        *channels = piece.part(from, to - from).channels;
+        return;
+    }
+    for (channel, later) in channels.iter_mut().zip(&piece.channels) {
+        channel.samples.append(&later.samples, from, to - from);
     }
 }

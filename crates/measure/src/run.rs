@@ -55,8 +55,6 @@ pub struct Measurement {
     pub unmatched: Vec<String>,
     /// The first good shot of every case, with its samples.
     pub examples: Vec<Example>,
-    /// Samples that were read, all channels together.
-    pub samples: u64,
 }
 
 /// Something that was taken for granted.
@@ -196,7 +194,6 @@ fn volts(record: &Record) -> Vec<Vec<f64>> {
 
 impl Measurement {
     fn keep(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
-        self.samples += (record.len() * record.channels.len()) as u64;
         for note in &record.notes {
             self.note(note, &record.file);
         }

@@ -82,7 +82,8 @@ pub fn speeds_csv(curves: &Curves) -> String {
     ] {
         text += &format!(",{name},{name}_deviation,{name}_error,{name}_count");
     }
-    text += ",passing_width_s,wall_width_s,returning_width_s\n";
+    text += ",passing_width_s,wall_width_s,returning_width_s";
+    text += ",tof_incident_shared_s,tof_reflected_shared_s\n";
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -106,7 +107,8 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain(summarised(row.reflected_s))
         .chain(summarised(Some(row.wall_over_passing)))
         .chain(summarised(row.returning_over_passing))
-        .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))));
+        .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
+        .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))));
     line(cells)
 }
 

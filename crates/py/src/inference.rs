@@ -153,6 +153,7 @@ pub fn gauge<'py>(
             wet: &in_case(wet_model, &wet.case)?,
             dry: &in_case(dry_model, &dry.case)?,
             free: &arguments.dry_free,
+            own: &arguments.own,
             accuracy: arguments.accuracy,
         };
         let gauged = gauging::gauged(&chains, (dry, wet), all)?;

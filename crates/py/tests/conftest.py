@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -35,6 +36,12 @@ def cli() -> Callable[..., Any]:
         return json.loads(done.stdout)
 
     return run
+
+
+def pickled(result: object) -> bool:
+    """Whether what comes back from a pickle says the same."""
+    back = pickle.loads(pickle.dumps(result))
+    return type(back) is type(result) and repr(back) == repr(result)
 
 
 @pytest.fixture

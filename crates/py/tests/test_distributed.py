@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, pickled
 from dask.distributed import Client, LocalCluster
 from test_inference import noisy
 
@@ -58,6 +58,7 @@ def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path
     assert (there.shards, there.kept, there.poisoned) == (17, 0, {})
     again = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "there", client=client, shards=17)
     assert again.kept == 17 and "17 of them kept" in repr(again)
+    assert pickled(again) and not again.load().errors
 
 
 def test_shards_have_the_bytes_of_the_command_line(cli_shards, dry, client, tmp_path):
@@ -93,15 +94,16 @@ def killed(folder: Path, ending: str, pids: Callable[[], set[int]], times: int) 
     return files
 
 
+def pids(local: LocalCluster) -> set[int]:
+    """Processes of the workers that live."""
+    return {nanny.pid for nanny in local.workers.values() if nanny.pid is not None}
+
+
 @contextmanager
-def killing(folder: Path, ending: str, watching: Client) -> Iterator[list[int]]:
+def killing(folder: Path, ending: str, local: LocalCluster) -> Iterator[list[int]]:
     """Two workers are killed meanwhile; how many files there were each time."""
     files: list[int] = []
-
-    def pids() -> set[int]:
-        return set(watching.run(os.getpid, on_error="ignore").values())
-
-    killer = threading.Thread(target=lambda: files.extend(killed(folder, ending, pids, 2)), daemon=True)
+    killer = threading.Thread(target=lambda: files.extend(killed(folder, ending, lambda: pids(local), 2)), daemon=True)
     killer.start()
     yield files
     killer.join(timeout=60)
@@ -109,17 +111,17 @@ def killing(folder: Path, ending: str, watching: Client) -> Iterator[list[int]]:
 
 
 def test_workers_killed_twice_lose_nothing_but_time(small, tmp_path):
-    speeds = np.linspace(0.1, 1.0, 1200)
-    with cluster() as local, Client(local) as client, Client(local) as watching, killing(tmp_path, "sweep-*.h5", watching) as files:
-        run = distributed.sweep(small, speeds, folder=tmp_path, client=client, shards=40)
-    assert run.poisoned == {} and files[1] < 40
+    speeds = np.linspace(0.1, 1.0, 600)
+    with cluster() as local, Client(local) as client, killing(tmp_path, "sweep-*.h5", local) as files:
+        run = distributed.sweep(small, speeds, folder=tmp_path, client=client, shards=30)
+    assert run.poisoned == {} and files[1] < 30
     same(run.load(), hc.ensemble(small, speeds))
 
 
 def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
     rig = hc.load(RIG)
     hc.campaign(rig, tmp_path / "here")
-    with cluster() as local, Client(local) as client, Client(local) as watching, killing(tmp_path / "there", "*.h5", watching):
+    with cluster() as local, Client(local) as client, killing(tmp_path / "there", "*.h5", local):
         run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
     assert run.poisoned == {}
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
@@ -145,9 +147,9 @@ def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
 
 
 def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
-    speeds = np.linspace(0.1, 1.0, 1200)
+    speeds = np.linspace(0.1, 1.0, 480)
     folder = tmp_path / "run"
-    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=30) as client:
+    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
         done: list[int] = []
 
         def kill(shards: int) -> None:
@@ -156,11 +158,11 @@ def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
                 scheduler.kill()
 
         with pytest.raises(ConnectionError, match="the same call goes on"):
-            distributed.sweep(small, speeds, folder=folder, client=client, shards=60, progress=kill)
-    assert 5 <= len(list(folder.glob("sweep-*.h5"))) < 60
-    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=30) as client:
-        run = distributed.sweep(small, speeds, folder=folder, client=client, shards=60)
-    assert 5 <= run.kept < 60
+            distributed.sweep(small, speeds, folder=folder, client=client, shards=40, progress=kill)
+    assert 5 <= len(list(folder.glob("sweep-*.h5"))) < 40
+    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+        run = distributed.sweep(small, speeds, folder=folder, client=client, shards=40)
+    assert 5 <= run.kept < 40
     same(run.load(), hc.ensemble(small, speeds))
 
 
@@ -211,22 +213,22 @@ def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client
 
 def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_path):
     data, how, here = posterior
-    with cluster() as local, Client(local) as client, Client(local) as watching:
+    with cluster() as local, Client(local) as client:
         done = threading.Event()
-        pids: list[int] = []
+        dead: set[int] = set()
 
         def kill() -> None:
-            while len(pids) < 2 and not done.wait(0.7):
-                alive = set(watching.run(os.getpid, on_error="ignore").values()) - set(pids)
-                pids.append(alive.pop())
-                os.kill(pids[-1], signal.SIGKILL)
+            while len(dead) < 2 and not done.wait(0.5):
+                if alive := pids(local) - dead:
+                    os.kill(pid := alive.pop(), signal.SIGKILL)
+                    dead.add(pid)
 
         killer = threading.Thread(target=kill, daemon=True)
         killer.start()
         there = distributed.fit(data, folder=tmp_path, client=client, **how)
         done.set()
         killer.join()
-    assert len(pids) == 2 and there.details == here.details
+    assert len(dead) == 2 and there.details == here.details
 
 
 def test_a_posterior_goes_on_where_its_chain_stands(posterior, client, tmp_path):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import pickled
 
 import hertzchain as hc
 from hertzchain._posing import csv
@@ -55,6 +56,7 @@ def test_a_fit_finds_what_made_the_data(dry_data):
     assert set(fitted.rows) >= {"measured", "fitted", "fitted_error", "residual"}
     assert "±" in repr(fitted) and fitted.to_xarray()["covariance"].shape == (2, 2)
     assert len(fitted.to_pandas()) == 12
+    assert pickled(fitted) and all(map(pickled, fitted.parameters.values()))
 
 
 def test_tables_of_pandas_and_sweeps_are_data(dry_data):
@@ -82,12 +84,13 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     found = hc.design(dry_data, free="eta,B", target="B", picks=2)
     assert (found.ranked, found.series) == (told["ranked"], told["series"])
     assert len(found.to_pandas()) == len(found.ranked) and "measure next" in repr(found)
+    assert pickled(found)
     wet = noisy("motor", 2, 2)
     (tmp_path / "wet.csv").write_text(csv(wet))
     told = cli("gauge", tmp_path / "wet.csv", "--dry", table, "--preset", "motor")
     gauged = hc.gauge(wet, dry_data, model="motor")
     assert gauged.details == told and gauged.verdict in repr(gauged)
-    assert gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
+    assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,9 @@ CALLS = {
     "sweep": "hc.sweep(hc.preset('dry'), np.linspace(0.1, 1.0, 100_000), rebound=True)",
     "shot": "hc.shot(hc.preset('dry').set({'beads[0].count': 20000.0}), 0.5, accuracy=1e-10)",
     "campaign": "hc.campaign(hc.preset('paper'), folder)",
+    "posterior": "hc.fit(data, free='eta,B', method='posterior', direct=True)",
+    "gauge": "hc.gauge(data, data, model='motor')",
+    "design": "hc.design(data, hc.preset('dry').set({'beads[0].count': 900.0}), free='eta,B')",
     "fit": "hc.fit(data, hc.preset('dry').set({'beads[0].count': 900.0}), free='eta,B', method='profile')",
 }
 
@@ -70,7 +73,7 @@ def test_ctrl_c_stops_a_call_at_once(verb, tmp_path):
     import hertzchain as hc
     folder = {str(tmp_path / "campaign")!r}
     data = {{"speed_m_s": np.linspace(0.1, 1, 40), "tof_incident_s": 6e-4 * np.linspace(0.1, 1, 40) ** -0.2,
-            "tof_incident_s_error": np.full(40, 1e-6)}}
+            "tof_incident_s_error": np.full(40, 1e-6), "speed_error_m_s": np.full(40, 1e-6)}}
     came = []
     usual = signal.getsignal(signal.SIGINT)
     def note(*rest):

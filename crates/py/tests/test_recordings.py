@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import ROOT, program
+from conftest import ROOT, pickled, program
 
 import hertzchain as hc
 
@@ -32,7 +32,7 @@ def test_recordings_are_the_bytes_of_the_command_line(records, tmp_path):
 
 def test_a_campaign_goes_on_and_comes_in_parts(records, tmp_path):
     again = hc.campaign(hc.load(SMALL), records)
-    assert again.run == 0 and again.kept == len(again.files)
+    assert again.run == 0 and again.kept == len(again.files) and pickled(again)
     for shard in ("1/2", "2/2"):
         hc.campaign(hc.load(SMALL), tmp_path / "parts", shard=shard)
     assert {p.name: p.read_bytes() for p in records.glob("*.h5")} == {p.name: p.read_bytes() for p in (tmp_path / "parts").glob("*.h5")}
@@ -55,6 +55,7 @@ def test_measurements_are_those_of_the_command_line(cli, records):
         own = found.cases[case["case"]]
         assert own["tof_incident_s"].tolist() == [row["tof_incident_s"]["mean"] for row in case["speeds"]]
     assert found.verdict is None and "Measured" in repr(found)
+    assert pickled(found) and all(map(pickled, found.cases.values()))
     assert len(found.to_pandas()) == len(found.shots)
 
 

@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import pickled
 
 import hertzchain as hc
 
@@ -160,8 +161,10 @@ def test_results_convert_with_units(small):
 def test_results_and_experiments_pickle(small):
     changed = small.set({"young_modulus": 200e9}).set({"beads[0].radius": "6 mm"})
     assert pickle.loads(pickle.dumps(changed)).numbers() == changed.numbers()
-    for result in (hc.shot(changed, trace=True), hc.sweep(changed, [0.2, 0.5]), hc.ensemble(changed, [0.2, 0.5]), hc.theory(changed)):
-        assert repr(pickle.loads(pickle.dumps(result))) == repr(result)
+    shot, swept = hc.shot(changed, trace=True), hc.sweep(changed, [0.2, 0.5, 1.0])
+    results = (shot, shot.trace, swept, swept.power_law_incident, hc.ensemble(changed, [0.2, 0.5]), hc.theory(changed), hc.check(changed))
+    assert all(map(pickled, (*results, *hc.laws())))
+    assert np.array_equal(pickle.loads(pickle.dumps(swept)).tof_incident_s, swept.tof_incident_s)
 
 
 def test_results_print_well(small):

@@ -170,23 +170,56 @@ impl Samples {
         Some((a.min(b), a.max(b)))
     }
 
-    /// Other voltages as samples of the same kind; readings are rounded back.
+    /// Lowest and highest voltage of these samples, +∞ and −∞ of none.
     #[must_use]
-    pub fn with_volts(&self, volts: Vec<f64>) -> Self {
+    pub fn extremes_v(&self) -> (f64, f64) {
+        fn extremes(volts: impl Iterator<Item = f64>) -> (f64, f64) {
+            volts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), volt| {
+                (low.min(volt), high.max(volt))
+            })
+        }
         match self {
-            Self::Volts(_) => Self::Volts(volts),
+            Self::Volts(volts) => extremes(volts.iter().copied()),
             Self::Counts {
+                counts,
                 volts_per_count,
                 offset_v,
-                ..
-            } => Self::Counts {
-                counts: volts
-                    .iter()
-                    .map(|volt| nearest((volt - offset_v) / volts_per_count))
-                    .collect(),
-                volts_per_count: *volts_per_count,
-                offset_v: *offset_v,
-            },
+            } => {
+                // Whole numbers first: they are compared many at a time.
+                let ends = counts.iter().min().into_iter().chain(counts.iter().max());
+                extremes(ends.map(|count| f64::from(*count) * volts_per_count + offset_v))
+            }
+        }
+    }
+
+    /// Adds what a later piece of the same recording has from sample `start` on, at most
+    /// `count` samples. Readings of another scale make all of them volts.
+    pub fn append(&mut self, later: &Self, start: usize, count: usize) {
+        fn added<T: Copy>(to: &mut Vec<T>, of: &[T], start: usize, count: usize) {
+            let of = of.get(start..).unwrap_or_default();
+            to.extend_from_slice(of.get(..count).unwrap_or(of));
+        }
+        match (&mut *self, later) {
+            (Self::Volts(volts), Self::Volts(later)) => added(volts, later, start, count),
+            (
+                Self::Counts {
+                    counts,
+                    volts_per_count,
+                    offset_v,
+                },
+                Self::Counts {
+                    counts: later,
+                    volts_per_count: scale,
+                    offset_v: offset,
+                },
+            ) if *volts_per_count == *scale && *offset_v == *offset => {
+                added(counts, later, start, count);
+            }
+            (_, later) => {
+                let mut volts = self.volts();
+                volts.extend(later.part(start, count).volts());
+                *self = Self::Volts(volts);
+            }
         }
     }
 
@@ -208,9 +241,4 @@ impl Samples {
             },
         }
     }
-}
-
-/// The nearest reading. Adding half and cutting off is one instruction where `round` is a call.
-fn nearest(count: f64) -> i16 {
-    (count + 0.5_f64.copysign(count)) as i16
 }

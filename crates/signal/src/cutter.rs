@@ -1,6 +1,7 @@
 //! Shots cut out of a recording that comes in pieces, where it passes a level.
 
 use crate::error::SignalError;
+use std::ops::Range;
 
 /// When a level trigger fires.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,31 +21,30 @@ pub struct Trigger {
     pub hold_off: u64,
 }
 
-/// A shot cut out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment<'a, T> {
-    /// Number of its first sample in the recording, from 0.
-    pub first_sample: u64,
+/// A shot that was cut out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Numbers of its samples in the recording, from 0: fewer than asked for at the
+    /// recording's end, and before a trigger that comes soon after its beginning or after
+    /// another shot.
+    pub samples: Range<u64>,
     /// Number of the sample that fired.
     pub trigger: u64,
-    /// Its samples: fewer than asked for at the recording's end, and before a
-    /// trigger that comes soon after its beginning or after another shot.
-    pub samples: &'a [T],
     /// Whether the recording lasted to the shot's end.
     pub complete: bool,
 }
 
-/// Cuts shots out of a recording that is given piece by piece.
+/// Tells where the shots of a recording are that is given piece by piece.
 ///
-/// What comes out does not depend on how the recording was divided into
-/// pieces. Holds one shot and what comes before a trigger, no more.
+/// What comes out does not depend on how the recording was divided into pieces. Holds no
+/// samples: who feeds it keeps those from [`Cutter::needed_from`] on.
 #[derive(Clone, Debug)]
-pub struct Cutter<T> {
+pub struct Cutter {
     trigger: Trigger,
-    /// Samples of the shot under way, or the last ones that may come before one.
-    held: Vec<T>,
     /// Number of the next sample.
     position: u64,
+    /// End of the last shot.
+    free_from: u64,
     state: State,
 }
 
@@ -54,123 +54,116 @@ enum State {
     Resting(u64),
     /// Fires at the level.
     Armed,
-    /// Collects a shot that fired at this sample until it has so many.
-    Collecting(u64, usize),
+    /// In a shot that fired at this sample.
+    Collecting(u64),
 }
 
 /// Samples looked at together: enough to keep the processor busy without a branch each.
 const STRIDE: usize = 64;
 
-impl<T: Copy + Into<f64>> Cutter<T> {
+impl Cutter {
     /// # Errors
     /// No sample after the trigger; a level that is not finite; negative hysteresis.
     pub fn new(trigger: Trigger) -> Result<Self, SignalError> {
         trigger.check()?;
         Ok(Self {
             trigger,
-            held: Vec::new(),
             position: 0,
+            free_from: 0,
             state: State::Resting(0),
         })
     }
 
-    /// Takes the next piece of the recording and hands out the shots that end in it.
-    pub fn feed(&mut self, piece: &[T], mut shot: impl FnMut(Segment<'_, T>)) {
+    /// Takes the next piece of the recording, what its samples are worth in the trigger's
+    /// unit, and hands out the shots that end in it.
+    pub fn feed<T: Copy>(
+        &mut self,
+        piece: &[T],
+        value: impl Fn(T) -> f64,
+        mut shot: impl FnMut(Segment),
+    ) {
         let mut left = piece;
         while !left.is_empty() {
             let used = match self.state {
-                State::Collecting(fired, length) => self.collect(left, fired, length, &mut shot),
-                State::Resting(until) => self.rest(left, until),
-                State::Armed => self.wait(left),
+                State::Collecting(fired) => self.collect(left.len(), fired, &mut shot),
+                State::Resting(until) => self.rest(left, until, &value),
+                State::Armed => self.wait(left, &value),
             };
             left = left.get(used..).unwrap_or_default();
         }
     }
 
     /// Hands out what the recording's end cut short, if anything, and begins anew.
-    pub fn finish(&mut self, mut shot: impl FnMut(Segment<'_, T>)) {
-        if let State::Collecting(fired, _) = self.state
-            && !self.held.is_empty()
-        {
-            shot(self.segment(&self.held, fired, false));
+    pub fn finish(&mut self, mut shot: impl FnMut(Segment)) {
+        if let State::Collecting(fired) = self.state {
+            shot(Segment {
+                samples: self.begins(fired)..self.position,
+                trigger: fired,
+                complete: false,
+            });
         }
-        self.held.clear();
         self.position = 0;
+        self.free_from = 0;
         self.state = State::Resting(0);
     }
 
-    fn segment<'a>(&self, samples: &'a [T], fired: u64, complete: bool) -> Segment<'a, T> {
-        Segment {
-            first_sample: self.position - samples.len() as u64,
-            trigger: fired,
-            samples,
-            complete,
-        }
+    /// The first sample that a shot still to come may have.
+    #[must_use]
+    pub fn needed_from(&self) -> u64 {
+        self.begins(match self.state {
+            State::Collecting(fired) => fired,
+            State::Resting(_) | State::Armed => self.position,
+        })
     }
 
-    /// Adds to the shot under way; returns how many samples it took.
-    fn collect(
-        &mut self,
-        left: &[T],
-        fired: u64,
-        length: usize,
-        shot: &mut impl FnMut(Segment<'_, T>),
-    ) -> usize {
-        let used = left.len().min(length - self.held.len());
-        self.position += used as u64;
-        let whole = self.held.len() + used == length;
-        let (taken, _) = left.split_at(used);
-        if whole && self.held.is_empty() {
-            // All in one piece: no need to copy it.
-            shot(self.segment(taken, fired, true));
-        } else {
-            self.held.extend_from_slice(taken);
+    /// First sample of a shot that fires at this one.
+    fn begins(&self, fires: u64) -> u64 {
+        let before = self.trigger.before as u64;
+        fires.saturating_sub(before).max(self.free_from)
+    }
+
+    /// Goes on in the shot under way; returns how many samples it took.
+    fn collect(&mut self, left: usize, fired: u64, shot: &mut impl FnMut(Segment)) -> usize {
+        let end = fired + (self.trigger.length - self.trigger.before) as u64;
+        let wanted = end - self.position;
+        if wanted > left as u64 {
+            self.position += left as u64;
+            return left;
         }
-        if whole {
-            if !self.held.is_empty() {
-                shot(self.segment(&self.held, fired, true));
-                self.held.clear();
-            }
-            let until = fired.saturating_add(self.trigger.hold_off);
-            self.state = State::Resting(self.position.max(until));
-        }
-        used
+        shot(Segment {
+            samples: self.begins(fired)..end,
+            trigger: fired,
+            complete: true,
+        });
+        self.position = end;
+        self.free_from = end;
+        let until = fired.saturating_add(self.trigger.hold_off);
+        self.state = State::Resting(end.max(until));
+        wanted as usize
     }
 
     /// Waits for the signal to be back, `until` a sample at least.
-    fn rest(&mut self, left: &[T], until: u64) -> usize {
+    fn rest<T: Copy>(&mut self, left: &[T], until: u64, value: impl Fn(T) -> f64) -> usize {
         let waiting = until.saturating_sub(self.position);
         let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
-        let back = first(&left[skip..], |x| self.trigger.is_back(x));
+        let back = first(&left[skip..], |x| self.trigger.is_back(value(x)));
         if back.is_some() {
             self.state = State::Armed;
         }
         let used = back.map_or(left.len(), |at| skip + at);
-        self.remember(&left[..used]);
+        self.position += used as u64;
         used
     }
 
     /// Waits for the level.
-    fn wait(&mut self, left: &[T]) -> usize {
-        let trigger = self.trigger;
-        let fires = first(left, |x| trigger.fires(x));
+    fn wait<T: Copy>(&mut self, left: &[T], value: impl Fn(T) -> f64) -> usize {
+        let fires = first(left, |x| self.trigger.fires(value(x)));
         let used = fires.unwrap_or(left.len());
-        self.remember(&left[..used]);
+        self.position += used as u64;
         if fires.is_some() {
-            let after = trigger.length - trigger.before;
-            self.state = State::Collecting(self.position, self.held.len() + after);
+            self.state = State::Collecting(self.position);
         }
         used
-    }
-
-    /// Keeps the last samples that a shot may need.
-    fn remember(&mut self, passed: &[T]) {
-        let before = self.trigger.before;
-        self.position += passed.len() as u64;
-        let new = &passed[passed.len().saturating_sub(before)..];
-        let surplus = (self.held.len() + new.len()).saturating_sub(before);
-        self.held.drain(..surplus);
-        self.held.extend_from_slice(new);
     }
 }
 
@@ -208,13 +201,13 @@ impl Trigger {
 }
 
 /// First sample for which `test` holds.
-fn first<T: Copy + Into<f64>>(samples: &[T], test: impl Fn(f64) -> bool) -> Option<usize> {
+fn first<T: Copy>(samples: &[T], test: impl Fn(T) -> bool) -> Option<usize> {
     let mut start = 0;
     for chunk in samples.chunks(STRIDE) {
         // Without early exit inside, so that it runs many samples at a time.
-        let any = chunk.iter().fold(false, |any, x| any | test((*x).into()));
+        let any = chunk.iter().fold(false, |any, x| any | test(*x));
         if any {
-            let at = chunk.iter().position(|x| test((*x).into()))?;
+            let at = chunk.iter().position(|x| test(*x))?;
             return Some(start + at);
         }
         start += chunk.len();

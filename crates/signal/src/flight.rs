@@ -44,6 +44,15 @@ impl Estimate {
 }
 
 impl Picks {
+    /// How far what lies under them may have moved the two pulses of the incident and of the
+    /// reflected time, [`Picked::under_s`].
+    #[must_use]
+    pub fn under_s(&self) -> [[f64; 2]; 2] {
+        let wall = self.wall.under_s;
+        let back = self.returning.map_or(0.0, |back| back.under_s);
+        [[self.passing.under_s, wall], [wall, back]]
+    }
+
     /// Times of flight and attenuation from the three pulses.
     #[must_use]
     pub fn flight(self) -> Flight {

@@ -3,7 +3,7 @@
 //! Knows nothing of chains or files: everything takes plain slices and, where
 //! time matters, a sampling interval in s. From samples to a curve:
 //!
-//! 1. [`Cutter`] cuts shots out of a recording given piece by piece.
+//! 1. [`Cutter`] tells where the shots of a recording are that is given piece by piece.
 //! 2. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
 //!    makes a [`Flight`] of them, with an uncertainty of its own and [`Doubt`]s.
 //! 3. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
@@ -44,7 +44,7 @@ mod zero_phase;
 
 pub use cutter::{Cutter, Segment, Trigger};
 pub use delay::delay_by_cross_correlation;
-pub use droop::{droop, undroop};
+pub use droop::undroop;
 pub use error::SignalError;
 pub use find::{Channels, Doubt, Finding, Found, Place, Polarity, Pulse, Upright, pulses, upright};
 pub use flight::{Estimate, Flight};
@@ -57,8 +57,8 @@ pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,
 };
 pub use reduce::{
-    ChiSquare, Coverage, Point, Ratio, Summary, chi_square, coverage, groups, ratios_at_common,
-    summary,
+    ChiSquare, Coverage, Point, Ratio, Summary, alone, chi_square, coverage, groups,
+    ratios_at_common, shared, summary,
 };
-pub use saturation::{Rails, saturated_runs};
+pub use saturation::Rails;
 pub use zero_phase::LowPass;

@@ -1,7 +1,5 @@
 //! Runs of samples at an end of the digitiser's range.
 
-use std::ops::Range;
-
 /// The two ends of a digitiser's range, in the samples' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rails {
@@ -22,28 +20,14 @@ impl Rails {
     }
 }
 
-/// Runs of at least `shortest` samples in a row on or beyond a rail.
+/// Whether at least `shortest` samples in a row stand on or beyond a rail.
 ///
 /// Without knowledge of the digitiser give the record's own extremes and a
 /// `shortest` that no round top reaches: a bell of width w (full width at
 /// half maximum, in samples) and H steps high has some 0.9 w/√H equal samples.
-#[must_use]
-pub fn saturated_runs(samples: &[f64], rails: Rails, shortest: usize) -> Vec<Range<usize>> {
-    let mut runs = Vec::new();
-    let mut from = None;
-    for (i, x) in samples.iter().enumerate() {
-        match (rails.hold(*x), from) {
-            (true, None) => from = Some(i),
-            (false, Some(start)) => {
-                runs.push(start..i);
-                from = None;
-            }
-            _ => {}
-        }
-    }
-    runs.extend(from.map(|start| start..samples.len()));
-    runs.retain(|run| run.len() >= shortest.max(1));
-    runs
+pub(crate) fn has_run(samples: &[f64], rails: Rails, shortest: usize) -> bool {
+    let mut runs = samples.chunk_by(|a, b| rails.hold(*a) == rails.hold(*b));
+    runs.any(|run| run.len() >= shortest && rails.hold(run[0]))
 }
 
 #[cfg(test)]
@@ -52,14 +36,15 @@ mod tests {
 
     #[test]
     fn runs_at_either_rail_are_found_also_at_the_end() {
-        let samples = [0.0, 5.0, 5.0, 5.0, 1.0, -5.0, 0.0, 5.0, 5.0];
         let rails = Rails {
             low: -5.0,
             high: 5.0,
         };
-        assert_eq!(saturated_runs(&samples, rails, 2), [1..4, 7..9]);
-        assert_eq!(saturated_runs(&samples, rails, 1).len(), 3);
-        assert!(saturated_runs(&[], rails, 1).is_empty());
+        let low = [0.0, -5.0, -5.0, -5.0, 1.0, 1.0, 1.0, 1.0];
+        assert!(has_run(&low, rails, 3));
+        assert!(!has_run(&low, rails, 4), "neither rail has four");
+        assert!(has_run(&[1.0, 5.0, 6.0], rails, 2));
+        assert!(!has_run(&[], rails, 1));
     }
 
     #[test]

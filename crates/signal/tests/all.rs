@@ -3,6 +3,7 @@
 
 mod common;
 mod cutting;
+mod droop;
 mod finding;
 mod nonsense;
 mod picking;

@@ -133,7 +133,7 @@ proptest! {
         };
         if let Ok(mut cutter) = Cutter::new(trigger) {
             let mut count = 0;
-            cutter.feed(&recording, |_| count += 1);
+            cutter.feed(&recording, |x| x, |_| count += 1);
             cutter.finish(|_| count += 1);
             prop_assert!(count <= 1);
         }

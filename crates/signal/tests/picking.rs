@@ -12,7 +12,7 @@ use crate::common::{Scene, channels, normal};
 use dry::Dry;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Flight, LowPass, Measuring, Method, Place, Rails, Shape,
-    SignalError, Template, coverage, cramer_rao_s, droop, measure,
+    SignalError, Template, coverage, cramer_rao_s, measure,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -296,27 +296,6 @@ fn saturated_samples_are_left_out_of_a_fit_of_the_shape() {
     // What is left of the pulse is still exact: rounding.
     assert!((found.incident_s.value - scene.incident_s()).abs() < 1e-11);
     assert!((found.picks.wall.height - 1.6).abs() < 1e-8);
-}
-
-#[test]
-fn droop_is_taken_out_when_its_time_constant_is_given() {
-    let scene = Scene {
-        noise: 1e-6,
-        ..Scene::default()
-    };
-    let mut drooped = scene.summed();
-    droop(&mut drooped, 1e-6, 2e-3).unwrap();
-    let mut measuring = by(&Method::default());
-    let off = |measuring: &Measuring| {
-        let shot = measure(Channels::Summed(&drooped), 1e-6, measuring).unwrap();
-        shot.flight.unwrap().incident_s.value - scene.incident_s()
-    };
-    let uncorrected = off(&measuring);
-    measuring.high_pass_s = Some(2e-3);
-    // (52² − 60²)/(5.33 · 2000) µs = −0.08, with the other sign: a narrow pulse moves less.
-    assert!((uncorrected - 84e-9).abs() < 10e-9, "{uncorrected:e}");
-    // The local model's own bias on bells of these widths.
-    assert!(off(&measuring).abs() < 5e-9);
 }
 
 #[test]

@@ -10,6 +10,9 @@ use crate::tuned::Tuned;
 use hertzchain_experiment::Warning;
 use rayon::prelude::*;
 
+/// Shots that are in memory as chains at a time.
+const TOGETHER: usize = 4096;
+
 /// A shot's plan with what is odd about it, or why there is none.
 pub(crate) type Planned = Result<(Plan, Vec<Warning>), PointError>;
 
@@ -45,6 +48,11 @@ impl Several<'_> {
     /// Shots at some places, in their order. Bits do not depend on which others
     /// are asked for along.
     pub(crate) fn shoot(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {
+        let parts = places.chunks(TOGETHER);
+        parts.flat_map(|part| self.together(part, tuned)).collect()
+    }
+
+    fn together(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {
         let wanted = |place: &usize| match stopped() {
             true => Err(StudyError::Stopped.into()),
             false => (self.plan)(*place),

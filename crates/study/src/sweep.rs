@@ -5,6 +5,7 @@ use crate::plan::Plan;
 use crate::rows::{Column, Law, Rows};
 use crate::several::{Planned, Several};
 use crate::shot::Shot;
+use crate::stop::stopped;
 use crate::tuned::Tuned;
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
@@ -153,6 +154,9 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
         incident: Err(FitError::TooFew),
         reflected: Err(FitError::TooFew),
     };
+    if stopped() {
+        return sweep;
+    }
     sweep.incident = sweep.law(Column::Incident).0;
     sweep.reflected = sweep.law(Column::Reflected).0;
     sweep

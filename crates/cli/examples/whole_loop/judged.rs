@@ -1,11 +1,11 @@
-//! Recordings of virtual campaigns: each shot's times as measured, as they were,
-//! and as the model of a compact chain has them.
+//! Recordings of virtual campaigns: each shot's times as measured, as they were, and as the
+//! model has them, of a chain in equilibrium and of the very chain that was shot at.
 
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
 use hertzchain_measure::{Options, Shot, measure};
 use hertzchain_rig::{Case, Plan, Shard, campaign};
-use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_signal::{ChiSquare, Estimate, alone, chi_square, shared};
 use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
@@ -28,34 +28,43 @@ pub struct Judged {
     pub speed_m_s: Estimate,
     /// Times of flight in s, as measured.
     pub measured_s: [Option<Estimate>; 2],
+    /// How far in s what lies under them may have moved the two pulses of each.
+    pub under_s: [[f64; 2]; 2],
     /// The recorded shot's own in s.
     pub true_s: [f64; 2],
-    /// Those of the same chain, laid compact, at the measured speed, in s.
-    pub model_s: [f64; 2],
+    /// Those of the same chain in equilibrium at the measured speed, in s.
+    pub compact_s: [f64; 2],
+    /// Those of the chain with the loads that friction held on it before this shot, at the
+    /// measured speed, in s: the model's, since the rig integrates nothing else.
+    pub held_s: [f64; 2],
 }
+
+/// One of the model's curves.
+pub type Curve = fn(&Judged) -> [f64; 2];
+
+/// Of the chain in equilibrium.
+pub const COMPACT: Curve = |shot| shot.compact_s;
+/// Of the chain as friction held it.
+pub const HELD: Curve = |shot| shot.held_s;
 
 impl Judged {
     /// Measured less true time, with the stated error of picking.
     pub fn error(&self, time: usize) -> Option<Estimate> {
-        self.less(time, self.true_s[time], 0.0)
-    }
-
-    /// Measured time less the model's, with all stated errors: of picking and of the speed.
-    pub fn departure(&self, time: usize) -> Option<Estimate> {
-        let relative = self.speed_m_s.sigma / self.speed_m_s.value;
-        self.less(
-            time,
-            self.model_s[time],
-            EXPONENT * relative * self.model_s[time],
-        )
-    }
-
-    fn less(&self, time: usize, other_s: f64, sigma: f64) -> Option<Estimate> {
         let measured = self.measured_s[time]?;
-        let value = measured.value - other_s;
+        let value = measured.value - self.true_s[time];
+        value.is_finite().then_some(Estimate { value, ..measured })
+    }
+
+    /// Measured time less the model's, with the stated errors that are this shot's own: of
+    /// picking, without what shots share, and of the speed.
+    fn departure(&self, time: usize, curve: Curve) -> Option<Estimate> {
+        let measured = self.measured_s[time]?;
+        let model_s = curve(self)[time];
+        let of_speed = EXPONENT * model_s * self.speed_m_s.sigma / self.speed_m_s.value;
+        let value = measured.value - model_s;
         value.is_finite().then(|| Estimate {
             value,
-            sigma: measured.sigma.hypot(sigma),
+            sigma: alone(measured.sigma, self.under_s[time]).hypot(of_speed),
         })
     }
 }
@@ -68,37 +77,45 @@ pub struct Speed {
     pub count: usize,
     /// Mean departure in s, with the error that the shots state.
     pub departure_s: Estimate,
+    /// Part of that error in s that shots share.
+    pub shared_s: f64,
     /// Standard error in s by the shots' scatter.
     pub scatter_s: f64,
 }
 
-/// Means a speed of one case, and their chi-square against no departure at all.
-pub fn by_speed(shots: &[&Judged], time: usize) -> (Vec<Speed>, Option<ChiSquare>) {
+/// Means a speed of one case, less one of the model's curves.
+pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
     let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
-    let rows: Vec<Speed> = speeds
-        .into_iter()
-        .filter_map(|speed_m_s| {
-            let of_speed = shots.iter().filter(|s| s.programmed_m_s == speed_m_s);
-            let found: Vec<Estimate> = of_speed.filter_map(|shot| shot.departure(time)).collect();
-            mean(speed_m_s, &found)
-        })
-        .collect();
-    let means: Vec<Estimate> = rows.iter().map(|row| row.departure_s).collect();
-    let judged = chi_square(&means, &vec![0.0; means.len()], 0);
-    (rows, judged)
+    let of_speed = |speed_m_s| {
+        let own = shots.iter().filter(|s| s.programmed_m_s == speed_m_s);
+        let found = own.filter_map(|shot| {
+            let departure_s = shot.departure(time, curve)?;
+            Some((departure_s, shot.under_s[time]))
+        });
+        mean(speed_m_s, found.unzip())
+    };
+    speeds.into_iter().filter_map(of_speed).collect()
 }
 
-fn mean(speed_m_s: f64, found: &[Estimate]) -> Option<Speed> {
-    let summary = hertzchain_signal::summary(found)?;
+/// Chi-square of means against no departure at all.
+pub fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
+    let means: Vec<Estimate> = rows.iter().map(|row| row.departure_s).collect();
+    chi_square(&means, &vec![0.0; means.len()], 0)
+}
+
+fn mean(speed_m_s: f64, (found, under_s): (Vec<Estimate>, Vec<[f64; 2]>)) -> Option<Speed> {
+    let summary = hertzchain_signal::summary(&found)?;
     let squares: f64 = found.iter().map(|one| one.sigma.powi(2)).sum();
+    let shared_s = shared(&under_s);
     Some(Speed {
+        shared_s,
         speed_m_s,
         count: summary.count,
         departure_s: Estimate {
             value: summary.mean,
-            sigma: squares.sqrt() / summary.count as f64,
+            sigma: (squares.sqrt() / summary.count as f64).hypot(shared_s),
         },
         scatter_s: summary.error,
     })
@@ -142,13 +159,15 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
     let models = models(&case.experiment, &speeds)?;
     let mut known = HashMap::new();
     let mut judged = Vec::new();
-    for ((shot, speed_m_s), model_s) in own.into_iter().zip(speeds).zip(models) {
+    for ((shot, speed_m_s), compact_s) in own.into_iter().zip(speeds).zip(models) {
         if !known.contains_key(&shot.file) {
             let columns: HashMap<String, Vec<f64>> = truth(&shot.file)?.into_iter().collect();
             known.insert(shot.file.clone(), columns);
         }
         let row = shot.shot.unwrap_or_default() as usize;
         let true_of = |name: &str| known[&shot.file][name][row];
+        let true_s = [true_of("incident_tof_s"), true_of("reflected_tof_s")];
+        let to_measured = (true_of("speed_m_s") / speed_m_s.value).powf(EXPONENT);
         let flight = shot.flight.as_ref().ok();
         judged.push(Judged {
             case: case.name.clone(),
@@ -158,8 +177,10 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
                 flight.map(|flight| flight.incident_s),
                 flight.and_then(|flight| flight.reflected_s),
             ],
-            true_s: [true_of("incident_tof_s"), true_of("reflected_tof_s")],
-            model_s,
+            under_s: flight.map_or([[0.0; 2]; 2], |flight| flight.picks.under_s()),
+            true_s,
+            compact_s,
+            held_s: true_s.map(|time_s| time_s * to_measured),
         });
     }
     Ok(judged)

@@ -36,6 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         dry: &dry_model,
         wet: &wet_model,
         free: &arguments.dry_free,
+        own: &arguments.own,
         accuracy: arguments.accuracy,
     };
     let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils))?;

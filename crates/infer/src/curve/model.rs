@@ -3,7 +3,9 @@
 use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
-use hertzchain_study::{InstructionSet, Plan, Shot, shoot_all, shoot_unjudged};
+use hertzchain_study::{
+    InstructionSet, Plan, Shot, StudyError, shoot_all, shoot_unjudged, stopped,
+};
 use rayon::prelude::*;
 use std::fmt::Display;
 
@@ -150,6 +152,9 @@ impl Model {
         point: &[f64],
         speeds: &Speeds,
     ) -> Result<Vec<Shooting>, ModelError> {
+        if stopped() {
+            return Err(ModelError(StudyError::Stopped.to_string()));
+        }
         let amplifier = &self.experiment.campaign().amplifier;
         let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
         let mut latest: Option<(Settings, Experiment)> = None;

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
-use super::Gauge;
 use super::dry::shifts;
+use super::{CONTACT, Gauge};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::data::{Data, Observable};
 use crate::{Covariance, FitError, Fitting, Parameter, Problem, fit};
@@ -110,7 +110,8 @@ impl Gauge {
             point, covariance, ..
         } = solutions.remove(0);
         let mut shared = Vec::new();
-        for shift in shifts {
+        // Those after them move nothing but the dry chain's own numbers.
+        for shift in &shifts[..self.common()] {
             let moved = self.dry_fit.point.iter().zip(shift).map(|(x, s)| x + s);
             let moved: Vec<f64> = moved.collect();
             let other = self.solved(row, free, &moved, point)?.point;
@@ -138,7 +139,7 @@ impl Gauge {
     /// All that fit as well as the best, from several starts, the smallest A first:
     /// times of flight need not determine K and A uniquely.
     fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
-        let [stiffness, relaxation] = self.dry_contact();
+        let [stiffness, relaxation] = self.dry_contact;
         let starts = match free {
             Free::Both => &TIMES_DRY[..],
             Free::StiffnessAlone => &TIMES_DRY[..1],
@@ -201,16 +202,11 @@ impl Gauge {
         })
     }
 
-    /// K and A of the dry contacts.
-    fn dry_contact(&self) -> [f64; 2] {
-        let start = self.start();
-        [0, 1].map(|at| start.get(at).map_or(f64::NAN, |p: &Parameter| p.start))
-    }
-
-    /// The last two of the wet model's parameters: K and A.
+    /// The last of the wet model's parameters: K and A.
     fn start(&self) -> Vec<Parameter> {
-        let all = self.wet.numbers().parameters(&[]);
-        all.into_iter().skip(self.dry_fit.point.len()).collect()
+        let numbers = self.wet.numbers().as_slice();
+        let contact = numbers[numbers.len() - CONTACT..].iter();
+        contact.flat_map(|number| number.parameters(&[])).collect()
     }
 
     fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> Joint {
@@ -223,7 +219,10 @@ impl Gauge {
             parameter.start = value;
             parameter.scale = value;
         }
-        let mut supplies: Vec<Supply> = dry.iter().map(|value| Supply::Fixed(*value)).collect();
+        let own = self.wet_own(&data.speeds_m_s());
+        let own = own.iter().map(|parameter| parameter.start);
+        let common = dry.iter().copied().take(self.common());
+        let mut supplies: Vec<Supply> = common.chain(own).map(Supply::Fixed).collect();
         supplies.push(Supply::Free(0));
         let parameters = match free {
             Free::Both => {

@@ -1,13 +1,26 @@
 //! What the dry chain is to a gauge.
 
+use super::Chains;
 use crate::curve::{CurveError, CurveProblem, Model};
 use crate::data::Data;
+use crate::free::{FreeError, FreeNumber};
 use hertzchain_experiment::Experiment;
 
 /// A dry curve against its model, all as the experiment has it.
 pub(super) fn problem(model: Model, data: Data) -> Result<CurveProblem, CurveError> {
     let parameters = model.numbers().parameters(&data.speeds_m_s());
     CurveProblem::new(model, data, parameters)
+}
+
+/// K and A of the dry contacts as the dry model has them; where it has several
+/// sections, or laws without K and A, those of the wet ones.
+pub(super) fn contact(chains: &Chains<'_>) -> Result<[f64; 2], FreeError> {
+    let value = |name: &str| {
+        let dry = FreeNumber::find(chains.dry, &format!("dry.{name}"), None);
+        let found = dry.or_else(|_| FreeNumber::find(chains.wet, &format!("wet.{name}"), None))?;
+        Ok(found.parameters(&[]).first().map_or(f64::NAN, |p| p.start))
+    };
+    Ok([value("K")?, value("A")?])
 }
 
 /// Reduced radius in m of the first wet contact; `None` without any.

@@ -13,12 +13,12 @@ mod verdict;
 pub use contacts::{Combination, Contact, WetRow};
 pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
-pub use verdict::{Match, Verdict};
+pub use verdict::{Match, OwnNumber, Verdict};
 
 use crate::curve::{CurveError, CurveProblem, Model};
 use crate::data::Data;
 use crate::free::{FreeError, FreeNumber, FreeNumbers};
-use crate::{Covariance, Fit, FitError, Fitting, ModelError, fit};
+use crate::{Covariance, Fit, FitError, Fitting, ModelError, Parameter, fit};
 use hertzchain_experiment::{Experiment, Mistakes};
 
 /// Why a liquid can't be gauged.
@@ -59,6 +59,10 @@ pub struct Chains<'a> {
     pub wet: &'a Experiment,
     /// Free numbers of the dry contacts, by names that both experiments know.
     pub free: &'a [String],
+    /// Numbers that each chain has for itself, known to both experiments by the
+    /// same names: the load of a tapped row, which friction holds and no model
+    /// foretells.
+    pub own: &'a [String],
     /// Relative accuracy of times of flight.
     pub accuracy: f64,
 }
@@ -71,10 +75,18 @@ pub struct Gauge {
     /// Its covariance.
     pub dry_covariance: Covariance,
     wet: Model,
+    /// K and A of the dry contacts as the models have them.
+    dry_contact: [f64; 2],
+    /// How many numbers each chain has for itself: the last of the dry model's,
+    /// and of the wet model's those before K and A.
+    own: usize,
     data: Data,
     /// Reduced radius of wet contacts in m.
     radius_m: f64,
 }
+
+/// Numbers of a wet contact, the last of the wet model's: K and A.
+const CONTACT: usize = 2;
 
 impl Gauge {
     /// Fits the dry curve.
@@ -83,7 +95,7 @@ impl Gauge {
     /// See [`GaugeError`].
     pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, GaugeError> {
         let numbers = |experiment: &Experiment, more: &[&str]| {
-            let names = chains.free.iter().map(String::as_str);
+            let names = chains.free.iter().chain(chains.own).map(String::as_str);
             let found = names
                 .chain(more.iter().copied())
                 .map(|name| FreeNumber::find(experiment, name, None));
@@ -98,6 +110,8 @@ impl Gauge {
         let dry_covariance = Covariance::new(parameters, &dry_fit);
         let wet_model = Model::new(chains.wet, numbers(chains.wet, &["wet.K", "wet.A"])?)?;
         Ok(Self {
+            own: chains.own.len(),
+            dry_contact: dry::contact(chains)?,
             dry_covariance,
             dry_fit,
             dry,
@@ -111,6 +125,28 @@ impl Gauge {
     #[must_use]
     pub fn dry(&self) -> &CurveProblem {
         &self.dry
+    }
+
+    /// How many of the dry fit's parameters hold for both chains: the first.
+    fn common(&self) -> usize {
+        let numbers = self.dry.model().numbers().as_slice();
+        let common = numbers.iter().take(numbers.len() - self.own);
+        let speeds = self.dry.data().rows.len();
+        common.map(|number| number.parameter_count(speeds)).sum()
+    }
+
+    /// The wet chain's own numbers over these speeds in m/s, as its model has them.
+    #[must_use]
+    pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
+        let numbers = self.wet.numbers().as_slice();
+        let end = numbers.len() - CONTACT;
+        let own = numbers[end - self.own..end].iter();
+        let own = own.flat_map(|number| number.parameters(speeds_m_s));
+        own.map(|parameter| Parameter {
+            name: format!("{} (wet)", parameter.name),
+            ..parameter
+        })
+        .collect()
     }
 
     /// Reduced radius of the wet contacts in m.

@@ -1,10 +1,10 @@
 //! Which of the known oils it is, if any.
 
 use super::oils::Oil;
-use super::{Gauge, GaugeError};
+use super::{CONTACT, Gauge, GaugeError};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::free::{FreeNumber, FreeNumbers};
-use crate::{Fitting, Problem, fit};
+use crate::{Covariance, Fitting, Parameter, Problem, fit};
 use hertzchain_signal::{ChiSquare, Estimate, chi_square};
 
 /// How far the wet data are from what an oil would give.
@@ -19,6 +19,19 @@ pub struct Match {
     pub distance: f64,
     /// The farthest of the wet residuals: what it belongs to, and its size.
     pub farthest: (String, f64),
+    /// The wet chain's own numbers at this oil's best.
+    pub own: Vec<OwnNumber>,
+}
+
+/// A number that a chain has for itself, as an oil wants it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnNumber {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its value, in its unit.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
 }
 
 impl Match {
@@ -78,7 +91,7 @@ impl Gauge {
     ///
     /// An oil's curve is computed with its K and A at every speed. The dry
     /// contacts' numbers are fitted to both curves at once, so that their
-    /// uncertainty counts.
+    /// uncertainty counts; so are numbers that each chain has for itself.
     ///
     /// # Errors
     /// Names that the wet model does not know; an oil that fails is told in the
@@ -104,7 +117,7 @@ impl Gauge {
     fn wet_by_speed(&self) -> Result<CurveProblem, GaugeError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
-        let mut numbers: Vec<FreeNumber> = own[..own.len() - 2].to_vec();
+        let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
         for name in ["wet.K:each", "wet.A:each"] {
             numbers.push(FreeNumber::find(experiment, name, None)?);
         }
@@ -121,11 +134,12 @@ impl Gauge {
         let stiffness = contacts.iter().map(|contact| Supply::Fixed(contact.0));
         let relaxation = contacts.iter().map(|contact| Supply::Fixed(contact.1));
         let free: Vec<Supply> = (0..count).map(Supply::Free).collect();
+        let own = self.wet_own(&self.data.speeds_m_s());
+        let of_wet = (0..self.common()).chain(count..count + own.len());
         let wet_part = Part {
             problem: wet.clone(),
-            supplies: free
-                .iter()
-                .copied()
+            supplies: of_wet
+                .map(Supply::Free)
                 .chain(stiffness)
                 .chain(relaxation)
                 .collect(),
@@ -138,6 +152,7 @@ impl Gauge {
         for (parameter, value) in parameters.iter_mut().zip(&self.dry_fit.point) {
             parameter.start = *value;
         }
+        parameters.extend(own.iter().cloned());
         let joint = Joint::new(parameters, vec![dry_part, wet_part]);
         let how = Fitting {
             tolerance: TOLERANCE,
@@ -146,18 +161,38 @@ impl Gauge {
         };
         let fitted = fit(&joint, &how).map_err(|error| error.to_string())?;
         let wet_residuals = &fitted.residuals[self.dry.residual_count()..];
-        matched(&oil.name, wet, wet_residuals)
+        let sd = Covariance::new(joint.parameters(), &fitted).sd;
+        let best = fitted.point.iter().zip(&sd).skip(count);
+        let own = own.into_iter().zip(best);
+        let own = own.map(|(parameter, (value, standard_error))| OwnNumber {
+            parameter,
+            value: *value,
+            standard_error: *standard_error,
+        });
+        matched(&oil.name, wet, wet_residuals, own.collect())
     }
 }
 
-fn matched(name: &str, wet: &CurveProblem, residuals: &[f64]) -> Result<Match, String> {
+fn matched(
+    name: &str,
+    wet: &CurveProblem,
+    residuals: &[f64],
+    own: Vec<OwnNumber>,
+) -> Result<Match, String> {
+    if residuals.len() <= own.len() {
+        return Err(format!(
+            "{} measured values for {} numbers of the chain's own leave nothing to judge by: expected more speeds",
+            residuals.len(),
+            own.len()
+        ));
+    }
     let rows = residuals.iter().map(|value| Estimate {
         value: *value,
         sigma: 1.0,
     });
     let rows: Vec<Estimate> = rows.collect();
     let chi_square =
-        chi_square(&rows, &vec![0.0; rows.len()], 0).ok_or("its distance is not finite")?;
+        chi_square(&rows, &vec![0.0; rows.len()], own.len()).ok_or("its distance is not finite")?;
     let numbered = residuals.iter().enumerate();
     let farthest = numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let (at, size) = farthest.ok_or("the wet data are empty")?;
@@ -166,5 +201,6 @@ fn matched(name: &str, wet: &CurveProblem, residuals: &[f64]) -> Result<Match, S
         distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
         chi_square,
         farthest: (wet.residual_label(at), *size),
+        own,
     })
 }

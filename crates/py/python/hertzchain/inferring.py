@@ -359,6 +359,7 @@ def gauge(
     model: Experiment | str = "pump",
     dry_model: Experiment | str = "dry",
     dry_free: str | Iterable[str] = ("aisi316.eta", "dry.B"),
+    own: str | Iterable[str] = (),
     oils: str | os.PathLike[str] | None = None,
     use: Iterable[What] = ("incident", "reflected"),
     speed_error: float | None = None,
@@ -377,6 +378,9 @@ def gauge(
         The chains; the wet one has a section with ``wet = true``.
     dry_free : iterable of str
         Free numbers of the dry contacts.
+    own : iterable of str
+        Numbers that each chain has for itself, such as the load that friction
+        holds in a tapped row (``near_end.force``).
     oils : path, optional
         Table (CSV) of further oils.
     wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads
@@ -394,6 +398,7 @@ def gauge(
             ratio_error=ratio_error, accuracy=accuracy, threads=threads,
         ),
         *options.listed("use", use), *options.listed("dry-free", dry_free),
+        *options.listed("own", own),
         f"--dry={tables[1][0]}", "--", tables[0][0],
     ]  # fmt: skip
     more = None if oils is None else table(oils)

@@ -295,6 +295,8 @@ def figure3(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -
     inset.get_legend().remove()  # type: ignore[union-attr]
     inset.set(xlabel="", ylabel="")
     inset.tick_params(labelsize=6)
+    inset.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    inset.xaxis.set_major_formatter("{x:g}")
     ax.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
     return ax
 
@@ -439,7 +441,7 @@ def _corner_labels(ax: Axes, fitted: Fitted, place: tuple[int, int], count: int)
     parameters = list(fitted.parameters.values())
 
     def label(at: int) -> str:
-        unit = parameters[at].unit
+        unit = parameters[at].unit.replace("^2", "²").replace("^3", "³")
         return f"{parameters[at].name}\n({unit})" if unit else parameters[at].name
 
     if row == count - 1:

@@ -1,7 +1,8 @@
 //! What a digitiser does to pulses: ends of its range and its steps.
 
 use super::{Channels, Doubt, Finding, Found, Place, Pulse};
-use crate::{Rails, saturated_runs};
+use crate::Rails;
+use crate::saturation::has_run;
 
 /// Looks at the pulses as they were recorded: filters leave neither rails nor steps.
 pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding) {
@@ -43,7 +44,7 @@ fn saturated(inside: &[f64], (low, high): (f64, f64), pulse: &Pulse, finding: &F
     let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
     let own = (Rails { low, high }, longest);
     let (rails, shortest) = finding.rails.map_or(own, |rails| (rails, 1));
-    !saturated_runs(inside, rails, shortest).is_empty()
+    has_run(inside, rails, shortest)
 }
 
 /// Least and largest, eight lanes at a time.

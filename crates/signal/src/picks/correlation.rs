@@ -109,6 +109,7 @@ impl Correlator {
         if let Some(own) = self.own.as_ref().filter(|own| own.at == pulse.at) {
             return Ok(Picked {
                 sigma_s,
+                under_s: 0.0,
                 misfit: None,
                 ..own.picked
             });
@@ -120,6 +121,7 @@ impl Correlator {
         Ok(Picked {
             time_s,
             sigma_s: sigma_s.hypot(noise * self.products / at_top.height.abs()),
+            under_s: 0.0,
             misfit: None,
             ..at_top
         })

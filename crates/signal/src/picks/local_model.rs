@@ -69,10 +69,13 @@ pub(super) fn finish(
 ) -> Picked {
     let noise = sight.broad_noise(pulse);
     let time = fit.sample(u);
-    let slope = (noise * top.slope_share).hypot(sight.slope_under(pulse, time) * fit.half);
+    let moved_by = |slope: f64| slope / -top.bend * fit.half;
+    // What falls moves a maximum earlier.
+    let under = -moved_by(sight.fall_under(pulse, time) * fit.half);
     Picked {
         time_s: time,
-        sigma_s: slope / -top.bend * fit.half,
+        sigma_s: moved_by(noise * top.slope_share).hypot(under),
+        under_s: under,
         height: top.height,
         height_sigma: noise * top.height_share,
         width_s: pulse.width_samples,

@@ -39,6 +39,7 @@ pub(super) fn pick(
     Ok(Picked {
         time_s: model.time,
         sigma_s: sigma(1),
+        under_s: 0.0,
         height: model.height,
         height_sigma: sigma(0),
         width_s: model.width,

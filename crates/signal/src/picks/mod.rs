@@ -87,6 +87,10 @@ pub struct Picked {
     /// Standard deviation of that: by the record's noise and, of maxima, by what a
     /// shape leaves open and what lies under a pulse. Other biases are not in it.
     pub sigma_s: f64,
+    /// How far what lies under the pulse may have moved it, with its sign: part of the above,
+    /// which alike shots share and no mean over them makes smaller. 0 of other methods than
+    /// maxima, and in a channel of its own.
+    pub under_s: f64,
     /// Height above the baseline, or above the fit's own offset, in the samples' unit.
     pub height: f64,
     /// Standard deviation of that by the record's noise.
@@ -136,10 +140,10 @@ impl Sight<'_> {
         broad.max(self.upright.rounding(pulse.height))
     }
 
-    /// Slope, a sample, of what may lie under a pulse in a summed channel: from
+    /// Fall, a sample, of what may lie under a pulse in a summed channel: from
     /// what is there before the pulse begins to nothing at its maximum; under one that
     /// trails, and whose flat top little can shift far, within its rise.
-    fn slope_under(&self, pulse: &Pulse, time: f64) -> f64 {
+    fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let foot = time - 2.0 * FOOT * pulse.sides_samples.0;
         let length = UNDER * pulse.width_samples;
         let (_, heights) = self.window(foot - length, foot);
@@ -154,7 +158,7 @@ impl Sight<'_> {
             true => pulse.sides_samples.0,
             false => time - foot,
         };
-        beyond_noise.sqrt() / within
+        beyond_noise.sqrt().copysign(mean) / within
     }
 
     /// `left` over the noise, if there is noise.
@@ -220,6 +224,7 @@ impl Picked {
         Self {
             time_s: self.time_s * interval_s,
             sigma_s: self.sigma_s * interval_s,
+            under_s: self.under_s * interval_s,
             width_s: self.width_s * interval_s,
             ..self
         }

@@ -30,6 +30,7 @@ pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Pi
     Ok(Picked {
         time_s: fit.sample(u),
         sigma_s: (of_value + of_height).sqrt() / slope,
+        under_s: 0.0,
         misfit: sight.misfit(pulse, fit.left),
         ..top
     })

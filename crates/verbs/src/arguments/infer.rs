@@ -225,6 +225,10 @@ pub struct Gauge {
         default_value = "aisi316.eta,dry.B"
     )]
     pub dry_free: Vec<String>,
+    /// Numbers that each chain has for itself, by names that both models know, such as the load that
+    /// friction holds in a tapped row (near_end.force); fitted anew with every oil
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub own: Vec<String>,
     /// Table (CSV) of further oils, with the columns of the program's own
     #[arg(long, value_name = "FILE")]
     pub oils: Option<PathBuf>,

@@ -102,7 +102,7 @@ pub struct Picking {
 /// Picking methods by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
-    /// At the maximum of a polynomial fitted about the peak
+    /// At the maximum of a bell of free skewness fitted about the peak
     Local,
     /// Where the rising flank passes a share of the height
     Onset,

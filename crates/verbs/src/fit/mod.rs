@@ -9,7 +9,7 @@ pub use results::{inferred, joined, json, parameters_csv, profiles_csv, rows_csv
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
-use crate::inference::user;
+use crate::inference::{user, wanted};
 use hertzchain_infer::{
     Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
@@ -59,7 +59,9 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
         seed: arguments.seed,
         ..Fitting::default()
     };
-    fit(problem, &how).map_err(user)
+    let found = fit(problem, &how);
+    wanted()?;
+    found.map_err(user)
 }
 
 /// Fits a curve, tells the uncertainty as the method asks, and compares with

@@ -3,14 +3,13 @@
 use super::Arguments;
 use crate::arguments::infer::{Against, Method};
 use crate::failure::Failure;
-use crate::inference::{self, user};
+use crate::inference::{self, user, wanted};
 use hertzchain_infer::{
     Chain, Compared, Comparison, Covariance, CrossValidation, CurveProblem, Fit, Fitting, Folding,
     Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
     compare, cross_validate, fit, profile,
 };
 use hertzchain_study::reproduce::write_atomically;
-use hertzchain_study::{StudyError, stopped};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -69,8 +68,9 @@ pub fn more_of(
         Method::Profile => {
             let all: Vec<usize> = (0..fit.point.len()).collect();
             let how = Profiling::default();
-            let found = profile(problem, fit, covariance, &all, &how).map_err(user)?;
-            Ok(More::Profiles(found))
+            let found = profile(problem, fit, covariance, &all, &how);
+            wanted()?;
+            Ok(More::Profiles(found.map_err(user)?))
         }
         Method::Posterior => {
             let mut chain = started(problem, (fit, covariance), arguments)?;
@@ -143,9 +143,7 @@ impl<'a> Saving<'a> {
     }
 
     fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
-        if stopped() {
-            return Err(user(StudyError::Stopped));
-        }
+        wanted()?;
         let Some(folder) = self.folder else {
             return Ok(());
         };

@@ -6,7 +6,7 @@ pub use results::{contacts_csv, json};
 
 use crate::arguments::infer::Measured;
 use crate::failure::Failure;
-use crate::inference::{self, user};
+use crate::inference::{self, user, wanted};
 use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils};
 use std::fs;
@@ -35,11 +35,16 @@ pub fn gauged(
     (dry, wet): (Data, Data),
     oils: Vec<Oil>,
 ) -> Result<Gauged, Failure> {
-    let gauge = Gauge::new(chains, dry, wet).map_err(user)?;
+    let gauge = Gauge::new(chains, dry, wet);
+    wanted()?;
+    let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
+    wanted()?;
+    let verdict = gauge.verdict(&oils);
+    wanted()?;
     Ok(Gauged {
         laws: GaugeLaws::through(&rows).ok(),
-        verdict: gauge.verdict(&oils).map_err(user)?,
+        verdict: verdict.map_err(user)?,
         oils,
         rows,
         gauge,

@@ -26,6 +26,10 @@ pub fn json(gauged: &Gauged) -> Value {
             "name": found.oil, "distance": found.distance,
             "chi_square": found.chi_square.value, "freedom": found.chi_square.freedom,
             "probability": found.chi_square.probability, "possible": found.fits(),
+            "own": found.own.iter().map(|own| json!({
+                "name": own.parameter.name, "unit": own.parameter.unit,
+                "value": own.value, "standard_error": own.standard_error,
+            })).collect::<Value>(),
             "farthest": { "what": found.farthest.0, "standard_errors": found.farthest.1 },
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),

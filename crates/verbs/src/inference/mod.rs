@@ -11,6 +11,7 @@ use hertzchain_infer::{
     CurveProblem, Data, Defaults, FreeError, FreeNumber, FreeNumbers, Model, Observable, Problem,
     PulseProblem, Selection,
 };
+use hertzchain_study::{StudyError, stopped};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fs;
 use std::io::Read;
@@ -19,6 +20,18 @@ use std::path::Path;
 /// A mistake of the user's, told as it is.
 pub fn user(error: impl std::fmt::Display) -> Failure {
     Failure::User(error.to_string())
+}
+
+/// Whether somebody still wants the result: what was broken off on the way tells
+/// nothing.
+///
+/// # Errors
+/// That it was broken off.
+pub fn wanted() -> Result<(), Failure> {
+    match stopped() {
+        true => Err(user(StudyError::Stopped)),
+        false => Ok(()),
+    }
 }
 
 /// A measured curve with what is to be used of it.

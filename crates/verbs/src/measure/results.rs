@@ -80,6 +80,8 @@ fn row(row: &SpeedRow) -> Value {
         "tof_reflected_s": row.reflected_s.as_ref().map(summary),
         "wall_over_passing": summary(&row.wall_over_passing),
         "returning_over_passing": row.returning_over_passing.as_ref().map(summary),
+        "tof_incident_shared_s": row.shared_s[0],
+        "tof_reflected_shared_s": row.shared_s[1],
         "widths_s": row.widths_s.map(|width| width.map(|width| width.mean)),
     })
 }

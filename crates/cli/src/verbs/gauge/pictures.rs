@@ -9,21 +9,38 @@ const POINTS: usize = 60;
 
 /// Both numbers, one panel each.
 pub fn contacts(gauged: &Gauged) -> Figure {
-    let mut figure = Figure::single_column(120.0).share_x();
-    figure = figure.panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9));
-    let both = |contact: &Contact| contact.combination.is_none();
-    let told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
-    match told.into_iter().any(both) {
-        true => figure.panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
-        false => figure,
+    let figure = Figure::single_column(120.0).share_x();
+    match tells_both(gauged) {
+        true => figure
+            .panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9))
+            .panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
+        false => figure.panel(panel(
+            gauged,
+            0,
+            "$K$ if $A$ is as dry (GN/m$^{3/2}$)",
+            1e-9,
+        )),
     }
+}
+
+/// Whether any row tells K and A apart. If none does, an oil's K is another
+/// quantity than what was measured.
+fn tells_both(gauged: &Gauged) -> bool {
+    let both = |contact: &Contact| contact.combination.is_none();
+    let mut told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
+    told.any(both)
 }
 
 fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     let chart = Chart::new("Speed of the striker (m/s)", label)
         .x_log()
         .y_log();
-    let oils = gauged.oils.iter().enumerate();
+    let shown = if tells_both(gauged) {
+        gauged.oils.len()
+    } else {
+        0
+    };
+    let oils = gauged.oils.iter().take(shown).enumerate();
     let chart = oils.fold(chart, |chart, (at, oil)| {
         chart.with(curve(gauged, (at, oil), of, unit))
     });

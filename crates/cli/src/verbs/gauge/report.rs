@@ -20,6 +20,7 @@ pub fn text(gauged: &Gauged) -> String {
             "One number a speed determines one combination of K and A. To tell both, {add}.\n"
         );
     }
+    text += &held_numbers(gauged);
     text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
     text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
@@ -112,14 +113,41 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     )
 }
 
+/// What K and A take for granted.
+fn held_numbers(gauged: &Gauged) -> String {
+    let own = gauged.gauge.wet_own(&[]);
+    let each = own.iter().map(|parameter| {
+        format!(
+            "{} = {} {}",
+            parameter.name,
+            digits(parameter.start, 4),
+            parameter.unit
+        )
+    });
+    let each: Vec<String> = each.collect();
+    match each.is_empty() {
+        true => String::new(),
+        false => format!(
+            "K and A hold for {}, as the wet model has it; their errors know of no other. The oils below are \
+             each taken at their best.\n",
+            each.join(", ")
+        ),
+    }
+}
+
 fn matches(gauged: &Gauged) -> String {
+    let own = gauged.gauge.wet_own(&[]);
     let rows = gauged.verdict.matches.iter().map(|found| {
-        vec![
+        let mut row = vec![
             found.oil.clone(),
             digits(found.distance, 3),
             percent(found.chi_square.probability),
             if found.fits() { "possible" } else { "rejected" }.to_owned(),
-        ]
+        ];
+        // One column a number that is the same at all speeds.
+        let found = found.own.iter().take(own.len());
+        row.extend(found.map(|own| estimate(&own.parameter, own.value, own.standard_error)));
+        row
     });
     let head = [
         "oil",
@@ -127,5 +155,7 @@ fn matches(gauged: &Gauged) -> String {
         "as far by chance",
         "verdict",
     ];
-    format::table(&head.map(str::to_owned), &rows.collect::<Vec<_>>())
+    let mut head: Vec<String> = head.map(str::to_owned).to_vec();
+    head.extend(own.iter().map(|parameter| parameter.name.clone()));
+    format::table(&head, &rows.collect::<Vec<_>>())
 }

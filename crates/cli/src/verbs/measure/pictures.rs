@@ -125,7 +125,12 @@ fn colour(number: usize) -> Colour {
 }
 
 fn marker(number: usize) -> Marker {
-    const ALL: [Marker; 3] = [Marker::Circle, Marker::Triangle, Marker::Square];
+    const ALL: [Marker; 4] = [
+        Marker::Circle,
+        Marker::Triangle,
+        Marker::Square,
+        Marker::Diamond,
+    ];
     ALL.into_iter()
         .cycle()
         .nth(number)
