@@ -58,7 +58,10 @@ fn block(bencher: Bencher<'_, '_>, precision: Precision, set: &str, name: &str) 
     };
     let settings = settings(set, 40);
     let shots = vec![shot; precision.lanes()];
-    let looked_at = fire(&shots, &settings)[0].as_ref().unwrap().bodies_looked_at;
+    let looked_at = fire(&shots, &settings)[0]
+        .as_ref()
+        .unwrap()
+        .bodies_looked_at;
     let items = ItemsCount::new(looked_at as usize * shots.len());
     bencher
         .counter(items)
