@@ -3,7 +3,8 @@
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 fn run(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
@@ -90,6 +91,43 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
     // One thread or two: the same bits.
     let one = json(&with_errors(&[&fit[..], &["--threads", "1"]].concat()));
     assert_eq!(one, found);
+}
+
+/// The walkers are written as they stand, whole, under their name: a run that is
+/// killed goes on from there to the bits of one that was not.
+#[test]
+fn a_posterior_that_is_killed_goes_on_to_the_walkers_of_one_that_was_not() {
+    let folder = folder("killed");
+    let data = curve(&folder, "dry");
+    let posterior = |out: &str, steps: &str, more: &[&str]| {
+        let out = folder.join(out);
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+        program
+            .args(["fit", &data, "-p", "dry", "--free", "eta,B"])
+            .args(["--method", "posterior", "--seed", "5", "--steps", steps])
+            .args(ERRORS)
+            .arg("--out")
+            .arg(out)
+            .args(more)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        program
+    };
+    let chain = |out: &str| fs::read(folder.join(out).join("chain.json")).unwrap();
+    assert!(posterior("whole", "60", &[]).status().is_ok());
+    assert!(posterior("broken", "20", &[]).status().is_ok());
+    let begun = chain("broken");
+    for delay_ms in [50, 400] {
+        let mut child = posterior("broken", "60", &["--resume"]).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(delay_ms));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // Whole at any moment: what was there, or what the run came to.
+        assert!([&begun, &chain("whole")].contains(&&chain("broken")));
+    }
+    assert!(posterior("broken", "60", &["--resume"]).status().is_ok());
+    assert!(chain("broken") == chain("whole"));
+    assert!(begun != chain("whole"));
 }
 
 #[test]

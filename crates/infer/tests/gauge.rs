@@ -91,6 +91,33 @@ fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
     );
 }
 
+/// Friction holds another load in a tapped row than its file says, and another one in each.
+#[test]
+fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
+    let paper = preset("paper").unwrap();
+    let [dry_model, wet_model] = ["dry", "pump"].map(|name| paper.case(name).unwrap().unwrap());
+    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
+    let push = ["near_end.force".to_owned()];
+    let held = wet_model.set(&[("near_end.force", 0.2)]).unwrap();
+    let measured = |of: &Experiment, seed| {
+        let data = Truth::of(of, &SPEEDS_M_S).measured(seed);
+        data.only(&[Observable::Incident])
+    };
+    let sentence = |own: &[String]| {
+        let chains = Chains {
+            dry: &dry_model,
+            wet: &wet_model,
+            free: &free,
+            own,
+            accuracy: 1e-5,
+        };
+        let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
+        gauge.verdict(&known_oils().unwrap()).unwrap().sentence()
+    };
+    assert!(sentence(&[]).starts_with("None of these"));
+    assert!(sentence(&push).starts_with("It is pump oil"));
+}
+
 #[test]
 fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
     let pump = preset("pump").unwrap();

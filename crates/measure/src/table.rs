@@ -83,7 +83,11 @@ pub fn speeds_csv(curves: &Curves) -> String {
         text += &format!(",{name},{name}_deviation,{name}_error,{name}_count");
     }
     text += ",passing_width_s,wall_width_s,returning_width_s";
-    text += ",tof_incident_shared_s,tof_reflected_shared_s\n";
+    text += ",tof_incident_shared_s,tof_reflected_shared_s";
+    for time in ["tof_incident", "tof_reflected"] {
+        text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
+    }
+    text.push('\n');
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -108,7 +112,8 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain(summarised(Some(row.wall_over_passing)))
         .chain(summarised(row.returning_over_passing))
         .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
-        .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))));
+        .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))))
+        .chain(row.at_mean_speed_s.into_iter().flat_map(both));
     line(cells)
 }
 

@@ -42,7 +42,9 @@ impl Columns {
         })?;
         let column = |of: Observable| {
             let is_wanted = wanted.contains(&of);
-            is_wanted.then(|| measured(titles, of.column())).flatten()
+            let finer = of.finer_column().and_then(|name| measured(titles, name));
+            let found = finer.or_else(|| measured(titles, of.column()));
+            found.filter(|_| is_wanted)
         };
         let observables = Observable::ALL.map(column);
         if observables.iter().all(Option::is_none) {
@@ -119,5 +121,16 @@ mod tests {
             let last = titles(text).len() - 1;
             assert_eq!(incident.sigma.unwrap().at, last, "{text}");
         }
+    }
+
+    #[test]
+    fn times_at_the_mean_speed_are_read_before_means_that_scatter_with_speeds() {
+        let text = "speed_m_s,tof_incident_s,tof_incident_s_error,\
+                    tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error";
+        let columns = Columns::of(&titles(text), &Observable::ALL, "a.csv").unwrap();
+        let incident = columns.observables[0].clone().unwrap();
+        assert_eq!((incident.value.at, incident.sigma.unwrap().at), (3, 4));
+        let columns = Columns::of(&titles(text), &[Observable::Reflected], "a.csv");
+        assert!(columns.is_err());
     }
 }

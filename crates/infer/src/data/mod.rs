@@ -43,6 +43,16 @@ impl Observable {
         }
     }
 
+    /// The column that is read in its place where a table has it: what `measure`
+    /// takes to the mean speed, shot by shot, scatters no longer with their speeds.
+    pub(super) const fn finer_column(self) -> Option<&'static str> {
+        match self {
+            Self::Incident => Some("tof_incident_at_mean_speed_s"),
+            Self::Reflected => Some("tof_reflected_at_mean_speed_s"),
+            Self::WallOverPassing | Self::ReturningOverPassing => None,
+        }
+    }
+
     /// What it is called.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -82,6 +82,8 @@ fn row(row: &SpeedRow) -> Value {
         "returning_over_passing": row.returning_over_passing.as_ref().map(summary),
         "tof_incident_shared_s": row.shared_s[0],
         "tof_reflected_shared_s": row.shared_s[1],
+        "tof_incident_at_mean_speed_s": row.at_mean_speed_s[0].map(estimate),
+        "tof_reflected_at_mean_speed_s": row.at_mean_speed_s[1].map(estimate),
         "widths_s": row.widths_s.map(|width| width.map(|width| width.mean)),
     })
 }
