@@ -168,7 +168,7 @@ fn each_channel_is_held_against_its_own_rails() {
     let whole = scene.separate();
     let mut clipped = whole.clone();
     clipped.1.iter_mut().for_each(|x| *x = x.min(1.2));
-    let up_to = |volts| {
+    let up_to = |volts: f64| {
         let (low, high) = (-volts, volts);
         Some(Rails { low, high })
     };
