@@ -6,9 +6,10 @@ mod records;
 use records::python;
 use std::collections::BTreeMap;
 use std::fs;
+use std::hash::{BuildHasher, DefaultHasher, Hash, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Twelve beads, two cases, few samples.
 const SMALL: &str = include_str!("../../rig/tests/small.toml");
@@ -72,16 +73,28 @@ impl Drop for Scratch {
     }
 }
 
-/// Delays in ms that differ from each other in no regular way.
-fn delay_ms(attempt: u64) -> u64 {
-    5 + (attempt * 2_654_435_761) % 120
+/// A moment between nothing and `longest`, drawn from a seed.
+fn moment(seed: u64, attempt: u64, longest: Duration) -> Duration {
+    let mut hasher = DefaultHasher::new();
+    (seed, attempt).hash(&mut hasher);
+    longest.mul_f64(hasher.finish() as f64 / u64::MAX as f64)
 }
 
-/// `Child::kill` is SIGKILL, which nothing can catch.
+/// `Child::kill` is SIGKILL, which nothing can catch. Moments are others in every run of this
+/// test; `HERTZCHAIN_KILL_SEED` repeats those of the seed that a failure prints.
 #[test]
 fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
     let scratch = Scratch::new("killed");
-    scratch.done("whole", &[]);
+    let told = std::env::var("HERTZCHAIN_KILL_SEED").ok();
+    let seed = told.map_or_else(
+        || RandomState::new().hash_one("moments"),
+        |seed| seed.parse().unwrap(),
+    );
+    println!("seed of the moments: HERTZCHAIN_KILL_SEED={seed}");
+    let begun = Instant::now();
+    scratch.done("whole", &["--threads", "2"]);
+    // Three runs so short together cannot finish what the whole one took.
+    let longest = begun.elapsed() / 4;
     let whole = scratch.files("whole");
     assert_eq!(whole.keys().filter(|name| name.ends_with(".h5")).count(), 8);
     let mut killed = 0;
@@ -92,7 +105,7 @@ fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(delay_ms(attempt)));
+        std::thread::sleep(moment(seed, attempt, longest));
         child.kill().unwrap();
         killed += usize::from(!child.wait().unwrap().success());
         // What has its name is whole, at any moment.
@@ -130,6 +143,40 @@ fn parts_on_other_threads_make_the_same_files_as_the_whole() {
         scratch.done("dealt", &["--shard", part, "--threads", "3"]);
     }
     assert!(scratch.files("whole") == scratch.files("dealt"));
+}
+
+#[test]
+fn progress_without_a_terminal_tells_rate_and_time_left_every_tenth() {
+    let scratch = Scratch::new("progress");
+    let output = scratch.run("out", &["--threads", "1"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    let mut last = 0.0;
+    for line in text.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        let [
+            fired,
+            "of",
+            "32",
+            "shots,",
+            rate,
+            "a",
+            "second,",
+            left,
+            "s",
+            "left",
+        ] = words[..]
+        else {
+            panic!("{line}");
+        };
+        let [fired, rate, left] = [fired, rate, left].map(|word| word.parse::<f64>().unwrap());
+        assert!(fired > last && rate > 0.1, "{line}");
+        // The rate was rounded to 0.05 a second, the time left to half a second.
+        let expected = (32.0 - fired) / rate;
+        let rounding = 0.5 + expected * 0.05 / (rate - 0.05);
+        assert!((left - expected).abs() <= rounding, "{line}");
+        last = fired;
+    }
+    assert_eq!((text.lines().count(), last), (10, 32.0), "{text}");
 }
 
 /// The shell lets no file grow beyond 16 blocks of 512 or 1024 bytes. Without

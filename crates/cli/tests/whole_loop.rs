@@ -9,21 +9,30 @@ use hertzchain_signal::{ChiSquare, Estimate, Measuring, chi_square};
 use judged::{Curve, Judged, TIMES, agreement, by_speed, judge, run};
 use std::fs;
 
-/// The paper's rig with one dry chain, four speeds and short records, changed as told.
-fn dry(changes: &[(&str, &str)]) -> String {
+/// What begins a case of a campaign.
+const CASE: &str = "[[campaign.cases]]\n";
+
+/// The paper's rig with one case of its own, four speeds and short records, changed as told.
+fn only(case: &str, changes: &[(&str, &str)]) -> String {
     let paper = include_str!("../../../experiments/paper.toml");
-    let (dry, _) = paper
-        .split_once("[[campaign.cases]]\nname = \"pump\"")
-        .unwrap();
+    let mut parts = paper.split(CASE);
+    let rig = parts.next().unwrap();
+    let own = parts.find(|part| part.starts_with(&format!("name = \"{case}\"")));
+    let text = [rig, own.unwrap()].join(CASE);
     let always = [
         ("speed_count = 60", "speed_count = 4"),
         ("record = \"0.1 s\"", "record = \"30 ms\""),
     ];
     let all = always.iter().chain(changes);
-    all.fold(dry.to_owned(), |text, (from, to)| {
+    all.fold(text, |text, (from, to)| {
         assert!(text.contains(from), "{from}");
         text.replace(from, to)
     })
+}
+
+/// The same of the dry chain.
+fn dry(changes: &[(&str, &str)]) -> String {
+    only("dry", changes)
 }
 
 /// Laid compact before its only shot. Nothing pushes it: friction would hold other loads
@@ -56,7 +65,7 @@ fn judged(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec<Ju
 /// Chance gives less once in a thousand seeds; those here are fixed.
 const LEAST: f64 = 1e-3;
 
-/// Chi-squares of both times against one of the model's curves at all four speeds.
+/// Chi-squares of both times against what they are held to at all four speeds.
 fn against(shots: &[Judged], curve: Curve) -> [ChiSquare; 2] {
     [0, 1].map(|time| {
         let all: Vec<&Judged> = shots.iter().collect();
@@ -66,8 +75,8 @@ fn against(shots: &[Judged], curve: Curve) -> [ChiSquare; 2] {
     })
 }
 
-/// Both times agree with the model's at every speed.
-fn agree_with_the_model(shots: &[Judged], curve: Curve) {
+/// Both times agree with what they are held to at every speed.
+fn agree_with(shots: &[Judged], curve: Curve) {
     for (judged, name) in against(shots, curve).iter().zip(TIMES) {
         assert!(judged.probability > LEAST, "{name}: {judged:?}");
     }
@@ -77,7 +86,7 @@ fn agree_with_the_model(shots: &[Judged], curve: Curve) {
 fn measured_times_of_a_compact_chain_are_the_models_at_every_speed() {
     let shots = judged("compact", &dry(&COMPACT), 6, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 24);
-    agree_with_the_model(&shots, judged::COMPACT);
+    agree_with(&shots, judged::COMPACT);
     for (time, name) in TIMES.iter().enumerate() {
         let judged = against_truth(&shots, time);
         assert!(judged.probability > LEAST, "{name}: {judged:?}");
@@ -87,6 +96,14 @@ fn measured_times_of_a_compact_chain_are_the_models_at_every_speed() {
             "{name}: {judged:?}"
         );
     }
+}
+
+/// Gear oil is the worst: the wall's pulse is long, flat and on a slope, the return split.
+#[test]
+fn measured_times_of_a_compact_chain_in_gear_oil_are_the_models_at_every_speed() {
+    let shots = judged("gear", &only("gear", &COMPACT), 3, &[Options::default()]).remove(0);
+    assert_eq!(shots.len(), 12);
+    agree_with(&shots, judged::COMPACT);
 }
 
 /// With push, slope, stop, gaps as laid and taps: what keeps the preset's times from the
@@ -100,20 +117,22 @@ fn measured_times_of_a_tapped_chain_that_friction_hardly_holds_are_the_models() 
     ];
     let shots = judged("tapped", &dry(&changes), 1, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 24);
-    agree_with_the_model(&shots, judged::COMPACT);
+    agree_with(&shots, judged::COMPACT);
 }
 
 /// Friction that could hold nearly three times the push, and taps that close the chain: the
-/// model of the chain in equilibrium is missed, the model with the loads that were held is not.
+/// model's curve of the chain in equilibrium is missed; what the recorded shots themselves took,
+/// with whatever loads friction held on them, is what is measured. The latter tries measuring
+/// alone, and no model: there is no second computation of those shots.
 #[test]
-fn measured_times_of_a_tapped_chain_are_the_models_with_the_loads_that_friction_holds() {
+fn measured_times_of_a_tapped_chain_are_the_recorded_shots_own_and_not_those_of_equilibrium() {
     let changes = [
         ("friction = 0.05", "friction = 0.2"),
         ("shots = 20", "shots = 6"),
         ("taps = 40", "taps = 12"),
     ];
-    let shots = judged("held", &dry(&changes), 1, &[Options::default()]).remove(0);
-    agree_with_the_model(&shots, judged::HELD);
+    let shots = judged("own", &dry(&changes), 1, &[Options::default()]).remove(0);
+    agree_with(&shots, judged::OWN);
     for (judged, name) in against(&shots, judged::COMPACT).iter().zip(TIMES) {
         assert!(judged.probability < LEAST, "{name}: {judged:?}");
     }

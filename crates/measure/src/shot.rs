@@ -1,7 +1,7 @@
 //! One measured shot.
 
 use crate::Options;
-use hertzchain_records::{Channel, Record, Samples};
+use hertzchain_records::Record;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
 };
@@ -41,7 +41,8 @@ impl Shot {
         };
         let measuring = Measuring {
             finding: Finding {
-                rails: measuring.finding.rails.or_else(|| rails(&record.channels)),
+                rails: measuring.finding.rails.or_else(|| rails(record, 0)),
+                wall_rails: measuring.finding.wall_rails.or_else(|| rails(record, 1)),
                 ..measuring.finding
             },
             ..measuring.clone()
@@ -109,11 +110,8 @@ impl Shot {
     }
 }
 
-/// The converter's range, where the first channel tells.
-fn rails(channels: &[Channel]) -> Option<Rails> {
-    let (low, high) = channels
-        .first()
-        .map(|c| &c.samples)
-        .and_then(Samples::range_v)?;
+/// The converter's range, where the channel tells.
+fn rails(record: &Record, channel: usize) -> Option<Rails> {
+    let (low, high) = record.channels.get(channel)?.samples.range_v()?;
     Some(Rails { low, high })
 }

@@ -26,6 +26,8 @@ pub(crate) struct Head {
     pub interval_s: f64,
     /// Samples of a channel, in all.
     pub total: usize,
+    /// Samples of a channel in a row of a table, as long as all where there is but one.
+    pub row: usize,
     /// Samples of a channel in a record.
     pub each: usize,
     /// Whether records are pieces of one recording and not shots.
@@ -33,53 +35,71 @@ pub(crate) struct Head {
 }
 
 impl Head {
-    /// Divides what would be one record.
+    /// Divides what would be one record. Pieces end where rows do; several rows are not
+    /// divided into shots here, which are counted by row first.
     pub fn divided(self, parts: Parts) -> Self {
-        Self {
-            each: parts.most().unwrap_or(self.each),
-            pieces: matches!(parts, Parts::Pieces(_)),
-            ..self
+        match parts {
+            Parts::Shots(most) if self.row == self.total => Self {
+                each: most.max(1),
+                ..self
+            },
+            Parts::Pieces(most) => Self {
+                each: most.clamp(1, self.row.max(1)),
+                pieces: true,
+                ..self
+            },
+            Parts::Shots(_) | Parts::Whole => self,
         }
+    }
+
+    /// Samples of what has a number of its own: a shot, or a row of which records are pieces.
+    fn shot(&self) -> usize {
+        if self.pieces { self.row } else { self.each }
     }
 
     /// Whether several shots come of it.
     fn several(&self) -> bool {
-        self.total > self.each && !self.pieces
+        self.total > self.shot()
     }
 
-    fn source(&self, number: u64) -> String {
+    /// Of the shot in which sample `start` lies, from 1.
+    fn number(&self, start: usize) -> u64 {
+        (start / self.shot().max(1)) as u64 + 1
+    }
+
+    fn source(&self, start: usize) -> String {
         let part = self
             .part
             .as_ref()
             .map_or(String::new(), |part| format!(", {part}"));
         let shot = match self.several() {
-            true => format!(", shot {number}"),
+            true => format!(", shot {}", self.number(start)),
             false => String::new(),
         };
         let source = name(&self.file) + &part + &shot;
-        from_sample(source, self.first_sample(number))
+        from_sample(source, self.first_sample(start))
     }
 
-    /// Of a piece; shots begin anew.
-    fn first_sample(&self, number: u64) -> u64 {
+    /// Of a piece in its row; shots begin anew.
+    fn first_sample(&self, start: usize) -> u64 {
         match self.pieces {
-            true => (number - 1) * self.each as u64,
+            true => (start % self.row.max(1)) as u64,
             false => 0,
         }
     }
 
-    /// A record of this stream, by its number from 1.
-    pub fn record(&self, number: u64, samples: Vec<Samples>) -> Record {
+    /// The record of this stream that begins with sample `start`.
+    pub fn record(&self, start: usize, samples: Vec<Samples>) -> Record {
         let channels = self.names.iter().zip(samples);
         let channels = channels.map(|(name, samples)| Channel {
             name: name.clone(),
             samples,
         });
         Record {
-            shot: self.several().then_some(number),
-            first_sample: self.first_sample(number),
+            shot: self.several().then(|| self.number(start)),
+            first_sample: self.first_sample(start),
             ..Record::new(
-                self.source(number),
+                self.source(start),
                 &self.file,
                 self.interval_s,
                 channels.collect(),
@@ -101,7 +121,6 @@ pub(crate) struct Cut<S> {
     head: Head,
     stream: S,
     done: usize,
-    shot: u64,
 }
 
 impl<S: Stream> Cut<S> {
@@ -110,7 +129,6 @@ impl<S: Stream> Cut<S> {
             head,
             stream,
             done: 0,
-            shot: 0,
         }
     }
 }
@@ -119,17 +137,18 @@ impl<S: Stream> Iterator for Cut<S> {
     type Item = Result<Record, RecordError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let left = self.head.total.saturating_sub(self.done);
-        let count = left.min(self.head.each);
+        let start = self.done;
+        let left = self.head.total.saturating_sub(start);
+        let of_row = self.head.row - start % self.head.row.max(1);
+        let count = left.min(of_row).min(self.head.each);
         if count == 0 {
             return None;
         }
         self.done += count;
-        self.shot += 1;
         if count > MOST_SAMPLES {
             self.done = self.head.total;
             return Some(Err(RecordError::TooLong {
-                source_name: self.head.source(self.shot),
+                source_name: self.head.source(start),
                 most: MOST_SAMPLES,
             }));
         }
@@ -137,7 +156,7 @@ impl<S: Stream> Iterator for Cut<S> {
         if taken.is_err() {
             self.done = self.head.total;
         }
-        Some(taken.map(|samples| self.head.record(self.shot, samples)))
+        Some(taken.map(|samples| self.head.record(start, samples)))
     }
 }
 

@@ -32,6 +32,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         names: chosen.iter().map(|index| names[*index].clone()).collect(),
         interval_s: interval_s(file, Some(rate_hz.recip()), options)?,
         total,
+        row: total,
         each: total,
         pieces: false,
     };

@@ -113,7 +113,7 @@ fn run(source: &Source, interval_s: f64, noise: f64, shots: u64) -> [Errors; 4] 
             continue;
         };
         for ((_, method), errors) in methods().iter().zip(&mut errors) {
-            if let Ok(picks) = pick(channels, interval_s, &found, method, None) {
+            if let Ok(picks) = pick(channels, interval_s, &found, method, [None; 2]) {
                 errors.take(&picks.flight(), source.times_s);
             }
         }

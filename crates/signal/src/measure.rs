@@ -64,7 +64,10 @@ pub fn measure(
         }
     };
     let mut found = conditioned_pulses(channels, recorded, finding)?;
-    let rails = finding.rails.filter(|_| !measuring.conditions());
+    let rails = match measuring.conditions() {
+        true => [None; 2],
+        false => finding.rails_of(channels),
+    };
     let picks = pick(channels, interval_s, &found, &measuring.method, rails);
     let flight = picks.map(crate::Picks::flight);
     let lost = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());

@@ -163,6 +163,28 @@ fn saturation_is_seen_with_and_without_known_rails() {
 }
 
 #[test]
+fn each_channel_is_held_against_its_own_rails() {
+    let scene = Scene::default();
+    let whole = scene.separate();
+    let mut clipped = whole.clone();
+    clipped.1.iter_mut().for_each(|x| *x = x.min(1.2));
+    let up_to = |volts: f64| {
+        let (low, high) = (-volts, volts);
+        Some(Rails { low, high })
+    };
+    let within = |sensor, wall| Finding {
+        rails: up_to(sensor),
+        wall_rails: up_to(wall),
+        ..Finding::default()
+    };
+    let doubts = |pair, finding| pulses(channels(pair), &finding).unwrap().doubts;
+    let saturated = [Doubt::Saturation(Place::Wall)];
+    assert_eq!(doubts(&clipped, within(10.0, 1.2)), saturated);
+    // The wall's pulse is higher than the sensor's range, not than its own.
+    assert_eq!(doubts(&whole, within(1.1, 10.0)), []);
+}
+
+#[test]
 fn a_coarse_digitiser_does_not_look_saturated() {
     // 200 steps to the top of the wall's pulse.
     let samples: Vec<f64> = Scene::default()

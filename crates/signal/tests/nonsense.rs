@@ -56,6 +56,7 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
                         low: -1.0,
                         high: 1.0,
                     }),
+                    wall_rails: None,
                 };
                 let measuring = Measuring {
                     finding,

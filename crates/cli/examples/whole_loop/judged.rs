@@ -34,18 +34,19 @@ pub struct Judged {
     pub true_s: [f64; 2],
     /// Those of the same chain in equilibrium at the measured speed, in s.
     pub compact_s: [f64; 2],
-    /// Those of the chain with the loads that friction held on it before this shot, at the
-    /// measured speed, in s: the model's, since the rig integrates nothing else.
-    pub held_s: [f64; 2],
+    /// The recorded shot's own, taken to the measured speed, in s: of the chain as it stood, with
+    /// the loads that friction held on it. No second computation: what departs from them is of
+    /// measuring.
+    pub own_s: [f64; 2],
 }
 
-/// One of the model's curves.
+/// What measured times are held to.
 pub type Curve = fn(&Judged) -> [f64; 2];
 
-/// Of the chain in equilibrium.
+/// The model's curve, of the chain in equilibrium.
 pub const COMPACT: Curve = |shot| shot.compact_s;
-/// Of the chain as friction held it.
-pub const HELD: Curve = |shot| shot.held_s;
+/// The recorded shots' own times.
+pub const OWN: Curve = |shot| shot.own_s;
 
 impl Judged {
     /// Measured less true time, with the stated error of picking.
@@ -55,7 +56,7 @@ impl Judged {
         value.is_finite().then_some(Estimate { value, ..measured })
     }
 
-    /// Measured time less the model's, with the stated errors that are this shot's own: of
+    /// Measured time less what it is held to, with the stated errors that are this shot's own: of
     /// picking, without what shots share, and of the speed.
     fn departure(&self, time: usize, curve: Curve) -> Option<Estimate> {
         let measured = self.measured_s[time]?;
@@ -69,7 +70,7 @@ impl Judged {
     }
 }
 
-/// Shots of one speed: mean departure from the model, by stated errors.
+/// Shots of one speed: mean departure from what they are held to, by stated errors.
 pub struct Speed {
     /// Programmed speed in m/s.
     pub speed_m_s: f64,
@@ -83,7 +84,7 @@ pub struct Speed {
     pub scatter_s: f64,
 }
 
-/// Means a speed of one case, less one of the model's curves.
+/// Means a speed of one case, less what they are held to.
 pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
     let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s).collect();
     speeds.sort_by(f64::total_cmp);
@@ -180,7 +181,7 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
             under_s: flight.map_or([[0.0; 2]; 2], |flight| flight.picks.under_s()),
             true_s,
             compact_s,
-            held_s: true_s.map(|time_s| time_s * to_measured),
+            own_s: true_s.map(|time_s| time_s * to_measured),
         });
     }
     Ok(judged)

@@ -215,15 +215,19 @@ fn one_by_one(
     }))
 }
 
-/// Speeds in the order of the records.
+/// Speeds in the order of the records; pieces of one have the same.
 fn with_speeds(records: Raw, speeds: Vec<f64>, note: Option<String>) -> Raw {
-    let mut number = 0;
+    let mut rest = speeds.clone().into_iter();
+    let mut own = None;
     Box::new(records.map(move |record| {
+        let goes_on = record.as_ref().is_ok_and(|record| record.first_sample > 0);
+        if !goes_on {
+            own = rest.next();
+        }
         let speed = match speeds.as_slice() {
             [one] => Some(*one),
-            several => several.get(number).copied(),
+            _ => own,
         };
-        number += 1;
         record.map(|record| Record {
             speed_m_s: speed.filter(|speed| speed.is_finite()),
             notes: note.clone().into_iter().collect(),

@@ -85,6 +85,7 @@ impl Table {
                 .collect(),
             interval_s,
             total: frames.saturating_mul(shots),
+            row: frames,
             each: frames,
             pieces: false,
         };

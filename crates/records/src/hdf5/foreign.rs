@@ -84,10 +84,6 @@ impl Arrays for Datasets {
         let dataset = self.dataset(name)?;
         let (file, shape) = (self.file.clone(), dataset.shape());
         let table = Table::of(&file, Some(name.to_owned()), &shape, interval_s, options)?;
-        let head = match table.axes.shots {
-            Some(_) => table.head.clone(),
-            None => table.head.clone().divided(options.parts),
-        };
         let rows = Rows {
             file,
             name: name.to_owned(),
@@ -97,7 +93,7 @@ impl Arrays for Datasets {
             frames: table.frames,
             at: 0,
         };
-        Ok(Box::new(Cut::new(head, rows)))
+        Ok(Box::new(Cut::new(table.head.divided(options.parts), rows)))
     }
 
     fn stated_s(&self) -> Option<f64> {

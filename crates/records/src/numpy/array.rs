@@ -94,7 +94,7 @@ impl Array {
         }
         // Numbers of the last axis lie side by side; column by column those of the first.
         let planar = channels.is_some_and(|axis| (axis == 0) != fortran || shots.is_some());
-        let head = match shots.is_some() || planar {
+        let head = match planar {
             true => table.head,
             false => table.head.divided(options.parts),
         };
@@ -120,8 +120,8 @@ fn side_by_side(head: Head, mut stream: RawNumbers<Box<dyn Read>>) -> Raw {
         Ok(shots) => shots,
         Err(error) => return Box::new(std::iter::once(Err(error))),
     };
-    let record = move |(number, samples)| Ok(head.record(number, vec![samples]));
-    Box::new((1..).zip(shots).map(record))
+    let record = move |(row, samples)| Ok(head.record(row * head.row, vec![samples]));
+    Box::new(shots.into_iter().enumerate().map(record))
 }
 
 /// A number that a plain item is.

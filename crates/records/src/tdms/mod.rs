@@ -89,6 +89,7 @@ fn open_group(
         names: kept.iter().map(|channel| channel.name.clone()).collect(),
         interval_s: interval_s(file, stated_s, options)?,
         total,
+        row: total,
         each: total,
         pieces: false,
     };

@@ -8,13 +8,14 @@ use crate::saturation::has_run;
 pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding) {
     let channels = [recorded.sensor(), recorded.wall()];
     let own = channels.map(extremes);
+    let rails = finding.rails_of(recorded);
     let mut doubts = Vec::new();
     let mut steps = [f64::INFINITY; 2];
     for pulse in found.pulses() {
         let which = usize::from(pulse.place == Place::Wall);
         let (from, to) = pulse.extent;
         let inside = channels[which].get(from..=to).unwrap_or_default();
-        let saturated = saturated(inside, own[which], pulse, finding);
+        let saturated = saturated(inside, own[which], pulse, rails[which]);
         doubts.extend(saturated.then_some(Doubt::Saturation(pulse.place)));
         steps[which] = steps[which].min(step(inside));
     }
@@ -39,11 +40,11 @@ fn step(samples: &[f64]) -> f64 {
 }
 
 /// Whether a pulse has a run of samples at the record's extremes, or any on a known rail.
-fn saturated(inside: &[f64], (low, high): (f64, f64), pulse: &Pulse, finding: &Finding) -> bool {
+fn saturated(inside: &[f64], (low, high): (f64, f64), pulse: &Pulse, known: Option<Rails>) -> bool {
     // A round top of a hundred steps has a run of a tenth of its width.
     let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
     let own = (Rails { low, high }, longest);
-    let (rails, shortest) = finding.rails.map_or(own, |rails| (rails, 1));
+    let (rails, shortest) = known.map_or(own, |rails| (rails, 1));
     has_run(inside, rails, shortest)
 }
 

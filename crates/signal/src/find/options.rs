@@ -39,11 +39,23 @@ pub struct Finding {
     /// Number N of beads and the sensor bead's number n, 1 ≤ n < N: they bound
     /// when the wall's and the returning pulse can come.
     pub beads: Option<(usize, usize)>,
-    /// The digitiser's range; without it, long runs at a record's extremes count as saturated.
+    /// The digitiser's range in the sensor's, or in the summed channel; without it, long runs at
+    /// a record's extremes count as saturated.
     pub rails: Option<Rails>,
+    /// The same in the wall's channel, if it has one.
+    pub wall_rails: Option<Rails>,
 }
 
 impl Finding {
+    /// Ranges of the channels that hold the sensor's and the wall's pulses.
+    #[must_use]
+    pub fn rails_of(&self, channels: Channels<'_>) -> [Option<Rails>; 2] {
+        match channels {
+            Channels::Summed(_) => [self.rails; 2],
+            Channels::Separate { .. } => [self.rails, self.wall_rails],
+        }
+    }
+
     pub(crate) fn check(&self) -> Result<(), SignalError> {
         let Some((beads, sensor)) = self.beads else {
             return Ok(());

@@ -179,7 +179,8 @@ pub struct Picks {
     pub returning: Option<Picked>,
 }
 
-/// Picks the pulses that were found.
+/// Picks the pulses that were found, given the digitiser's range, where it is known, in the
+/// channels that hold the sensor's and the wall's pulses.
 ///
 /// # Errors
 /// No passing or no wall's pulse; no maximum or crossing where one of these is;
@@ -189,7 +190,7 @@ pub fn pick(
     interval_s: f64,
     found: &Found,
     method: &Method,
-    rails: Option<Rails>,
+    rails: [Option<Rails>; 2],
 ) -> Result<Picks, SignalError> {
     SignalError::positive("sampling interval in s", interval_s)?;
     method.check()?;
@@ -199,12 +200,13 @@ pub fn pick(
     let sensor = Sight {
         samples: channels.sensor(),
         upright: found.sensor,
-        rails,
+        rails: rails[0],
         summed: matches!(channels, Channels::Summed(_)),
     };
     let at_wall = Sight {
         samples: channels.wall(),
         upright: found.wall_channel,
+        rails: rails[1],
         ..sensor
     };
     let picker = Picker::new(method, &sensor, &passing, interval_s)?;

@@ -154,6 +154,7 @@ fn measuring(picking: &Picking, rig: Option<&Experiment>) -> Result<Measuring, F
             wall_polarity: polarity(picking.wall_polarity),
             beads: beads.or_else(of_rig),
             rails: None,
+            wall_rails: None,
         },
         method: method(picking),
         high_pass_s: high_pass_hz
