@@ -176,7 +176,9 @@ def test_bad_parameters_are_told_and_stop_nothing(small, client, tmp_path):
     same(found, hc.ensemble(small, speeds, {"young_modulus": moduli}))
 
 
-def test_a_poisoned_shard_is_told_and_stops_nothing(small, client, tmp_path):
+@pytest.mark.parametrize("where", ["on workers", "in process"])
+def test_a_poisoned_shard_is_told_and_stops_nothing(where, small, client, tmp_path):
+    client = client if where == "on workers" else None
     speeds = np.linspace(0.1, 1.0, 60)
     clean = distributed.sweep(small, speeds, folder=tmp_path / "clean", shards=6)
     # A folder where the third shard's file should go: no worker can write it.
@@ -190,6 +192,29 @@ def test_a_poisoned_shard_is_told_and_stops_nothing(small, client, tmp_path):
     mended = distributed.sweep(small, speeds, folder=tmp_path / "run", client=client, shards=6)
     assert mended.kept == 5 and mended.poisoned == {}
     same(mended.load(), clean.load())
+
+
+@contextmanager
+def other_instructions(client: Client) -> Iterator[None]:
+    """Workers take vector instructions that this process does not."""
+    variable = "HERTZCHAIN_INSTRUCTION_SET"
+    other = next(name for name in ("sse2", "avx2") if name != hc.instruction_set())
+    client.run(lambda: os.environ.update({variable: other}))
+    try:
+        yield
+    finally:
+        client.run(lambda: os.environ.pop(variable))
+
+
+def test_a_worker_that_would_compute_other_bits_is_told_and_computes_nothing(small, posterior, client, tmp_path):
+    data, how, _ = posterior
+    with other_instructions(client):
+        run = distributed.sweep(small, SPEEDS, folder=tmp_path, client=client, shards=2)
+        with pytest.raises(hc.OptionError, match="HERTZCHAIN_INSTRUCTION_SET"):
+            distributed.fit(data, folder=tmp_path / "fit", client=client, **how)
+    assert list(run.poisoned) == [1, 2] and all("HERTZCHAIN_INSTRUCTION_SET" in why for why in run.poisoned.values())
+    assert not recordings(tmp_path)
+    assert distributed.sweep(small, SPEEDS, folder=tmp_path / "right", client=client, shards=2).poisoned == {}
 
 
 @pytest.fixture(scope="module")

@@ -44,6 +44,12 @@ def test_progress_counts_every_shot(small):
         assert bar.n == 30
 
 
+def test_a_bar_without_tqdm_says_how_to_get_it(small, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ModuleNotFoundError, match="pip install tqdm"):
+        hc.sweep(small, [0.5], progress=True)
+
+
 def test_a_progress_that_raises_stops_the_call(small):
     def enough(_: int) -> None:
         raise ZeroDivisionError("enough")

@@ -27,6 +27,26 @@ anything = st.one_of(
 )  # fmt: skip
 
 
+ROW = hc.build(
+    {
+        "materials": {"steel": {"young_modulus": "213 GPa", "poisson_ratio": 0.3, "density": "7960 kg/m^3"}},
+        "striker": {"speed": "0.5 m/s"},
+        "beads": [{"count": 4, "radius": "6.35 mm", "material": "steel"}],
+        "contacts": [{"laws": [{"law": "elastic_hertz"}]}],
+        "sensors": {"bead": 2},
+    }
+)
+# Between these a shot takes as long as it is said to.
+seconds = st.one_of(
+    anything.filter(lambda value: not isinstance(value, (int, float))), st.booleans(),
+    st.floats(max_value=2e-3), st.floats(min_value=1e6), st.integers(max_value=0),
+)  # fmt: skip
+sensors = st.one_of(
+    anything,
+    st.lists(st.sampled_from(["bead_1", "contact_0", "position_4", "velocity_9", "bead_-1", ("contact", 2), ("bead", 10**30), ("bead", 1.5)])),
+)
+
+
 def refused_or(call):
     """What a call gives; refusals are exceptions of ours or Python's own of type and value."""
     try:
@@ -87,6 +107,14 @@ def test_any_argument_of_a_shot(speed, accuracy, duration):
     if isinstance(duration, (int, float)) or (isinstance(speed, float) and speed < 1e-3):
         duration = None
     refused_or(lambda: hc.shot(CHAIN, speed, accuracy=accuracy if accuracy != 0 else None, duration=duration))
+
+
+@few
+@given(seconds, st.one_of(anything, st.sampled_from([1e-18, 5e-324, 1e-9, 1e300])), sensors)
+def test_any_time_and_sensor_of_a_shot(duration, interval_s, trace):
+    found = refused_or(lambda: hc.shot(ROW, duration=duration, interval_s=interval_s, trace=trace))
+    if found is not None and found.trace is not None:
+        assert all(signal.shape == found.trace.time_s.shape for signal in found.trace.signals.values())
 
 
 @few

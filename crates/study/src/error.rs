@@ -1,6 +1,7 @@
 //! Why a shot has no result.
 
 use hertzchain_chain::ChainError;
+use hertzchain_chain::observe::Tracer;
 use hertzchain_chain::wave::SolveError;
 
 /// Why a shot has no result.
@@ -25,6 +26,20 @@ pub enum StudyError {
         what: &'static str,
         /// What it is, in s.
         value: f64,
+    },
+    /// A trace that fills the memory.
+    #[error(
+        "a trace with {sensors} sensors, a sample every {interval_s:e} s, has more than {most} numbers \
+         {time_s:.3e} s after the start of the shot; sample less often, fewer sensors or a shorter shot",
+        most = Tracer::MOST_NUMBERS
+    )]
+    LongTrace {
+        /// How many sensors are sampled.
+        sensors: usize,
+        /// Time between samples in s.
+        interval_s: f64,
+        /// How far the shot had come, in s.
+        time_s: f64,
     },
     /// The sensor bead is not part of the chain.
     #[error("sensor bead {bead} is outside the chain of {beads} beads")]

@@ -5,7 +5,7 @@ use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::following::Following;
-use crate::plan::{Plan, Solver};
+use crate::plan::{Plan, Solver, Watch};
 use crate::shot::{Rebound, Shot, reported, tie};
 use crate::stop::stopped;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
@@ -257,15 +257,30 @@ impl<'a> Gun<'a> {
         if stopped() {
             return Err(StudyError::Stopped);
         }
-        let trace = tracer.map(Tracer::into_trace);
+        let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
         Ok(self.shot(method, outcome, &following, separation, trace))
     }
 
     fn tracer(&self) -> Option<Tracer> {
         let watch = self.plan.watch.as_ref()?;
-        let usual = 0.1 * self.system.scales().time_s;
-        let interval_s = watch.interval_s.unwrap_or(usual);
+        let interval_s = self.interval_s(watch);
         Some(Tracer::new(watch.sensors.clone(), interval_s, interval_s))
+    }
+
+    fn interval_s(&self, watch: &Watch) -> f64 {
+        let usual = 0.1 * self.system.scales().time_s;
+        watch.interval_s.unwrap_or(usual)
+    }
+
+    fn trace(&self, tracer: Tracer) -> Result<Trace, StudyError> {
+        match (tracer.full_s(), &self.plan.watch) {
+            (Some(time_s), Some(watch)) => Err(StudyError::LongTrace {
+                sensors: watch.sensors.len(),
+                interval_s: self.interval_s(watch),
+                time_s,
+            }),
+            _ => Ok(tracer.into_trace()),
+        }
     }
 
     fn shot(

@@ -179,7 +179,9 @@ impl Plan {
         self
     }
 
-    /// This plan with sensors sampled.
+    /// This plan with sensors sampled; a trace of more than
+    /// [`Tracer::MOST_NUMBERS`](hertzchain_chain::observe::Tracer::MOST_NUMBERS)
+    /// numbers is refused while the shot runs, since only then its end is known.
     #[must_use]
     pub fn watching(mut self, sensors: Vec<Sensor>, interval_s: Option<f64>) -> Self {
         self.watch = Some(Watch {

@@ -8,6 +8,7 @@ use crate::shard::Shard;
 use crate::sweep::{Judges, PointError, Settings};
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, PathError, Units};
+use std::sync::OnceLock;
 
 /// Shots that are planned and held in memory at once.
 const AT_ONCE: usize = 8192;
@@ -94,6 +95,8 @@ pub struct Run {
     /// Full paths with one value a shot.
     numbers: Vec<(String, Vec<f64>)>,
     how: How,
+    /// A hash of all of the above: once, however many parts ask for it.
+    fingerprint: OnceLock<Fingerprint>,
 }
 
 /// A part of a run with its results.
@@ -133,6 +136,7 @@ impl Run {
             speeds_m_s,
             numbers: Vec::new(),
             how,
+            fingerprint: OnceLock::new(),
         })
     }
 
@@ -153,6 +157,7 @@ impl Run {
             });
         }
         self.numbers.push((path, values));
+        self.fingerprint = OnceLock::new();
         Ok(self)
     }
 
@@ -173,6 +178,10 @@ impl Run {
     /// set, this build of the program. Not of paths, times or machines.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
+        *self.fingerprint.get_or_init(|| self.hashed())
+    }
+
+    fn hashed(&self) -> Fingerprint {
         let How {
             accuracy,
             solver,

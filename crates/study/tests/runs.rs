@@ -178,6 +178,8 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         assert!(!others[..at].contains(other), "{at}");
     }
     let run = Run::new(&dry, vec![0.5, 1.0], how).unwrap();
+    // It is kept once it was asked for, but not by a run with other numbers.
+    assert_eq!(run.fingerprint(), run.clone().fingerprint());
     let numbered = run
         .clone()
         .with_number("poisson_ratio", vec![0.3, 0.3])

@@ -5,6 +5,7 @@
     reason = "a test that cannot go on should fail"
 )]
 
+use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_study::reproduce::CASES;
@@ -205,6 +206,29 @@ fn nonsense_is_refused() {
     ));
     let step = |p: &mut Plan| p.solver = Solver::Rk4 { step_s: Some(0.0) };
     assert!(matches!(refused(step), StudyError::Time { .. }));
+}
+
+#[test]
+fn a_trace_that_would_fill_the_memory_is_refused_before_it_does() {
+    for solver in [Solver::Adaptive, Solver::Rk4 { step_s: Some(1e-7) }] {
+        let sensors = vec![Sensor::Bead(7), Sensor::Contact(40)];
+        let plan = Plan {
+            solver,
+            ..plan("dry", 0.5).watching(sensors, Some(1e-18))
+        };
+        let error = shoot(&plan).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                StudyError::LongTrace {
+                    sensors: 2,
+                    interval_s: 1e-18,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
 }
 
 #[test]

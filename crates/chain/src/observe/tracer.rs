@@ -16,16 +16,23 @@ pub struct Trace {
     pub budgets: Vec<Budget>,
 }
 
-/// Samples a shot while it runs.
+/// Samples a shot while it runs, and ends it before a trace fills the memory.
 #[derive(Clone, Debug)]
 pub struct Tracer {
     interval_s: f64,
     budget_interval_s: f64,
     next: usize,
     trace: Trace,
+    full_s: Option<f64>,
 }
 
+/// Numbers of an energy budget beside its losses.
+const OF_BUDGET: usize = 10;
+
 impl Tracer {
+    /// Most numbers of a trace, times and energies included: 0.8 GB.
+    pub const MOST_NUMBERS: usize = 100_000_000;
+
     /// Samples sensors every `interval_s`, and energy about every
     /// `budget_interval_s` (at the starts of steps).
     #[must_use]
@@ -41,13 +48,42 @@ impl Tracer {
             budget_interval_s,
             next: 0,
             trace,
+            full_s: None,
         }
+    }
+
+    /// When the trace would have had more than [`Self::MOST_NUMBERS`] numbers, in
+    /// s; the shot ended there.
+    #[must_use]
+    pub fn full_s(&self) -> Option<f64> {
+        self.full_s
     }
 
     /// What was sampled.
     #[must_use]
     pub fn into_trace(self) -> Trace {
         self.trace
+    }
+
+    /// Numbers that the trace has once it is sampled until a time, with one
+    /// more energy budget.
+    fn numbers(&self, until_s: f64) -> f64 {
+        let due = if self.samples() {
+            until_s / self.interval_s
+        } else {
+            0.0
+        };
+        let losses = self
+            .trace
+            .budgets
+            .last()
+            .map_or(0, |it| it.dissipated.len());
+        let budgets = (self.trace.budgets.len() + 1) * (OF_BUDGET + losses);
+        due.max(self.next as f64) * (self.trace.sensors.len() + 1) as f64 + budgets as f64
+    }
+
+    fn samples(&self) -> bool {
+        self.interval_s > 0.0
     }
 
     fn sample(&mut self, piece: &Piece<'_>, time_s: f64) {
@@ -62,10 +98,13 @@ impl Tracer {
 impl Observer for Tracer {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         let end = piece.time_s(1.0);
+        if self.numbers(end) > Self::MOST_NUMBERS as f64 {
+            self.full_s = Some(piece.start_s());
+            return Flow::Finished;
+        }
         loop {
             let time = self.next as f64 * self.interval_s;
-            let never = self.interval_s.is_nan() || self.interval_s <= 0.0;
-            if time >= end || never {
+            if time >= end || !self.samples() {
                 break;
             }
             self.sample(piece, time);

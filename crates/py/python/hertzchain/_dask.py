@@ -57,7 +57,11 @@ def run(shard: Shard, arguments: Arguments, of: int, client: Client | None, tell
 
 def _here(shard: Shard, arguments: Arguments, of: int) -> Iterator[tuple[int, bool | str]]:
     for number in range(1, of + 1):
-        yield shard(*arguments(number))
+        try:
+            outcome = shard(*arguments(number))
+        except Exception as error:  # as a worker's: told, and the others go on
+            outcome = number, _told(error)
+        yield outcome
 
 
 def _there(shard: Shard, arguments: Arguments, of: int, client: Client) -> Iterator[tuple[int, bool | str]]:
@@ -90,8 +94,11 @@ def _outcome(number: int, future: Future) -> tuple[int, bool | str]:
         return future.result()
     if future.status != "error":
         raise ConnectionError(GONE)
-    error = future.exception()
-    return number, f"{type(error).__name__}: {error}"
+    return number, _told(future.exception())
+
+
+def _told(error: BaseException | None) -> str:
+    return f"{type(error).__name__}: {error}"
 
 
 class _Room:
@@ -120,8 +127,8 @@ Batches = list[tuple[str, list[list[float]]]]
 """Names and points."""
 
 
-def batches(task: Callable[..., Any], path: str, client: Client) -> Callable[[Batches], Callable[[float], Any]]:
-    """A way to have batches of points computed, as the library asks for it."""
+def batches(task: Callable[..., Any], work: tuple[str, str], client: Client) -> Callable[[Batches], Callable[[float], Any]]:
+    """A way to have batches of points of a work, by its file and name, computed as the library asks for it."""
     from dask.distributed import CancelledError, TimeoutError, wait
 
     call = uuid4().hex
@@ -129,7 +136,7 @@ def batches(task: Callable[..., Any], path: str, client: Client) -> Callable[[Ba
     def compute(named: Batches) -> Callable[[float], Any]:
         """Hands out batches; gives what waits for them."""
         keys = ((f"hertzchain-batch-{call}-{name}", points) for name, points in named)
-        futures = [client.submit(task, path, points, key=key, pure=False, retries=RETRIES) for key, points in keys]
+        futures = [client.submit(task, *work, points, key=key, pure=False, retries=RETRIES) for key, points in keys]
 
         def waiting(seconds: float) -> Any:
             """Outcomes in order, or None if there are some to come."""

@@ -113,8 +113,10 @@ def progress(wanted: object, total: int | None, unit: str) -> tuple[object, obje
     if wanted is None or wanted is False:
         return None, None
     if wanted is True:
-        from tqdm.auto import tqdm
-
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            raise ModuleNotFoundError("progress=True draws tqdm's bar: pip install tqdm, or give a function that is told of progress") from None
         bar = tqdm(total=total, unit=unit)
         return bar.update, bar
     if isinstance(wanted, Updating):

@@ -26,10 +26,11 @@ _ENDINGS = (
 
 
 def unit(name: str, dimensionless: bool = False) -> str:
-    """SI unit of a column by the end of its name; "1" for plain numbers."""
+    """SI unit of a column by the end of its name, its error's too; "1" for plain numbers."""
     if dimensionless:
         return "1"
-    return next((unit for ending, unit in _ENDINGS if name.endswith(ending)), "1")
+    of = name.removesuffix("_error").removesuffix("_deviation")
+    return next((unit for ending, unit in _ENDINGS if of.endswith(ending)), "1")
 
 
 def dataset(

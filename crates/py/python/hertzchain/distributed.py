@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import socket
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -105,9 +106,22 @@ class Distributed:
 
 
 @lru_cache(maxsize=4)
-def _opened(path: str) -> Any:
-    """What is to be computed, from its file; a worker reads it once."""
-    return pickle.loads(Path(path).read_bytes())
+def _read(path: str) -> tuple[Any, str]:
+    """What is to be computed, from its file, and its name here; a worker reads it once."""
+    work = pickle.loads(Path(path).read_bytes())
+    return work, work.name
+
+
+def _opened(path: str, name: str) -> Any:
+    """What is to be computed, if it has the same bits here as where its name comes from."""
+    work, own = _read(path)
+    if own != name:
+        raise OptionError(
+            f"the worker on {socket.gethostname()} would compute other bits: what it was sent as {name} is {own} there, by its "
+            f"build of hertzchain and its instruction set ({_native.instruction_set()}); install one build everywhere, and name "
+            "one instruction set for all machines in HERTZCHAIN_INSTRUCTION_SET"
+        )
+    return work
 
 
 def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
@@ -120,17 +134,22 @@ def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
     return str(path)
 
 
-def _shard(path: str, number: int, of: int) -> tuple[int, bool | str]:
+def _threads(client: Client | None) -> int:
+    """Threads of a shard: one of a worker's, of which each computes a shard; all (0) in process."""
+    return 0 if client is None else 1
+
+
+def _shard(path: str, name: str, number: int, of: int, threads: int) -> tuple[int, bool | str]:
     """Computes a shard of a sweep on a worker."""
     folder = str(Path(path).parent)
-    return _dask.poisoned_or(number, lambda: _native.shard(_opened(path), number, of, folder, 1, None))
+    return _dask.poisoned_or(number, lambda: _native.shard(_opened(path, name), number, of, folder, threads, None))
 
 
-def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None) -> tuple[int, bool | str]:
+def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> tuple[int, bool | str]:
     """Runs a part of a campaign on a worker."""
 
     def kept() -> bool:
-        done = _native.campaign(experiment, out, f"{number}/{of}", seed, 1, None)
+        done = _native.campaign(experiment, out, f"{number}/{of}", seed, threads, None)
         if done["failed"]:
             raise OptionError("; ".join(done["failed"]))
         return done["kept"] > 0 and done["run"] == 0
@@ -138,9 +157,9 @@ def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | 
     return _dask.poisoned_or(number, kept)
 
 
-def _outcomes(path: str, points: list[list[float]]) -> list[Any]:
+def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:
     """Residuals of points on a worker."""
-    return _opened(path).outcomes(points)
+    return _opened(path, name).outcomes(points)
 
 
 def sweep(
@@ -187,8 +206,8 @@ def sweep(
 
     Notes
     -----
-    All workers must have the same instruction set; a shard has the bits of
-    ``hertzchain sweep --shard i/n``.
+    All workers must have the build and the instruction set of whoever calls: where
+    they have not, shards are poisoned. A shard has the bits of ``hertzchain sweep --shard i/n``.
     """
     speeds, named = broadcast(experiment, speed, parameters)
     how = options.how(accuracy, None, None, None, pick, False)
@@ -199,7 +218,7 @@ def sweep(
     of = shards or max(1, -(-speeds.size // SHOTS_A_SHARD))
     update, bar = options.progress(progress, of, "shard")
     try:
-        kept, poisoned = _dask.run(_shard, lambda number: (path, number, of), of, client, update)
+        kept, poisoned = _dask.run(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
     finally:
         if bar is not None:
             bar.close()  # type: ignore[attr-defined]
@@ -236,7 +255,7 @@ def campaign(
     into = str(Path(out).resolve())
     update, bar = options.progress(progress, shards, "shard")
     try:
-        kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed), shards, client, update)
+        kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
     finally:
         if bar is not None:
             bar.close()  # type: ignore[attr-defined]
@@ -299,6 +318,6 @@ def fit(
     likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
     if client is None:
         return fitted(_native.fit_spread(likelihood, POINTS, None))
-    compute = _dask.batches(_outcomes, _written(likelihood, into), client)
+    compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
     size = points or max(1, POINTS // max(1, _dask.threads(client)))
     return fitted(_native.fit_spread(likelihood, size, compute))

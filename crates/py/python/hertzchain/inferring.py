@@ -147,6 +147,8 @@ def fit(
     ----------
     data : path, mapping of columns, DataFrame, Measured or Sweep
         Times of flight in s against ``speed_m_s``, errors in ``*_error`` columns.
+        A table, not recordings: those go through `measure` first; their whole
+        pulses are fitted by the program's ``fit`` alone.
     model : Experiment or str, optional
         The model, or the name of a preset; ``"dry"`` when absent.
     free : str or iterable of str

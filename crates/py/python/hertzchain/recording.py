@@ -183,7 +183,7 @@ class Measured:
         """One row a shot, as in ``shots.csv``."""
         import pandas as pd
 
-        return pd.read_csv(io.StringIO(self.tables["shots.csv"]))
+        return pd.read_csv(io.StringIO(self.tables["shots.csv"]), float_precision="round_trip")
 
     def to_xarray(self) -> xr.Dataset:
         """One row a shot."""

@@ -21,6 +21,9 @@ __all__ = ["ensemble", "shot", "sweep"]
 
 Sensor = str | tuple[str, int]
 
+MOST_SPEEDS = 100_000
+"""Most speeds in one sweep, each of whose shots is kept whole until the end."""
+
 MOST_SHOTS = 50_000_000
 """Most shots in one ensemble: their numbers alone take five gigabytes."""
 
@@ -58,7 +61,8 @@ def shot(
         Sample the experiment's sensors, or these: ``"bead_7"``,
         ``("contact", 40)``, ``"position_0"``, ``"velocity_3"``.
     interval_s : float, optional
-        Time between samples in s; a tenth of the contact time when absent.
+        Time between samples in s; a tenth of the contact time when absent. A
+        trace has at most 10^8 numbers.
     forces : ForceLaw or iterable of ForceLaw
         Force laws of Python, in place of the experiment's or beside them.
 
@@ -151,7 +155,7 @@ def sweep(
     experiment : Experiment
         A chain with a striker.
     speeds : array_like of shape (speeds,), or str
-        Speeds in m/s; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
+        Speeds in m/s, at most 100,000; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
     accuracy, solver, step, duration, pick, check
         As for `shot`.
     rebound : bool
@@ -180,6 +184,8 @@ def sweep(
     The numbers are those of ``hertzchain sweep --json``, bit for bit.
     """
     values = _native.speeds(speeds) if isinstance(speeds, str) else _numbers("speeds", speeds)
+    if values.size > MOST_SPEEDS:
+        raise OptionError(f"{values.size} speeds: expected at most {MOST_SPEEDS}; `ensemble` takes more")
     if values.ndim > 1:
         raise OptionError(f"speeds of shape {values.shape}: expected one dimension; `ensemble` takes more")
     values = np.ascontiguousarray(np.atleast_1d(values))
