@@ -10,7 +10,9 @@ use crate::common::*;
 use hertzchain_chain::ensemble::{
     End, EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while,
 };
-use hertzchain_chain::laws::{DampingLinear, DampingPower, ElasticPlasticThornton, Law, law};
+use hertzchain_chain::laws::{
+    DampingCubic, DampingLinear, DampingPower, ElasticHertz, ElasticPlasticThornton, Law, law,
+};
 use hertzchain_chain::*;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -43,6 +45,16 @@ type Kind = (&'static str, fn(f64) -> Chain);
 fn kinds() -> Vec<Kind> {
     vec![
         ("fused laws", |v| row(12, v, dry())),
+        ("fused laws, each lane with its own numbers", |v| {
+            let coefficient_kg_s_m2 = 77.0 * (1.0 + v);
+            let hertz = law(ElasticHertz {
+                stiffness: Some(9e9 * (1.0 + v)),
+            });
+            let cubic = law(DampingCubic {
+                coefficient_kg_s_m2,
+            });
+            row(12, v, vec![hertz, viscoelastic(), cubic])
+        }),
         ("unfused laws", |v| row(11, v, law_by_law())),
         ("laws with memory", |v| row(10, v, with_memory())),
         ("sections that end within eight bodies", |v| Chain {
