@@ -4,5 +4,6 @@
 mod common;
 mod damaged;
 mod formats;
+mod long_rows;
 mod series;
 mod tdms;
