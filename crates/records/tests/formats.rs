@@ -1,8 +1,16 @@
 //! Every format as another program writes it.
 
-use crate::common::{at_1_mhz, folder, kept, python};
+use crate::common::{folder, kept, python};
 use hertzchain_records::{Parts, ReadOptions, Record, RecordError, Rows, Samples, read};
 use std::path::Path;
+
+/// Files that do not tell their rate.
+pub fn at_1_mhz() -> ReadOptions {
+    ReadOptions {
+        rate_hz: Some(1e6),
+        ..ReadOptions::default()
+    }
+}
 
 fn all(path: &Path, options: &ReadOptions) -> Vec<Record> {
     read(path, options).map(|record| record.unwrap()).collect()

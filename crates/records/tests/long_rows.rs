@@ -1,6 +1,7 @@
 //! Recordings in one row that is longer than memory should hold.
 
-use crate::common::{at_1_mhz, folder, python};
+use crate::common::{folder, python};
+use crate::formats::at_1_mhz;
 use hertzchain_records::{Parts, ReadOptions, read};
 use std::path::Path;
 

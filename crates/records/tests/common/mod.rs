@@ -5,7 +5,6 @@
 
 mod python;
 
-use hertzchain_records::ReadOptions;
 use python::Python;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,12 +34,4 @@ pub fn kept(name: &str) -> PathBuf {
 /// notice, where there is no Python with the packages.
 pub fn python(folder: &Path, program: &str) -> Option<String> {
     PYTHON.run(folder, program)
-}
-
-/// Files that do not tell their rate.
-pub fn at_1_mhz() -> ReadOptions {
-    ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    }
 }
