@@ -39,28 +39,24 @@ struct Case {
 const STIFFNESS: f64 = 8.792_630_379_6e9;
 const RELAXATION_S: f64 = 3.385_289_514_9e-7;
 
+const DRY: Case = Case {
+    name: "dry",
+    preset: "dry",
+    free: ["eta", "B"],
+    exact: [3.2e4, 77.0],
+    set: [
+        ("aisi316.shear_viscosity", 3.2e4),
+        ("aisi316.bulk_viscosity", 3.2e4),
+    ],
+    by_rk4: false,
+};
+
 const CASES: [Case; 4] = [
-    Case {
-        name: "dry",
-        preset: "dry",
-        free: ["eta", "B"],
-        exact: [3.2e4, 77.0],
-        set: [
-            ("aisi316.shear_viscosity", 3.2e4),
-            ("aisi316.bulk_viscosity", 3.2e4),
-        ],
-        by_rk4: false,
-    },
+    DRY,
     Case {
         name: "rk4",
-        preset: "dry",
-        free: ["eta", "B"],
-        exact: [3.2e4, 77.0],
-        set: [
-            ("aisi316.shear_viscosity", 3.2e4),
-            ("aisi316.bulk_viscosity", 3.2e4),
-        ],
         by_rk4: true,
+        ..DRY
     },
     Case {
         name: "contacts",

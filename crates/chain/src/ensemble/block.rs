@@ -144,7 +144,9 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         };
         block.rest();
         block.forces();
-        block.look_at_changes(false);
+        if let Some(changes) = block.changes.take() {
+            block.look_at_changes(changes, false);
+        }
         block
     }
 
@@ -176,8 +178,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     #[inline(always)]
     pub fn step<S: Simd>(&mut self, simd: S) {
         // What few chains need is not even called for the others.
-        if self.motion.external.is_some() {
-            self.push();
+        if let Some(external) = self.motion.external.take() {
+            self.push(external);
         }
         if self.steps <= self.schedule.last_row() {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
@@ -193,8 +195,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         self.window.follow(simd, places!(self));
         self.starting = false;
         self.forces();
-        if self.changes.is_some() {
-            self.look_at_changes(true);
+        if let Some(changes) = self.changes.take() {
+            self.look_at_changes(changes, true);
         }
         self.steps += 1;
         self.bodies_looked_at += (self.window.bodies.len() * W) as u64;
@@ -256,10 +258,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Finds openings and closings within the last step.
-    fn look_at_changes(&mut self, follow: bool) {
-        let Some(mut changes) = self.changes.take() else {
-            return;
-        };
+    fn look_at_changes(&mut self, mut changes: Changes<W>, follow: bool) {
         let awake = self.window.contacts.clone();
         let changed = changes.look(
             self.set,
@@ -274,7 +273,9 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
                     self.edges.push((at, edge, 1));
                 }
             }
-            self.close_ring();
+            if self.systems[0].periodic {
+                self.close_ring();
+            }
         }
         self.changes = Some(changes);
     }
@@ -353,23 +354,18 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
     /// In a ring the last body is bead 1 again.
     fn close_ring(&mut self) {
-        if self.systems[0].periodic {
-            let (lanes, last) = (self.lanes, self.systems[0].bodies() - 1);
-            for values in [&mut self.motion.x, &mut self.motion.v] {
-                values.copy_within(lanes..2 * lanes, last * lanes);
-            }
-            self.motion
-                .newest_mut()
-                .copy_within(lanes..2 * lanes, last * lanes);
+        let (lanes, last) = (self.lanes, self.systems[0].bodies() - 1);
+        for values in [&mut self.motion.x, &mut self.motion.v] {
+            values.copy_within(lanes..2 * lanes, last * lanes);
         }
+        self.motion
+            .newest_mut()
+            .copy_within(lanes..2 * lanes, last * lanes);
     }
 
     /// What acts on single bodies beside contacts: the striker's weight, the
     /// spring on bead 1, threads.
-    fn push(&mut self) {
-        let Some(external) = &mut self.motion.external else {
-            return;
-        };
+    fn push(&mut self, mut external: Aligned<N>) {
         for (lane, system) in self.systems.iter().enumerate() {
             let bodies = if system.pendulum_per_s2 > 0.0 {
                 system.bodies()
@@ -381,6 +377,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
                 external[at] = N::of(system.pushed(body, self.motion.x[at].into()));
             }
         }
+        self.motion.external = Some(external);
     }
 
     /// What a sensor shows now in every lane.

@@ -319,7 +319,8 @@ fn fly<N: Number<W>, const W: usize>(
     systems: &[&System],
 ) {
     let leaves = settings.end == End::Passed && systems.iter().all(|s| s.flies_free());
-    let mut behind = Behind::new(systems.len(), systems[0].contacts(), &settings.sensors);
+    let (count, contacts) = (systems.len(), systems[0].contacts());
+    let mut behind = leaves.then(|| Behind::new(count, contacts, &settings.sensors));
     while lanes.iter().any(|lane| lane.state == State::Flying) {
         if !wanted() {
             lanes
@@ -349,8 +350,8 @@ fn fly<N: Number<W>, const W: usize>(
             }
         }
         recorder.looked();
-        if leaves {
-            block.leave_behind(&mut behind);
+        if let Some(behind) = &mut behind {
+            block.leave_behind(behind);
         }
         block.look(LOOK_EVERY);
     }

@@ -61,9 +61,8 @@ pub(super) struct Passing {
     incident: Peak,
     wall: Peak,
     returned: Peak,
-    /// The sensor's latest sample and the one before it.
+    /// The sensor's latest sample.
     now: f64,
-    before: f64,
     seen: usize,
 }
 
@@ -82,8 +81,13 @@ impl Passing {
         let at_sensor = sensor.crest().max(self.now) > self.highest.value;
         if at_wall || at_sensor {
             let mut pressed = wall.since(first);
+            let mut latest = [sensor.at(self.seen.saturating_sub(1).max(1)), self.now];
             for (at, after) in (first..).zip(sensor.since(first)) {
-                self.look_for_maximum(at, after);
+                let [before, now] = latest;
+                if at > 2 && now >= before && now > after {
+                    self.highest.look(now, at - 1);
+                }
+                latest = [now, after];
                 if at_wall && pressed.next().is_some_and(|wall| self.wall.look(wall, at)) {
                     (self.incident, self.returned) = (self.highest, Peak::default());
                 }
@@ -96,18 +100,8 @@ impl Passing {
                 self.returned.look(value, at);
             }
         }
-        self.before = sensor.at(step.saturating_sub(1).max(1));
         self.now = sensor.at(step);
         self.seen = step;
-    }
-
-    /// Keeps the latest sample, if it is a maximum and the highest yet, now that
-    /// the one after it is known.
-    fn look_for_maximum(&mut self, at: usize, after: f64) {
-        if at > 2 && self.now >= self.before && self.now > after {
-            self.highest.look(self.now, at - 1);
-        }
-        (self.before, self.now) = (self.now, after);
     }
 
     /// Step from which on a maximum can be the returned pulse; never before
