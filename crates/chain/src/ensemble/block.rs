@@ -8,7 +8,7 @@ use super::column::{Column, chunks};
 use super::edge::{Edge, Leading};
 use super::number::Number;
 use super::section::{Place, Sweep, section};
-use super::weights::{Schedule, USED};
+use super::weights::{Schedule, USED, ahead_of};
 use super::window::{Places, Window};
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
@@ -50,6 +50,8 @@ pub(super) struct Block<'a, N, const W: usize> {
     schedule: &'a Schedule,
     /// Full step of each lane in s.
     step_s: [f64; W],
+    /// How much a step of each lane is ahead of the exact motion.
+    ahead: [f64; W],
     weights: Scaled<N, W>,
     motion: Motion<N, W>,
     offset_m: Column<N, W>,
@@ -114,24 +116,24 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             let offset = chains[lane].offset_m.get(c).copied();
             offset.unwrap_or(f64::NEG_INFINITY)
         });
-        let step_s = std::array::from_fn(|lane| step_s[lane % lanes]);
-        let slightest_m = std::array::from_fn(|lane| {
-            let scales = systems[lane % lanes].scales();
-            N::slightest_m(scales.speed_m_s * scales.time_s)
-        });
+        let step_s: [f64; W] = std::array::from_fn(|lane| step_s[lane % lanes]);
+        let scales: [_; W] = std::array::from_fn(|lane| systems[lane % lanes].scales());
+        let slightest_m = scales.map(|scales| N::slightest_m(scales.speed_m_s * scales.time_s));
+        let ahead = std::array::from_fn(|lane| ahead_of(step_s[lane] / scales[lane].time_s));
         let inverse = |j: usize, lane: usize| chains[lane].inverse_mass[j];
         let mut block = Self {
             edges: Vec::with_capacity(RESERVED),
             changes: follow_changes.then(|| Changes::new(chunks::<W>(bodies, lanes))),
             window: Window::new((lanes, chains), (&x, &v), whole_chain),
             motion: Motion::new(x, v, Column::new(bodies, shared, 0.0, inverse), acts),
-            weights: Scaled::new(schedule.row(0), &step_s),
+            weights: Scaled::new(schedule.row(0), &step_s, &ahead),
             at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
             sections: (0..first.sections.len())
                 .map(|i| section((systems, chains), i))
                 .collect(),
             force_n: Aligned::of(N::default(), flat + W),
             step_s,
+            ahead,
             offset_m,
             slightest_m,
             systems,
@@ -182,7 +184,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             self.push(external);
         }
         if self.steps <= self.schedule.last_row() {
-            self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s);
+            self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s, &self.ahead);
         }
         self.motion
             .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
@@ -316,7 +318,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let [left, right] = bodies.map(|body| system.inverse_mass[body]);
         let kick = leading.size() * h * left.max(right);
         let matters = kick > SLIGHT * system.scales().speed_m_s;
-        matters.then(|| Edge::ending(&leading, 1.0 - since / h, self.schedule.steady()))
+        let weights = (self.schedule.steady(), self.ahead[lane]);
+        matters.then(|| Edge::ending(&leading, 1.0 - since / h, weights))
     }
 
     /// Gives the last step what earlier edges made it lack, before its forces.

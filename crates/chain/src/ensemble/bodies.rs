@@ -33,15 +33,18 @@ pub(super) struct Scaled<N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
-    pub fn new(weights: &Weights, step_s: &[f64; W]) -> Self {
+    /// For lanes of some steps in s, each by so much [ahead of](super::weights::ahead_of) the exact motion.
+    pub fn new(weights: &Weights, step_s: &[f64; W], ahead: &[f64; W]) -> Self {
+        let scaled = |of: &dyn Fn(usize) -> f64| std::array::from_fn(|lane| N::of(of(lane)));
         Self {
-            drift: step_s.map(|h| N::of(h * weights.drift)),
-            velocity: weights
-                .velocity
-                .map(|weight| step_s.map(|h| N::of(h * weight))),
+            drift: scaled(&|lane| step_s[lane] * weights.drift),
+            velocity: std::array::from_fn(|k| {
+                let [weight, surprise] = [weights.velocity[k], weights.surprise[k]];
+                scaled(&|lane| step_s[lane] * (weight + ahead[lane] * surprise))
+            }),
             position: weights
                 .position
-                .map(|weight| step_s.map(|h| N::of(h * h * weight))),
+                .map(|weight| scaled(&|lane| step_s[lane] * step_s[lane] * weight)),
         }
     }
 }

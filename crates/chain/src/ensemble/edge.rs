@@ -63,14 +63,16 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    /// A force that ended `before` steps after the last sample that saw it.
-    pub fn ending(leading: &Leading, before: f64, weights: &Weights) -> Self {
+    /// A force that ended `before` steps after the last sample that saw it, in
+    /// steps that are `ahead` of the exact motion ([`super::weights::ahead_of`]).
+    pub fn ending(leading: &Leading, before: f64, (weights, ahead): (&Weights, f64)) -> Self {
+        let velocity = weights.velocity(ahead);
         let samples: [f64; USED] = std::array::from_fn(|k| leading.force(before + k as f64));
         let mut lacking = [[0.0; 2]; USED];
         for (age, lacking) in lacking.iter_mut().enumerate() {
             // Sample k is `age + k` steps old.
             for (k, sample) in samples.iter().enumerate().take(USED - age) {
-                lacking[0] -= weights.velocity[age + k] * sample;
+                lacking[0] -= velocity[age + k] * sample;
                 lacking[1] -= weights.position[age + k] * sample;
             }
         }
@@ -119,7 +121,7 @@ mod tests {
     fn a_force_that_ends_between_steps_is_integrated_exactly() {
         let leading = Leading::new(|s: f64| 0.3 + s.sqrt() * (0.7 + 0.1 * s));
         let schedule = Schedule::new();
-        let edge = Edge::ending(&leading, 0.35, schedule.steady());
+        let edge = Edge::ending(&leading, 0.35, (schedule.steady(), 0.0));
         let end = 30.35;
         // Begins smoothly and is level near its end: only the end is sharp.
         let rise = |t: f64| 1.0 - (-(t / 12.0).powi(4)).exp();
