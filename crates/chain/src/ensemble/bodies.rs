@@ -141,10 +141,11 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
     scaled: &Scaled<N, W>,
 ) {
     let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-    let earlier = std::array::from_fn(|k| {
-        let a = &motion.accelerations[(motion.newest + 1 + k) % USED];
-        chunks_of(a, awake.clone())
-    });
+    let mut earlier = [&[] as &[_]; EARLIER];
+    for (age, earlier) in (1..).zip(&mut earlier) {
+        let at = (motion.newest + age) % USED;
+        *earlier = chunks_of(&motion.accelerations[at], awake.clone());
+    }
     let bodies = Bodies {
         force: [force, &force[lanes..]].map(|force| chunks_of(force, awake.clone())),
         earlier,

@@ -103,8 +103,10 @@ impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         // Places beyond the sum's own coefficients are never read.
         let last = T::COEFFICIENTS - 1;
-        let columns: [_; MOST] = std::array::from_fn(|j| &self.coefficients[j.min(last)]);
-        if let [Some(a), Some(b), Some(c)] = columns.map(Column::uniform) {
+        let column = |j: usize| &self.coefficients[j.min(last)];
+        let columns = [column(0), column(1), column(2)];
+        let same = |j: usize| columns[j].uniform();
+        if let (Some(a), Some(b), Some(c)) = (same(0), same(1), same(2)) {
             // Loaded once, they stay in registers.
             let k = [load(a), load(b), load(c)];
             pass::<T, S, N, W>(simd, place, chunks, force, |_| k);

@@ -31,7 +31,7 @@ pub(super) trait Number<const W: usize>:
     /// Beads behind the crest of a pulse on its way back that still move. One
     /// bead more makes what the others change ten times as small, with the
     /// strongest losses eight times: 1e-9 of a time of flight at fourteen,
-    /// 1e-7 at twelve, which is below what single precision rounds.
+    /// 7e-7 at eleven, which is below what single precision rounds.
     const FOLLOWED: usize;
 
     /// The nearest number.
@@ -81,7 +81,7 @@ impl Number<16> for f32 {
     type Wide<S: Simd> = f32x16<S>;
 
     const ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
-    const FOLLOWED: usize = 12;
+    const FOLLOWED: usize = 11;
 
     #[inline(always)]
     #[allow(
@@ -92,9 +92,9 @@ impl Number<16> for f32 {
         value as f32
     }
 
-    /// A force of 1e-18 of the largest adds nothing to what is single.
+    /// A force of 1e-12 of the largest adds nothing to what is single.
     fn slightest_m(overlap_m: f64) -> Self {
-        Self::of(1e-12 * overlap_m)
+        Self::of(1e-8 * overlap_m)
     }
 
     /// As in double precision; one step leaves rounding alone.

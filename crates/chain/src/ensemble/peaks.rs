@@ -147,7 +147,8 @@ fn derivatives(polynomial: &[f64; POINTS], at: f64) -> (f64, f64, f64) {
 
 /// Where the slope passes 0 from above, by Newton's method in a bracket.
 fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
-    let mut at = 0.0_f64.clamp(low, high);
+    // Of the parabola about the middle.
+    let mut at = (-0.5 * polynomial[1] / polynomial[2]).clamp(low, high);
     for _ in 0..50 {
         let (_, slope, curvature) = derivatives(polynomial, at);
         if slope > 0.0 {
