@@ -62,22 +62,10 @@ fn bracket(rising: impl Fn(f64) -> f64, level: f64) -> Option<(f64, f64)> {
     Some((high / 16.0, high))
 }
 
-/// Where a rising function passes a level, down to a relative width; width 0
-/// means to the last bit. A power between the ends of a bracket, which energies
-/// often are, is met at once; the rest is bisection.
+/// Where a rising function passes a level, by bisection down to a relative
+/// width; width 0 means to the last bit.
 fn invert(rising: impl Fn(f64) -> f64, level: f64, width: f64) -> Option<f64> {
     let (mut low, mut high) = bracket(&rising, level)?;
-    let (at_low, at_high) = (rising(low), rising(high));
-    let share = (level / at_low).ln() / (at_high / at_low).ln();
-    let guess = low * (high / low).powf(share);
-    for side in [guess * (1.0 - 0.4 * width), guess * (1.0 + 0.4 * width)] {
-        if side > low && side < high {
-            match rising(side) < level {
-                true => low = side,
-                false => high = side,
-            }
-        }
-    }
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high || high - low <= width * high {
