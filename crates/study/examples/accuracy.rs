@@ -4,12 +4,15 @@
 //! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked
 //! cargo run --release -p hertzchain-study --example accuracy -- steps  # by step
 //! cargo run --release -p hertzchain-study --example accuracy -- rounding
+//! cargo run --release -p hertzchain-study --example accuracy -- judges
 //! ```
 //!
 //! Errors are the larger ones of both times of flight, against the wave loop
 //! at 1e-11, over eleven speeds. Force passes are means over these speeds: of a
 //! sweep, those that stayed in the ensemble, without the shots that judge them.
-//! Rounding is what single precision changes at equal steps.
+//! Rounding is what single precision changes at equal steps. Judges are the two
+//! longer steps by which a sweep tells how good a shot is: how many of the 66
+//! pass, and the largest error of those that do over what was asked.
 
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
@@ -45,7 +48,10 @@ fn main() -> Result<()> {
         None => by_accuracy(),
         Some("steps") => by_step(),
         Some("rounding") => rounding(),
-        Some(other) => Err(format!("`{other}` is neither nothing, `steps` nor `rounding`").into()),
+        Some("judges") => judges(),
+        Some(other) => {
+            Err(format!("`{other}` is none of `steps`, `rounding`, `judges`, nor nothing").into())
+        }
     }
 }
 
@@ -170,6 +176,82 @@ fn rounding() -> Result<()> {
             [0, 1].map(|i| most[i].max(change[i]))
         });
         println!("| {name} | {openings} | {step} | {incident:.1e} | {reflected:.1e} |");
+    }
+    Ok(())
+}
+
+/// Accuracies asked, whether in single precision, whether openings are found,
+/// and steps to try.
+const TRIED: [(f64, Precision, bool, [f64; 6]); 5] = [
+    (
+        1e-3,
+        Precision::Single,
+        false,
+        [0.2, 0.19, 0.18, 0.17, 0.16, 0.15],
+    ),
+    (
+        1e-4,
+        Precision::Single,
+        false,
+        [0.16, 0.15, 0.14, 0.13, 0.12, 0.11],
+    ),
+    (
+        1e-5,
+        Precision::Double,
+        true,
+        [0.11, 0.1, 0.09, 0.08, 0.07, 0.06],
+    ),
+    (
+        1e-6,
+        Precision::Double,
+        true,
+        [0.05, 0.045, 0.04, 0.036, 0.033, 0.03],
+    ),
+    (
+        1e-7,
+        Precision::Double,
+        true,
+        [0.02, 0.018, 0.016, 0.014, 0.013, 0.012],
+    ),
+];
+
+/// Judges of a sweep: how many times longer their steps are, and what a change
+/// counts.
+const JUDGES: [(f64, f64); 2] = [(1.3, 3.0), (1.69, 1.5)];
+
+fn judges() -> Result<()> {
+    println!("| asked | precision | openings | step | pass | largest error over asked |");
+    let exact = CASES.iter().map(|name| one_by_one(name, EXACT));
+    let exact = exact.collect::<Result<Vec<_>>>()?;
+    for (asked, precision, openings, steps) in TRIED {
+        for step in steps {
+            let mut passed = Vec::new();
+            for (name, exact) in CASES.iter().zip(&exact) {
+                let fly = |step| flown(name, step, (precision, openings), End::Reflected);
+                let flights = |step| -> Result<Vec<Option<Flight>>> {
+                    Ok(fly(step)?.into_iter().map(|f| flight(f?)).collect())
+                };
+                let own = flights(step)?;
+                let longer = JUDGES.map(|(longer, counts)| Ok((flights(longer * step)?, counts)));
+                let longer = longer.into_iter().collect::<Result<Vec<_>>>()?;
+                let passes = |at: usize| {
+                    let own = own[at]?;
+                    let change = |(judge, counts): &(Vec<Option<Flight>>, f64)| {
+                        Some(counts * own.change(&judge[at]?))
+                    };
+                    let changes: Option<Vec<f64>> = longer.iter().map(change).collect();
+                    let within = changes?.into_iter().all(|change| change <= asked);
+                    within.then_some(own)
+                };
+                let kept: Vec<_> = (0..own.len()).map(passes).collect();
+                passed.extend(errors(kept.into_iter(), exact).into_iter().flatten());
+            }
+            let worst = passed.iter().fold(0.0_f64, |most, error| most.max(*error));
+            let (passed, worst) = (passed.len(), worst / asked);
+            println!(
+                "| {asked:.0e} | {precision:?} | {openings} | {step} | {passed} | {worst:.2} |"
+            );
+        }
     }
     Ok(())
 }

@@ -220,6 +220,9 @@ pub(crate) struct Setting {
     pub openings: bool,
     /// Pulses have widths, whether or not a pick needs their shape.
     pub shapes: bool,
+    /// Shots end once the reflected pulse has passed, not when none can come
+    /// any more.
+    pub passed: bool,
 }
 
 impl Setting {
@@ -231,6 +234,7 @@ impl Setting {
             precision: None,
             openings,
             shapes: true,
+            passed: false,
         })
     }
 
@@ -242,12 +246,21 @@ impl Setting {
         }
     }
 
-    /// The same with longer steps, for judges.
+    /// The same with longer steps, for judges; they wait for whatever may come.
     pub(crate) fn longer(self, times: f64) -> Self {
         Self {
             step: times * self.step,
             shapes: false,
+            passed: false,
             ..self
+        }
+    }
+
+    fn end(&self, plan: &Plan) -> End {
+        match (plan.duration_s, self.passed) {
+            (Some(_), _) => End::Duration,
+            (None, true) => End::Passed,
+            (None, false) => End::Reflected,
         }
     }
 }
@@ -280,11 +293,7 @@ pub(crate) fn fire(
     let shaped = |plan: &Plan| plan.picks().any(|pick| pick != Pick::Peak);
     let settings = ensemble::Settings {
         sensors: vec![Sensor::Bead(first.sensor_bead), Sensor::Contact(wall)],
-        end: if first.duration_s.is_none() {
-            End::Reflected
-        } else {
-            End::Duration
-        },
+        end: setting.end(first),
         set,
         shapes: setting.shapes || ready().any(|(plan, _)| shaped(plan)),
         whole_chain: false,
@@ -293,7 +302,7 @@ pub(crate) fn fire(
     let mut flown = ensemble::fire_while(&shots, &settings, &|| !stopped()).into_iter();
     let one = |(plan, system): (&&Plan, &Option<System>)| {
         let system = system.as_ref()?;
-        shot(plan, system, flown.next()?.ok()?)
+        shot(plan, (system, settings.end), flown.next()?.ok()?)
     };
     plans.iter().zip(loaded).map(one).collect()
 }
@@ -303,7 +312,7 @@ pub(crate) fn fire(
 const MOST_CORRECTION: f64 = 0.01;
 
 /// What a plan asks for, from what its sensors showed.
-fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
+fn shot(plan: &Plan, (system, end): (&System, End), flown: Flown) -> Option<Shot> {
     if flown.correction > MOST_CORRECTION {
         return None;
     }
@@ -314,7 +323,7 @@ fn shot(plan: &Plan, system: &System, flown: Flown) -> Option<Shot> {
     let passage = passages.passage().ok()?;
     // Where what came last changes what came first, looks between steps are too coarse.
     let searched_s = RETURN_WITHIN * passage.tof_incident_s();
-    if plan.duration_s.is_none() && flown.time_s < passage.wall.time_s + searched_s {
+    if end == End::Reflected && flown.time_s < passage.wall.time_s + searched_s {
         return None;
     }
     let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;

@@ -17,12 +17,14 @@ pub const PILOTS: usize = 40;
 const TIGHTER: f64 = 20.0;
 
 /// Steps of a guard, over those of the shot that it guards: what that changes
-/// by more than the accuracy asked is judged by itself.
+/// by more than the accuracy asked is judged by itself. A guard also waits for
+/// what may come after the reflected pulse.
 const GUARD: f64 = 1.3;
 
-/// Judges take 2.36 times the force passes of a shot, a guard 1.77 times: with
+/// Judges take 2.36 times the force passes of a shot. A tuned shot ends when its
+/// pulse has passed, after 0.56 of them, and its guard takes 0.77 times: with
 /// steps below this share of a judged shot's, pilots save nothing.
-const WORTHWHILE: f64 = 0.75;
+const WORTHWHILE: f64 = 0.56;
 
 /// Pilots may use this share of the accuracy asked: between them others may
 /// be worse.
@@ -30,13 +32,19 @@ const SHARE: f64 = 0.5;
 
 /// Precision, step in contact times and whether openings are found; the
 /// cheapest first.
-const WAYS: [(Precision, f64, bool); 17] = [
+const WAYS: [(Precision, f64, bool); 23] = [
+    (Precision::Single, 0.3, false),
+    (Precision::Single, 0.28, false),
+    (Precision::Single, 0.26, false),
+    (Precision::Single, 0.24, false),
+    (Precision::Single, 0.22, false),
     (Precision::Single, 0.2, false),
     (Precision::Single, 0.18, false),
     (Precision::Single, 0.16, false),
     (Precision::Single, 0.14, false),
     (Precision::Single, 0.12, false),
     (Precision::Single, 0.1, false),
+    (Precision::Double, 0.2, false),
     (Precision::Double, 0.17, false),
     (Precision::Double, 0.15, false),
     (Precision::Double, 0.12, false),
@@ -85,6 +93,7 @@ impl Tuned {
                 precision: Some(precision),
                 openings,
                 shapes: false,
+                passed: true,
             };
             let shots = guarded(&plans, &loaded, set, setting);
             let reached = worst(&shots, &exact)? + first.accuracy / TIGHTER;

@@ -205,7 +205,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Forces of all contacts that are awake.
-    fn forces(&mut self) {
+    pub fn forces(&mut self) {
         let lanes = self.lanes;
         let awake = self.window.contacts.clone();
         let force = &mut self.force_n[lanes..][..awake.end * W];

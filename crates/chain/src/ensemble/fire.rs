@@ -179,6 +179,25 @@ pub fn fire_while(
     flown.into_iter().flatten().collect()
 }
 
+/// Computes the forces of all contacts again and again, of as many copies of a
+/// chain as run side by side: what a force pass costs, for benches.
+#[doc(hidden)]
+pub fn repeat_force_pass(system: &System, precision: Precision, set: InstructionSet, times: usize) {
+    match precision {
+        Precision::Double => repeat::<f64, 8>(system, set, times),
+        Precision::Single => repeat::<f32, 16>(system, set, times),
+    }
+}
+
+fn repeat<N: Number<W>, const W: usize>(system: &System, set: InstructionSet, times: usize) {
+    let (systems, whole_chain) = ([system; W], (true, false));
+    let steps_s = [system.scales().time_s; W];
+    let mut block = Block::<N, W>::new(&systems, &steps_s, Schedule::shared(), set, whole_chain);
+    for _ in 0..times {
+        block.forces();
+    }
+}
+
 /// Shots alike in precision and in the shape of their chains, as many together
 /// as there are lanes.
 fn blocks(shots: &[Shot<'_>], ready: &[usize]) -> Vec<Vec<usize>> {

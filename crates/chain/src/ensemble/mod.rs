@@ -27,5 +27,7 @@ mod touch;
 mod weights;
 mod window;
 
+#[doc(hidden)]
+pub use fire::repeat_force_pass;
 pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while};
 pub use passing::End;
