@@ -65,7 +65,7 @@ const fn name(sensor: Sensor) -> (&'static str, usize) {
 
 /// A shot at a speed as it would be written on the command line.
 #[pyfunction]
-#[pyo3(signature = (experiment, speed, options, watch, interval_s, forces))]
+#[pyo3(signature = (experiment, speed, options, watch, interval_s, forces, progress))]
 pub fn shot<'py>(
     py: Python<'py>,
     experiment: &Experiment,
@@ -74,6 +74,7 @@ pub fn shot<'py>(
     watch: Option<Vec<(String, usize)>>,
     interval_s: Option<f64>,
     forces: Vec<Bound<'py, Force>>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let inner = &experiment.inner;
     let how: How = parsed("shot", &options).map_err(Failed::from)?;
@@ -82,7 +83,7 @@ pub fn shot<'py>(
     let speed_m_s = input::speed(given.as_ref(), inner).map_err(Failed::from)?;
     let planned = planned(experiment, given.as_ref(), speed_m_s, &how);
     let (mut plan, warnings) = planned.map_err(Failed::from)?;
-    let job = Job::alone();
+    let job = Job::of_steps(progress);
     let replacing = Replacing::of(&forces, &job.stop);
     replacing.put_into(&mut plan.chain).map_err(Failed::from)?;
     plan.budget = replacing.have_energy();

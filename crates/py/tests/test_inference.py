@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import pickled
+from conftest import ROOT, pickled
 
 import hertzchain as hc
 from hertzchain._posing import csv
@@ -91,6 +91,25 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     gauged = hc.gauge(wet, dry_data, model="motor")
     assert gauged.details == told and gauged.verdict in repr(gauged)
     assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
+
+
+def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
+    rig = ROOT / "crates/rig/tests/small.toml"
+    row = hc.load(rig)
+    hc.campaign(row, tmp_path / "records")
+    options = ("--case", "dry", "--free", "steel.eta,sensor_gain", "--most-shots", "2", "--out", tmp_path / "out")
+    told = cli("fit", tmp_path / "records", "--model", rig, *options)
+    seen: list[int] = []
+    found = hc.fit(tmp_path / "records", row, case="dry", free=["steel.eta", "sensor_gain"], most_shots=2, progress=seen.append)
+    assert found.details == told and sum(seen) > 10
+    # The same tables, rounded to the digits of a CSV.
+    theirs = np.genfromtxt(tmp_path / "out/pulses.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
+    assert np.array_equal(found.rows["measured_v"], theirs["measured_V"]) and np.array_equal(found.rows["fitted_v"], theirs["fitted_V"])
+    assert found.to_pandas().attrs["units"]["measured_v"] == "V" and "whole pulses of 2 records" in repr(found)
+    files = sorted((tmp_path / "records").glob("*.h5"))
+    assert hc.fit(files, row, case="dry", free="steel.eta,sensor_gain", most_shots=2).details == {**told, "free": told["free"]}
+    with pytest.raises(hc.OptionError, match="no record is left"):
+        hc.fit(files[:1], row, case="another", free="steel.eta")
 
 
 @pytest.mark.parametrize(
