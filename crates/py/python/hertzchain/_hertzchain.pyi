@@ -116,8 +116,7 @@ def shot(
     experiment: Experiment,
     speed: str | None,
     options: Sequence[str],
-    watch: Sequence[tuple[str, int]] | None,
-    interval_s: float | None,
+    watch: tuple[Sequence[tuple[str, int]], float | None] | None,
     forces: Sequence[Force],
     progress: _Progress,
 ) -> dict[str, Any]: ...

@@ -111,8 +111,9 @@ def shot(
     laws = [forces] if isinstance(forces, ForceLaw) else list(forces)
     at = None if speed is None else options.text(speed)
     watched, interval, native = _watched(trace), _interval(interval_s), [law.native() for law in laws]
+    watch = None if watched is None else (watched, interval)
     with options.progress(progress, None, "step") as update:
-        found = _native.shot(experiment, at, how, watched, interval, native, update)
+        found = _native.shot(experiment, at, how, watch, native, update)
     odd = tuple(Finding.of(raw) for raw in found.pop("warnings"))
     for warning in odd:
         _warnings.warn(warning.report, ExperimentWarning, stacklevel=2)
