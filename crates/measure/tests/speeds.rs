@@ -6,6 +6,7 @@ use hertzchain_measure::{Cut, Level, Measurement, Options, Refused, ShotList, me
 use rust_hdf5::H5File;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 
 /// Samples of a shot with the quiet after it.
 const EACH: usize = 30_000;
@@ -73,7 +74,7 @@ fn speeds_m_s(measured: &Measurement) -> Vec<Option<f64>> {
 fn every_shot_of_a_long_recording_gets_its_own_speed_however_it_is_cut() {
     let path = row("own", &[0.3, 0.5, 0.7]);
     for options in ways() {
-        let measured = measure(&[path.clone()], &options, &());
+        let measured = measure(from_ref(&path), &options, &());
         assert_eq!(speeds_m_s(&measured), [Some(0.3), Some(0.5), Some(0.7)]);
         assert!(measured.refused.is_empty(), "{:?}", measured.refused);
         assert_eq!(
@@ -99,7 +100,7 @@ fn one_speed_is_that_of_all_shots_and_as_many_as_rows_are_those_of_rows() {
 fn speeds_that_are_not_as_many_as_shots_are_given_to_none_and_told() {
     let path = row("unlike", &[0.3, 0.5]);
     for mut options in ways() {
-        let measured = measure(&[path.clone()], &options, &());
+        let measured = measure(from_ref(&path), &options, &());
         assert_eq!(speeds_m_s(&measured), [None; 3]);
         let [Refused::Speeds { told, found, .. }] = measured.refused.as_slice() else {
             unreachable!("{:?}", measured.refused)
@@ -107,7 +108,7 @@ fn speeds_that_are_not_as_many_as_shots_are_given_to_none_and_told() {
         assert_eq!((*told, *found), (2, 3));
         let list = "file,shot,speed\nunlike.h5,1,0.2\nunlike.h5,2,0.4\nunlike.h5,3,0.6\n";
         options.list = Some(ShotList::parse(list).unwrap());
-        let listed = measure(&[path.clone()], &options, &());
+        let listed = measure(from_ref(&path), &options, &());
         assert_eq!(speeds_m_s(&listed), [Some(0.2), Some(0.4), Some(0.6)]);
         assert!(listed.refused.is_empty(), "{:?}", listed.refused);
     }
