@@ -120,6 +120,7 @@ def test_workers_killed_twice_lose_nothing_but_time(small, tmp_path):
     same(run.load(), hc.ensemble(small, speeds))
 
 
+@pytest.mark.long
 def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
     rig = hc.load(RIG)
     hc.campaign(rig, tmp_path / "here")
@@ -148,6 +149,7 @@ def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
             process.wait()
 
 
+@pytest.mark.long
 def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
     speeds = np.linspace(0.1, 1.0, 480)
     folder = tmp_path / "run"
@@ -214,6 +216,7 @@ def test_a_poisoned_series_of_a_campaign_is_told_and_stops_nothing(client, tmp_p
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
 
 
+@pytest.mark.long
 def test_a_campaign_goes_on_after_its_scheduler_was_killed(tmp_path):
     rig = hc.load(RIG)
     hc.campaign(rig, tmp_path / "here")
@@ -249,6 +252,7 @@ def other_instructions(client: Client) -> Iterator[None]:
         client.run(lambda: os.environ.pop(variable))
 
 
+@pytest.mark.long
 def test_a_worker_that_would_compute_other_bits_is_told_and_computes_nothing(small, posterior, client, tmp_path):
     data, how, _ = posterior
     with other_instructions(client):
@@ -269,6 +273,7 @@ def posterior(tmp_path_factory) -> tuple[dict[str, np.ndarray], dict[str, object
     return data, {"model": row, **how}, hc.fit(data, row, direct=True, **how)
 
 
+@pytest.mark.long
 def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client, tmp_path):
     data, how, here = posterior
     there = distributed.fit(data, folder=tmp_path / "there", client=client, **how)
@@ -279,6 +284,7 @@ def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client
     assert chains[0] == chains[1]
 
 
+@pytest.mark.long
 def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_path):
     data, how, here = posterior
     with cluster() as local, Client(local) as client:
@@ -298,6 +304,7 @@ def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_p
     assert there.details == here.details
 
 
+@pytest.mark.long
 def test_a_poisoned_point_of_a_batch_is_told_and_changes_no_other(posterior, client, tmp_path):
     data, how, here = posterior
     best = [parameter.value for parameter in here.parameters.values()]
@@ -313,6 +320,7 @@ def test_a_poisoned_point_of_a_batch_is_told_and_changes_no_other(posterior, cli
     assert [first] == [last] == there([best]) == likelihood.outcomes([best])
 
 
+@pytest.mark.long
 def test_a_poisoned_batch_ends_the_fit_and_says_why(posterior, client, tmp_path, monkeypatch):
     data, how, here = posterior
 
@@ -327,6 +335,7 @@ def test_a_poisoned_batch_ends_the_fit_and_says_why(posterior, client, tmp_path,
     assert distributed.fit(data, folder=tmp_path, client=client, **how).details == here.details
 
 
+@pytest.mark.long
 def test_a_posterior_goes_on_where_its_chain_stands(posterior, client, tmp_path):
     data, how, here = posterior
     distributed.fit(data, folder=tmp_path, client=client, **{**how, "steps": 20})

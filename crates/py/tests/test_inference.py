@@ -81,6 +81,7 @@ def test_bounds_priors_and_starts_are_those_of_the_command_line(cli, table):
         assert ours == theirs
 
 
+@pytest.mark.long
 def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table, dry_data):
     told = cli("design", table, "--preset", "dry", "--free", "eta,B", "--target", "B", "--picks", "2")
     found = hc.design(dry_data, free="eta,B", target="B", picks=2)

@@ -28,6 +28,7 @@ Data = "str | os.PathLike[str] | Mapping[str, Any] | Measured | Sweep | pd.DataF
 
 def table(data: Any, name: str = "data") -> tuple[str, str]:
     """The text of a table and its name in messages."""
+    data = _only(data)
     if isinstance(data, (str, os.PathLike)):
         try:
             return os.fspath(data), Path(data).read_text(encoding="utf-8")
@@ -46,12 +47,18 @@ def table(data: Any, name: str = "data") -> tuple[str, str]:
 
 def recordings(data: Any) -> list[str] | None:
     """Paths of recordings; None if the data are a table."""
+    data = _only(data)
     if isinstance(data, (str, os.PathLike)):
         path = os.fspath(data)
         return None if _native.is_table(path) else [path]
     if isinstance(data, (list, tuple)):
         return [os.fspath(path) for path in data]
     return None
+
+
+def _only(data: Any) -> Any:
+    """What a list of one holds."""
+    return data[0] if isinstance(data, (list, tuple)) and len(data) == 1 else data
 
 
 def csv(columns: Mapping[str, Any]) -> str:

@@ -105,7 +105,7 @@ class Sweep:
         if self.errors:
             rows["without a shot"] = f"{len(self.errors)} speeds"
         if self.warnings:
-            rows["odd"] = f"{len(self.warnings)} speeds, the first: {'; '.join(next(iter(self.warnings.values())))}"
+            rows["odd"] = f"{len(self.warnings)} of {self.speed_m_s.size} speeds, the first: {'; '.join(next(iter(self.warnings.values())))}"
         return lines(f"Sweep of {self.experiment} over {self.speed_m_s.size} speeds", rows)
 
 
@@ -156,7 +156,7 @@ class Odd(Tabled):
         return {"index": [self.index], "lines": ["\n".join(self.lines)], "shots": [self.shots]}
 
     def __str__(self) -> str:
-        return f"{self.shots} shots, the first at {self.index}: {'; '.join(self.lines)}"
+        return f"first of {self.shots} at {self.index}: {'; '.join(self.lines)}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

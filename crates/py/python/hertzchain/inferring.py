@@ -138,7 +138,7 @@ def fitted(found: dict[str, Any]) -> Fitted:
         parameters={raw["name"]: Parameter(**raw) for raw in found["parameters"]},
         covariance=np.array(found["covariance"], dtype=float),
         correlation=np.array(found["correlation"], dtype=float),
-        rows={key: np.array(values, dtype=None if key in ("observable", "source") else float) for key, values in columns.items()},
+        rows={key: np.array(values, dtype=None if key in ("observable", "source", "channel") else float) for key, values in columns.items()},
         samples=None if samples is None else np.ascontiguousarray(samples.T),
         details=found,
     )

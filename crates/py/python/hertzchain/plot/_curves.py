@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from ..curves import Sweep
 from ..recording import Case
 from ..results import PowerLaw
-from ._style import MARKERS, on_axes, time_scale
+from ._style import MARKERS, colour_of, on_axes, styled, time_scale
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,6 +39,7 @@ def _points(ax: Axes, curve: Curve, column: str, factor: float, **look: Any) -> 
     )
 
 
+@styled
 def times_of_flight(
     curves: Curve | Mapping[str, Curve], laws: bool = False, logarithmic: bool = True, ax: Axes | None = None
 ) -> Axes:
@@ -75,7 +76,7 @@ def times_of_flight(
     dimensionless = all(isinstance(curve, Sweep) and curve.dimensionless for curve in named.values())
     scale, unit = time_scale(dimensionless)
     for at, (name, curve) in enumerate(named.items()):
-        colour = f"C{at % 7}"
+        colour = colour_of(at)
         ends = [("incident", "tof_incident_s", "-", colour), ("reflected", "tof_reflected_s", "--", "none")]
         for end, column, dashes, face in ends:
             label = f"{name} {end}".strip()
@@ -107,6 +108,7 @@ def _log_axes(ax: Axes) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+@styled
 def ratios(
     wet: Mapping[str, Curve], dry: Curve, end: str = "incident", markers: Mapping[str, str] | None = None, ax: Axes | None = None
 ) -> Axes:
@@ -150,7 +152,7 @@ def ratios(
         speeds = columns["speed_m_s"]
         ratio = columns[column] / np.exp(np.interp(np.log(speeds), *known))
         marker = (markers or {}).get(name, MARKERS[at % 5])
-        ax.plot(speeds, ratio, marker=marker, color=f"C{at % 7}", label=name)
+        ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
     ax.set_xlabel("Speed of the striker (m/s)")
     ax.set_ylabel(f"{end.capitalize()} ToF, wet / dry")

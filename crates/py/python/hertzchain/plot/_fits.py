@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-from ._style import COLUMN, MARKERS, MICRO, style
+from ._style import COLUMN, MARKERS, MICRO, colour_of, styled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +21,7 @@ BAND = 1.96
 """Standard errors to either side of a band: 95 %."""
 
 
+@styled
 def fit(fitted: Fitted, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     """Data with the fitted curve and its 95 % band; residuals in standard errors below.
 
@@ -48,9 +49,8 @@ def fit(fitted: Fitted, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     Bands by the covariance: docs/inferring.md.
     """
     if axes is None:
-        with style():
-            sizes = {"height_ratios": (2.2, 1)}
-            axes = plt.subplots(2, 1, figsize=(COLUMN, 3.6), sharex=True, gridspec_kw=sizes)[1]
+        sizes = {"height_ratios": (2.2, 1)}
+        axes = plt.subplots(2, 1, figsize=(COLUMN, 3.6), sharex=True, gridspec_kw=sizes)[1]
     upper, lower = made = np.asarray(axes).ravel()
     upper.xaxis.set_tick_params(which="both", labelbottom=False)
     lower.axhline(0.0, color="0.3", linewidth=0.6)
@@ -77,7 +77,7 @@ def _fitted_curve(upper: Axes, lower: Axes, fitted: Fitted, observable: str, at:
     order = np.argsort(rows["speed_m_s"])
     rows = {name: values[order] for name, values in rows.items()}
     scale = MICRO if observable.startswith("tof") else 1.0
-    colour, speeds = f"C{at % 7}", rows["speed_m_s"]
+    colour, speeds = colour_of(at), rows["speed_m_s"]
     curve, spread = scale * rows["fitted"], scale * BAND * rows["fitted_error"]
     name = observable.removeprefix("tof_").removesuffix("_s").replace("_", " ")
     upper.fill_between(speeds, curve - spread, curve + spread, color=colour, alpha=0.2, linewidth=0)
@@ -92,15 +92,16 @@ def _fitted_pulses(upper: Axes, lower: Axes, fitted: Fitted) -> None:
     for at, channel in enumerate(np.unique(rows["channel"])):
         here = rows["channel"] == channel
         time, measured, fit = (rows[name][here] for name in ("time_s", "measured_v", "fitted_v"))
-        upper.plot(MICRO * time, measured, color=f"C{at}", linestyle="none", marker=".", markersize=2, label="recorded")
+        upper.plot(MICRO * time, measured, color=colour_of(at), linestyle="none", marker=".", markersize=2, label="recorded")
         upper.plot(MICRO * time, fit, color="0.2", linewidth=0.8, label="fitted")
-        lower.plot(MICRO * time, (measured - fit) / rows["error_v"][here], color=f"C{at}", linestyle="none", marker=".", markersize=2)
+        lower.plot(MICRO * time, (measured - fit) / rows["error_v"][here], color=colour_of(at), linestyle="none", marker=".", markersize=2)
     upper.set_ylabel("Signal (V)")
     upper.legend()
     upper.margins(x=0)
     lower.set_xlabel("Time after the passing maximum (µs)")
 
 
+@styled
 def corner(fitted: Fitted, bins: int = 40, axes: NDArray[Any] | None = None) -> NDArray[Any]:
     """The posterior of each parameter and pair, with the best fit and the covariance's ellipses.
 
@@ -130,9 +131,8 @@ def corner(fitted: Fitted, bins: int = 40, axes: NDArray[Any] | None = None) -> 
     names = list(fitted.parameters)
     count = len(names)
     if axes is None:
-        with style():
-            side = max(COLUMN, 1.5 * count)
-            axes = plt.subplots(count, count, figsize=(side, side), squeeze=False)[1]
+        side = max(COLUMN, 1.5 * count)
+        axes = plt.subplots(count, count, figsize=(side, side), squeeze=False)[1]
     made = np.asarray(axes).reshape(count, count)
     for row in range(count):
         for column in range(count):
@@ -164,8 +164,8 @@ def _marginal(ax: Axes, fitted: Fitted, at: int, bins: int) -> None:
     grid = np.linspace(low, high, 200)
     normal = np.exp(-0.5 * ((grid - best) / spread) ** 2) / (spread * np.sqrt(2 * np.pi))
     if fitted.samples is not None:
-        ax.hist(fitted.samples[:, at], bins, range=(low, high), density=True, color="C0", alpha=0.35)
-    ax.plot(grid, normal, color="C1", linewidth=0.8)
+        ax.hist(fitted.samples[:, at], bins, range=(low, high), density=True, color=colour_of(0), alpha=0.35)
+    ax.plot(grid, normal, color=colour_of(1), linewidth=0.8)
     ax.axvline(best, color="0.3", linewidth=0.6)
     ax.set(xlim=(low, high), yticks=[])
     ax.grid(False)
@@ -184,7 +184,7 @@ def _pair(ax: Axes, fitted: Fitted, pair: tuple[int, int], bins: int) -> None:
     # Radii that hold 68 % and 95 % of a normal distribution of two numbers.
     for radius in (1.515, 2.448):
         edge = vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * circle) * radius
-        ax.plot(centre[0] + edge[0], centre[1] + edge[1], color="C1", linewidth=0.8)
+        ax.plot(centre[0] + edge[0], centre[1] + edge[1], color=colour_of(1), linewidth=0.8)
     ax.plot(*centre, marker="+", color="0.2")
     ax.set(xlim=ranges[0], ylim=ranges[1])
     ax.grid(False)

@@ -15,7 +15,7 @@ from ..shooting import shot as shoot
 from ..shooting import sweep
 from ._curves import ratios, times_of_flight
 from ._pulses import signals
-from ._style import COLUMN, MICRO, OILS, on_axes, style
+from ._style import COLUMN, MICRO, OILS, on_axes, styled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +24,7 @@ FIGURE_2 = {"dry": 0.1368, "pump": 1.1520, "gear": 0.1396, "motor": 0.3993}
 """Chains and speeds in m/s of the paper's Fig. 2."""
 
 
+@styled
 def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     """The paper's Fig. 2, as its model gives it: one channel that adds sensor bead and wall.
 
@@ -49,8 +50,7 @@ def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     Fig. 2 of [Labbe2017].
     """
     if axes is None:
-        with style():
-            axes = plt.subplots(2, 2, figsize=(2 * COLUMN, 4.2))[1].ravel()
+        axes = plt.subplots(2, 2, figsize=(2 * COLUMN, 4.2))[1].ravel()
     made = np.asarray(axes).ravel()
     for ax, letter, (name, speed) in zip(made, "abcd", FIGURE_2.items(), strict=True):
         chain = preset(name)
@@ -69,6 +69,7 @@ def _paper_speeds(count: int) -> NDArray[np.float64]:
     return np.geomspace(0.075, 1.23, count)
 
 
+@styled
 def figure3(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -> Axes:
     """The paper's Fig. 3: dry times of flight with the full model and without the cubic term.
 
@@ -110,6 +111,7 @@ def figure3(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -
     return ax
 
 
+@styled
 def figure4(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -> Axes:
     """The paper's Fig. 4: incident times of flight of wet chains over the dry ones, by the model.
 

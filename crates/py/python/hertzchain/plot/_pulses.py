@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..results import Shot, Trace
-from ._style import on_axes, time_scale
+from ._style import on_axes, styled, time_scale
 
 
+@styled
 def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes | None = None) -> Axes:
     """Signals of sensors against time.
 
@@ -66,6 +67,7 @@ def _label(sensor: str) -> str:
     return f"bead {number} plus wall" if kind == "bead_plus_wall" else f"{kind} {number}"
 
 
+@styled
 def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None) -> Axes:
     """Space–time map: a signal of every contact or body over time.
 

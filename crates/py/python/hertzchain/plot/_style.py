@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from functools import wraps
+from inspect import signature
 from pathlib import Path
+from typing import ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+
+Given = ParamSpec("Given")
+Drawn = TypeVar("Drawn")
 
 STYLE = str(Path(__file__).parent.with_name("hertzchain.mplstyle"))
 """Path of the style sheet."""
@@ -32,12 +40,29 @@ def style() -> AbstractContextManager[None]:
     return plt.style.context(STYLE)
 
 
+def styled(draw: Callable[Given, Drawn]) -> Callable[Given, Drawn]:
+    """In the package's style, unless it draws into axes of somebody else's."""
+
+    @wraps(draw)
+    def within(*args: Given.args, **kwargs: Given.kwargs) -> Drawn:
+        given = signature(draw).bind(*args, **kwargs).arguments
+        own = given.get("ax") is None and given.get("axes") is None
+        with style() if own else nullcontext():
+            return draw(*args, **kwargs)
+
+    return within
+
+
 def on_axes(ax: Axes | None, height: float = 2.5) -> Axes:
-    if ax is not None:
-        return ax
-    with style():
-        return plt.subplots(figsize=(COLUMN, height))[1]
+    """The axes that are given, or a new figure's."""
+    return plt.subplots(figsize=(COLUMN, height))[1] if ax is None else ax
 
 
 def time_scale(dimensionless: bool) -> tuple[float, str]:
+    """What times are multiplied by, and the unit behind their name."""
     return (1.0, "") if dimensionless else (MICRO, " (µs)")
+
+
+def colour_of(at: int) -> str:
+    """One of the style's colours: named "C0" it would be whichever is the first when the figure is saved."""
+    return to_hex(f"C{at % 7}")
