@@ -39,13 +39,22 @@ pub fn fit<'py>(
     options: Vec<String>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Fit = parsed("fit", &options).map_err(Failed::from)?;
+    found(py, &options, progress, |arguments| {
+        let problem = posed(&table, experiment, arguments)?;
+        let fitted = fitting::fitted(problem, arguments)?;
+        Ok(Found::of(&fitted, arguments))
+    })
+}
+
+fn found<'py>(
+    py: Python<'py>,
+    options: &[String],
+    progress: Option<Bound<'py, PyAny>>,
+    fitted: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Fit = parsed("fit", options).map_err(Failed::from)?;
     let threads = arguments.modelled.threads.unwrap_or(0);
-    let found = Job::pooled(progress, threads).run(py, |_| {
-        let problem = posed(&table, experiment, &arguments)?;
-        let fitted = fitting::fitted(problem, &arguments)?;
-        Ok(Found::of(&fitted, &arguments))
-    })?;
+    let found = Job::pooled(progress, threads).run(py, |_| fitted(&arguments))?;
     found.told(py)
 }
 
@@ -64,21 +73,18 @@ pub fn fit_pulses<'py>(
     options: Vec<String>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Fit = parsed("fit", &options).map_err(Failed::from)?;
-    let threads = arguments.modelled.threads.unwrap_or(0);
-    let found = Job::pooled(progress, threads).run(py, |_| {
+    found(py, &options, progress, |arguments| {
         let case = arguments.measured.case.as_deref().unwrap_or_default();
         let inner = in_case(experiment.inner.clone(), case)?;
         let inner = changed(inner, &arguments.modelled.set)?;
-        let recorded = pulses::recorded_of(&inner, &arguments)?;
-        let fitted = pulses::fitted(recorded, &arguments)?;
+        let recorded = pulses::recorded_of(&inner, arguments)?;
+        let fitted = pulses::fitted(recorded, arguments)?;
         Ok(Found {
-            fit: pulses::json(&fitted, &arguments),
+            fit: pulses::json(&fitted, arguments),
             rows: pulses::rows_json(&pulses::shown(&fitted)?),
             samples: samples(&fitted.inferred),
         })
-    })?;
-    found.told(py)
+    })
 }
 
 /// What is to be fitted to what.

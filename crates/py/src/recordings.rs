@@ -10,6 +10,7 @@ use hertzchain_study::{Stop, stopped};
 use hertzchain_verbs::arguments::measure::Measure;
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::inference::wanted;
 use hertzchain_verbs::measure as measuring;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -86,8 +87,10 @@ pub fn measure<'py>(
         let files = measuring::files(&arguments.records, arguments.shots.as_deref())?;
         let how = measuring::options(&arguments)?;
         let measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
+        wanted()?;
         let grouping = measuring::grouping(&arguments);
         let curves = Curves::of(&measured.shots, &grouping);
+        wanted()?;
         let mut found = measuring::json(&measured, &curves);
         let wrong = measuring::judge(&measured).err();
         found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {

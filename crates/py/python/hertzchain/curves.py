@@ -17,8 +17,29 @@ if TYPE_CHECKING:
 __all__ = ["Ensemble", "Odd", "Sweep"]
 
 
+class Flights:
+    """Columns of shots, those of the times of flight by name."""
+
+    columns: dict[str, Floats]
+
+    @property
+    def tof_incident_s(self) -> Floats:
+        """Incident times of flight in s."""
+        return self.columns["tof_incident_s"]
+
+    @property
+    def tof_reflected_s(self) -> Floats:
+        """Reflected times of flight in s."""
+        return self.columns["tof_reflected_s"]
+
+    @property
+    def accuracy_reached(self) -> Floats:
+        """Bounds on the relative errors of times of flight; NaN where shots were not judged."""
+        return self.columns["accuracy_reached"]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Sweep:
+class Sweep(Flights):
     """Shots of one chain at several speeds. All arrays have shape (speeds,); NaN is missing.
 
     Attributes
@@ -60,21 +81,6 @@ class Sweep:
     errors: dict[int, str]
     warnings: dict[int, list[str]]
     dimensionless: bool = False
-
-    @property
-    def tof_incident_s(self) -> Floats:
-        """Incident times of flight in s."""
-        return self.columns["tof_incident_s"]
-
-    @property
-    def tof_reflected_s(self) -> Floats:
-        """Reflected times of flight in s."""
-        return self.columns["tof_reflected_s"]
-
-    @property
-    def accuracy_reached(self) -> Floats:
-        """Bounds on the relative errors of times of flight."""
-        return self.columns["accuracy_reached"]
 
     def to_xarray(self) -> xr.Dataset:
         """The columns as xarray has them.
@@ -160,7 +166,7 @@ class Odd(Tabled):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble:
+class Ensemble(Flights):
     """Shots over arrays of speeds and of named numbers, broadcast against each other.
 
     Attributes
@@ -199,21 +205,6 @@ class Ensemble:
     units: dict[str, str]
     odd: Odd | None = None
     dimensionless: bool = False
-
-    @property
-    def tof_incident_s(self) -> Floats:
-        """Incident times of flight in s."""
-        return self.columns["tof_incident_s"]
-
-    @property
-    def tof_reflected_s(self) -> Floats:
-        """Reflected times of flight in s."""
-        return self.columns["tof_reflected_s"]
-
-    @property
-    def accuracy_reached(self) -> Floats:
-        """Bounds on the relative errors; NaN where shots were not judged."""
-        return self.columns["accuracy_reached"]
 
     def __getitem__(self, column: str) -> Floats:
         return self.columns[column]

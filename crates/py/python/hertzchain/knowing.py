@@ -231,10 +231,8 @@ def theory(experiment: Experiment, speed: float | str | None = None) -> Descript
 
     Parameters
     ----------
-    experiment : Experiment
-        The chain and what hits it.
-    speed : float or str, optional
-        Speed of the striker in m/s, or a text with a unit; the experiment's own when absent.
+    experiment, speed
+        As for `check`.
 
     Returns
     -------
@@ -243,15 +241,8 @@ def theory(experiment: Experiment, speed: float | str | None = None) -> Descript
 
     Raises
     ------
-    ExperimentError
-        What the physics refuses, at its place in the experiment.
-    OptionError
-        A speed that is none.
-
-    Warns
-    -----
-    ExperimentWarning
-        What is odd about the experiment at this speed.
+    ExperimentError, OptionError
+        As for `check`, which warns of the same.
 
     References
     ----------

@@ -117,10 +117,8 @@ def figure4(speeds: NDArray[np.float64] | None = None, ax: Axes | None = None) -
 
     Parameters
     ----------
-    speeds : ndarray of shape (speeds,), optional
-        In m/s; the paper's range when absent.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
+    speeds, ax
+        As for `figure3`.
 
     Returns
     -------
