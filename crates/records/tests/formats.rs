@@ -227,6 +227,8 @@ numpy.save("long.npy", long)
 numpy.save("rows.npy", rows)
 numpy.save("fortran.npy", numpy.asfortranarray(rows))
 numpy.savez("rows.npz", samples=rows, speeds=[0.1, 0.2])
+numpy.savez_compressed("cube.npz", samples=numpy.array([[long, long], [-long, long]]))
+numpy.save("cube.npy", numpy.array([[long, long], [-long, long]]))
 with h5py.File("rows.h5", "w") as file:
     file["rows"], file["speeds"] = rows, [0.1, 0.2]
 with h5py.File("cube.h5", "w") as file:
@@ -276,6 +278,22 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
             .filter_map(|record| record.speed_m_s)
             .collect();
         assert_eq!(speeds, [0.1, 0.1, 0.1, 0.2, 0.2, 0.2], "{name}");
+    }
+    for name in ["cube.npy", "cube.npz"] {
+        let records = all(&folder.join(name), &pieces);
+        assert_eq!(records.len(), 6, "{name}");
+        for (at, record) in records.iter().enumerate() {
+            let volt = |channel: usize| record.channels[channel].samples.volts()[0];
+            let sign = if at < 3 { 1.0 } else { -1.0 };
+            let own = (record.first_sample, volt(0) * sign);
+            let start = 250 * (at % 3);
+            let expected = wave(start / 200, start % 200);
+            assert_eq!(
+                (own, volt(1)),
+                ((start as u64, expected), expected),
+                "{name}"
+            );
+        }
     }
 }
 

@@ -63,8 +63,8 @@ impl Arrays for Datasets {
         self.names.clone()
     }
 
-    fn axes(&self, name: &str) -> Result<usize, RecordError> {
-        self.dataset(name).map(|dataset| dataset.shape().len())
+    fn shape(&self, name: &str) -> Result<Vec<usize>, RecordError> {
+        self.dataset(name).map(|dataset| dataset.shape())
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>, RecordError> {
