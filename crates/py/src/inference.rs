@@ -165,8 +165,8 @@ pub fn design<'py>(
         let model = model(&inner, &arguments.modelled, &arguments.freed)?;
         let problem: CurveProblem = problem(model, data, &arguments.freed)?;
         let targets = designing::targets(&problem, &arguments)?;
-        let (candidates, found) = designing::designed(&problem, &targets, &speeds, &arguments)?;
-        let mut told = designing::json(&problem, &candidates, &found);
+        let found = designing::designed(&problem, &targets, &speeds, &arguments)?;
+        let mut told = designing::json(&problem, &found);
         let unit = |at: &usize| problem.parameters()[*at].unit.clone();
         told["units"] = targets.iter().map(unit).collect();
         Ok(told)

@@ -189,6 +189,8 @@ class Designed(Tabled):
         ``information_nats``.
     series : list of dict
         A series, each the best after those before it.
+    undetermined : list of str
+        Combinations that the data so far leave open: errors of their parameters mean little.
 
     References
     ----------
@@ -200,6 +202,7 @@ class Designed(Tabled):
     standard_errors_now: list[float | None]
     ranked: list[dict[str, Any]]
     series: list[dict[str, Any]]
+    undetermined: list[str]
 
     _index = "measure"
 
@@ -218,6 +221,7 @@ class Designed(Tabled):
 
     def __repr__(self) -> str:
         rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
+        rows |= {"left open": words for words in self.undetermined}
         return lines(f"Design for {', '.join(self.parameters)}: measure next", rows)
 
 
@@ -292,4 +296,5 @@ class Gauged:
 
     def __repr__(self) -> str:
         rows = {oil["name"]: f"{short(oil['distance'], 3)} standard errors away, {'possible' if oil['possible'] else 'rejected'}" for oil in self.oils}
+        rows |= {f"doubt {at}": words for at, words in enumerate(self.details["doubts"], 1)}
         return lines(self.verdict, rows)
