@@ -221,7 +221,7 @@ class Designed(Tabled):
 
     def __repr__(self) -> str:
         rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
-        rows |= {"left open": words for words in self.undetermined}
+        rows |= {f"left open, {at}": words for at, words in enumerate(self.undetermined, 1)}
         return lines(f"Design for {', '.join(self.parameters)}: measure next", rows)
 
 
@@ -296,5 +296,6 @@ class Gauged:
 
     def __repr__(self) -> str:
         rows = {oil["name"]: f"{short(oil['distance'], 3)} standard errors away, {'possible' if oil['possible'] else 'rejected'}" for oil in self.oils}
-        rows |= {f"doubt {at}": words for at, words in enumerate(self.details["doubts"], 1)}
+        if doubts := self.details["doubts"]:
+            rows["doubt"] = doubts
         return lines(self.verdict, rows)
