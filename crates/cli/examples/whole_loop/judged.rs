@@ -178,7 +178,9 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
                 flight.map(|flight| flight.incident_s),
                 flight.and_then(|flight| flight.reflected_s),
             ],
-            moved: flight.map(|flight| flight.picks.moved()).unwrap_or_default(),
+            moved: flight
+                .map(|flight| flight.picks.moved())
+                .unwrap_or_default(),
             true_s,
             compact_s,
             own_s: true_s.map(|time_s| time_s * to_measured),
