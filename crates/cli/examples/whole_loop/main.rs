@@ -176,7 +176,8 @@ fn against_model(shots: &[Judged], cases: &[&str]) {
     }
 }
 
-/// Chi-square of all speeds, and the largest departure in stated errors.
+/// Chi-square of all speeds, also without what the shots of a speed share, the largest departure in
+/// stated errors, and how many speeds are within these.
 fn told(rows: &[Speed]) -> String {
     let judged = agreement(rows).map_or(String::new(), |c| {
         format!(
@@ -187,7 +188,15 @@ fn told(rows: &[Speed]) -> String {
     let pulls = rows.iter().map(|row| row.departure_s);
     let pulls: Vec<f64> = pulls.map(|of| (of.value / of.sigma).abs()).collect();
     let largest = pulls.iter().copied().fold(0.0, f64::max);
-    format!("{judged}, at most {largest:.1} errors")
+    let within = coverage(&pulls, 1.96).map_or(0, |found| found.inside);
+    let alone = rows.iter().map(|row| {
+        let own = row.departure_s.sigma.powi(2) - row.shared_s.powi(2);
+        row.departure_s.value.powi(2) / own
+    });
+    format!(
+        "{judged}, without what shots share {:.0}; at most {largest:.1} errors, {within} within 1.96",
+        alone.sum::<f64>()
+    )
 }
 
 fn speed_row(row: &Speed) -> String {
