@@ -123,8 +123,8 @@ pub fn design<'py>(
         let model = model(&inner, &arguments.modelled, &arguments.freed)?;
         let problem: CurveProblem = problem(model, data, &arguments.freed)?;
         let targets = designing::targets(&problem, &arguments)?;
-        let (candidates, found) = designing::designed(&problem, &targets, &speeds, &arguments)?;
-        Ok(designing::json(&problem, &candidates, &found))
+        let found = designing::designed(&problem, &targets, &speeds, &arguments)?;
+        Ok(designing::json(&problem, &found))
     })?;
     json::object(py, &found)
 }

@@ -218,12 +218,15 @@ class Designed:
         ``information_nats``.
     series : list of dict
         A series, each the best after those before it.
+    undetermined : list of str
+        Combinations that the data so far leave open: errors of their parameters mean little.
     """
 
     parameters: list[str]
     standard_errors_now: list[float | None]
     ranked: list[dict[str, Any]]
     series: list[dict[str, Any]]
+    undetermined: list[str]
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a candidate, best first."""
