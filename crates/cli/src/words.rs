@@ -1,7 +1,7 @@
 //! Numbers of inference in words.
 
 use crate::format::{digits, with_error};
-use hertzchain_infer::{Ending, Parameter};
+use hertzchain_infer::{Ending, Goodness, Parameter};
 
 /// A value and its standard error, with the unit of its parameter: both over a
 /// power of ten where they are large or small.
@@ -16,7 +16,8 @@ pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
     if !sd.is_finite() {
         return format!("{}{unit}, not determined", digits(value, 7));
     }
-    let power = match value.abs().log10().floor() {
+    // A value that its error dwarfs has the error's size.
+    let power = match value.abs().max(sd).log10().floor() {
         power if (-3.0..5.0).contains(&power) || !power.is_finite() => 0,
         power => power as i32,
     };
@@ -26,6 +27,18 @@ pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
         0 => format!("{value} ± {sd}{unit}"),
         _ => format!("({value} ± {sd})·1e{power}{unit}"),
     }
+}
+
+/// How far data are from a fit.
+pub fn chi_square_text(goodness: &Goodness) -> String {
+    goodness.chi_square.map_or(String::new(), |found| {
+        format!(
+            "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
+            digits(found.value, 4),
+            found.freedom,
+            percent(found.probability)
+        )
+    })
 }
 
 /// A share in percent.
@@ -50,5 +63,18 @@ pub fn doubt(ending: &Ending) -> Option<String> {
         other if other.converged() => None,
         Ending::ModelFails(error) => Some(format!("the fit ended where the model fails: {error}")),
         other => Some(format!("the fit did not converge: {other:?}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_its_error_dwarfs_is_shown_in_the_errors_size() {
+        let angle = Parameter::new("incline", "rad", 1.0);
+        assert_eq!(estimate(&angle, 1e-17, 1.1e-5), "(0.0 ± 1.1)·1e-5 rad");
+        assert_eq!(estimate(&angle, 8.79e9, 3.4e6), "(8.7900 ± 0.0034)·1e9 rad");
+        assert_eq!(estimate(&angle, 77.23, 0.26), "77.23 ± 0.26 rad");
     }
 }

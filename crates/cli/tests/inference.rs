@@ -232,6 +232,13 @@ fn a_design_ranks_what_to_measure() {
         message.contains("--target B is not free; free are eta"),
         "{message}"
     );
+    let fast = ["design", &data, "--free", "eta", "--speeds", "0.1,500"];
+    assert!(refused(&with_errors(&fast)).contains("it looks like mm/s"));
+    // Errors of what the data leave open are not told as if they meant something.
+    let three = ["design", &data, "--free", "Y,nu,eta"];
+    let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
+    assert!(text.contains("Not determined so far"), "{text}");
+    assert!(text.contains("free K and A instead"), "{text}");
 }
 
 const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";

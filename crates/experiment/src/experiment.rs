@@ -384,6 +384,20 @@ impl Experiment {
         Some(&material.name)
     }
 
+    /// Names of the materials that bodies or contacts of the chain have; a file may
+    /// hold others, for its cases.
+    #[must_use]
+    pub fn used_materials(&self) -> Vec<&str> {
+        let parts = self.spec.groups.iter().flat_map(|group| &group.cell);
+        let sections = self.spec.sections.iter().map(|section| section.material);
+        let used = parts.map(|part| part.material).chain(sections);
+        let ends = [self.spec.near.material(), self.spec.far.material()];
+        let used: Vec<usize> = used.chain(ends).flatten().collect();
+        let named = self.spec.materials.0.iter().enumerate();
+        let named = named.filter(|(at, _)| used.contains(at));
+        named.map(|(_, material)| material.name.as_str()).collect()
+    }
+
     /// Sections of contacts with their laws, in the reading.
     #[must_use]
     pub fn sections(&self) -> &[SectionSpec] {

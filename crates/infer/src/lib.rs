@@ -32,7 +32,7 @@ pub use curve::{
     CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Model, Part, Predicted, Speeds,
     Supply, Surrogate, SurrogateError, Way, WayError, usual_ways,
 };
-pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection};
+pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection, wrong_speed};
 pub use design::{Candidate, Design, DesignError, Expected, design};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
 pub use goodness::{Goodness, Runs, runs};

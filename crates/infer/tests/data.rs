@@ -71,6 +71,16 @@ fn mistakes_name_their_row_and_column() {
 }
 
 #[test]
+fn lines_are_counted_whatever_ends_them() {
+    let text = format!("{HEAD}0.4,0,7e-4,1e-7\n-0.5,0,7e-4,1e-7\n");
+    for ends in ["\n", "\r\n", "\r"] {
+        let error = parse(&text.replace('\n', ends)).unwrap_err();
+        assert!(error.contains("line 3, speed_m_s"), "{ends:?}: {error}");
+    }
+    assert!(parse("\u{feff}\n").unwrap_err().contains("is empty"));
+}
+
+#[test]
 fn a_missing_column_is_named_with_what_stands_in_its_place() {
     let error = parse("speed,tof_incident_us,tof_incident_us_error\n0.5,700,1\n").unwrap_err();
     assert!(error.contains("no column `speed_m_s`"), "{error}");
@@ -115,6 +125,14 @@ fn one_of_several_cases_must_be_chosen() {
             .to_string()
             .contains("no case `gear`")
     );
+    // A table without cases takes the case of its model.
+    let case = Some("pump".to_owned());
+    let selection = Selection {
+        case,
+        ..Selection::default()
+    };
+    let plain = Data::parse("a.csv", &format!("{HEAD}0.5,0,7e-4,1e-7\n"), &selection).unwrap();
+    assert_eq!((plain.case.as_str(), plain.rows.len()), ("pump", 1));
     let pump = of(Some("pump")).unwrap();
     assert_eq!((pump.case.as_str(), pump.rows.len()), ("pump", 1));
 }

@@ -26,6 +26,12 @@ fn short_names_and_paths_name_the_same_numbers() {
     assert_eq!(starts("pump", "pump-oil.Y"), one("pump-oil.Y", 216e9));
     assert_eq!(starts("pump", "dry.B"), one("dry.B", 77.0));
     assert_eq!(starts("dry", "wall_gain"), one("wall_gain", 1.0));
+    assert_eq!(starts("dry", "eta1"), one("eta1", 3.2e4));
+    // The bulk viscosity is the shear one where the file gives none.
+    assert_eq!(starts("dry", "eta2"), one("eta2", 3.2e4));
+    // The file has four materials, its dry chain one.
+    assert_eq!(starts("paper", "eta"), one("eta", 3.2e4));
+    assert_eq!(starts("paper", "preload"), one("preload", 0.24));
 }
 
 #[test]
@@ -47,6 +53,16 @@ fn laws_of_speed_stay_laws_and_become_one_value_a_speed_if_asked() {
     let expected = 81405.3 * 0.1_f64.powf(-0.302);
     assert_eq!(each[0], ("wet.eta@0.1".to_owned(), expected));
     assert_eq!(each[1], ("wet.eta@1".to_owned(), 81405.3));
+    let number = FreeNumber::find(&preset("dry").unwrap(), "eta:each", None).unwrap();
+    let named = |speeds: &[f64]| -> Vec<String> {
+        let parameters = number.parameters(speeds);
+        parameters.into_iter().map(|p| p.name).collect()
+    };
+    assert_eq!(named(&[0.084271312, 1.23]), ["eta@0.08427", "eta@1.23"]);
+    assert_eq!(
+        named(&[0.500001, 0.500002]),
+        ["eta@0.500001", "eta@0.500002"]
+    );
     let number = FreeNumber::find(&preset("dry").unwrap(), "K:power", None).unwrap();
     assert_eq!(
         (number.form(), number.parameters(&[]).len()),
@@ -70,6 +86,7 @@ fn what_can_not_be_free_is_told_with_what_could() {
         refused("hertz", "B"),
         "B: this experiment has no cubic damping"
     );
+    assert!(refused("dry", "preload").contains("[near_end]"));
     assert!(refused("dry", "young_modulu").contains("did you mean"));
     assert!(refused("dry", "beads[0].count").contains("counts something"));
     assert!(refused("dry", "eta:linear").contains("expected `power` or `each`"));

@@ -103,7 +103,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
         let data = Truth::of(of, &SPEEDS_M_S).measured(seed);
         data.only(&[Observable::Incident])
     };
-    let sentence = |own: &[String]| {
+    let said = |own: &[String]| {
         let chains = Chains {
             dry: &dry_model,
             wet: &wet_model,
@@ -112,10 +112,15 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
             accuracy: 1e-5,
         };
         let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
-        gauge.verdict(&known_oils().unwrap()).unwrap().sentence()
+        let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
+        (verdict.sentence(), gauge.doubts(&verdict))
     };
-    assert!(sentence(&[]).starts_with("None of these"));
-    assert!(sentence(&push).starts_with("It is pump oil"));
+    let (sentence, doubts) = said(&[]);
+    assert!(sentence.starts_with("None of these"));
+    assert!(doubts.unwrap().contains("--own near_end.force"));
+    let (sentence, doubts) = said(&push);
+    assert!(sentence.starts_with("It is pump oil"));
+    assert_eq!(doubts, None);
 }
 
 #[test]

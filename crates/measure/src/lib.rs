@@ -14,6 +14,7 @@ mod refused;
 mod run;
 mod several;
 mod shot;
+mod speeds;
 mod table;
 
 pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};

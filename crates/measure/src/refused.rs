@@ -2,6 +2,7 @@
 
 use hertzchain_records::RecordError;
 use hertzchain_signal::SignalError;
+use std::path::PathBuf;
 
 /// Why a record, or a whole recording, was not measured.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +24,20 @@ pub enum Refused {
         low_v: f64,
         /// Its largest sample in V.
         high_v: f64,
+    },
+    /// Speeds of which nobody can tell whose they are.
+    #[error(
+        "{}: tells {told} speeds, and {found} shot{} were found in it: none was given a speed; say \
+         which is which with --shots, or cut it otherwise with --level or --shot-samples",
+        .file.display(), if *.found == 1 { "" } else { "s" }
+    )]
+    Speeds {
+        /// Which file.
+        file: PathBuf,
+        /// How many speeds it has.
+        told: usize,
+        /// How many shots were found.
+        found: u64,
     },
     /// A level that is none.
     #[error("{source_name}: cannot be cut: {cause}")]

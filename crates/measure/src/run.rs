@@ -2,6 +2,7 @@
 
 use crate::level::AtLevel;
 use crate::several::{Content, content};
+use crate::speeds::Speeds;
 use crate::{Example, Level, Refused, Shot, ShotList};
 use hertzchain_records::{Parts, ReadOptions, Record, read};
 use hertzchain_signal::Measuring;
@@ -80,7 +81,7 @@ pub trait Watch: Sync {
 /// Nobody.
 impl Watch for () {}
 
-type Read = Box<dyn Iterator<Item = Result<Record, Refused>>>;
+type Read = Box<dyn Iterator<Item = Result<Record, (PathBuf, Refused)>>>;
 
 /// Reads and measures recordings while somebody may watch.
 ///
@@ -93,6 +94,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
     let records = files.iter().flat_map(|file| records(file, options));
     let mut records = records.take_while(|_| !watch.stopped());
     let mut refused = Vec::new();
+    let mut speeds = Speeds::default();
     let mut batch = gather(&mut records, &mut refused);
     while !batch.is_empty() {
         let mut done = Vec::new();
@@ -102,11 +104,14 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
             gather(&mut records, &mut refused)
         });
         for (shots, record) in done.into_iter().zip(batch) {
+            speeds.hear(&record);
             measurement.keep(shots, &record, options);
         }
         batch = next;
     }
-    measurement.refused = refused;
+    let (of_files, refused): (Vec<PathBuf>, Vec<Refused>) = refused.into_iter().unzip();
+    speeds.deal(&mut measurement, options, &of_files);
+    measurement.refused.splice(0..0, refused);
     if let Some(list) = &options.list {
         measurement.unmatched = list.unmatched(files, &measurement.shots);
     }
@@ -115,22 +120,28 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
 
 /// The records of a file, cut at a level if one is given.
 fn records(file: &Path, options: &Options) -> Read {
+    let of = file.to_owned();
+    let refused = move |refused: Refused| (of.clone(), refused);
     match options.cutting {
         Cut::Level(level) => {
             let pieces = ReadOptions {
                 parts: Parts::Pieces(PIECE),
                 ..options.reading.clone()
             };
-            Box::new(AtLevel::new(read(file, &pieces), level))
+            let cut = AtLevel::new(read(file, &pieces), level);
+            Box::new(cut.map(move |record| record.map_err(&refused)))
         }
-        _ => Box::new(read(file, &options.reading).map(|record| record.map_err(Refused::from))),
+        _ => {
+            let records = read(file, &options.reading);
+            Box::new(records.map(move |record| record.map_err(|error| refused(error.into()))))
+        }
     }
 }
 
 /// The next records that can be read, as many as are measured together.
 fn gather(
-    records: &mut dyn Iterator<Item = Result<Record, Refused>>,
-    refused: &mut Vec<Refused>,
+    records: &mut dyn Iterator<Item = Result<Record, (PathBuf, Refused)>>,
+    refused: &mut Vec<(PathBuf, Refused)>,
 ) -> Vec<Record> {
     let mut batch = Vec::new();
     let mut waiting = 0;

@@ -83,6 +83,12 @@ impl Shot {
         }
     }
 
+    /// Takes the speed that its file tells, unless the list tells one.
+    pub(crate) fn take(&mut self, speed_m_s: Option<f64>, options: &Options) {
+        self.speed_m_s = speed_m_s.map(|value| Estimate { value, sigma: 0.0 });
+        self.name(None, options);
+    }
+
     /// Whether its times may be of something else than the wave: a clipped
     /// pulse, or pulses that may have been taken for one another or be of
     /// several shots.

@@ -160,7 +160,7 @@ impl<S: Stream> Iterator for Cut<S> {
     }
 }
 
-/// Raw numbers of several channels, sample by sample or record by record.
+/// Raw numbers of several channels, sample by sample.
 pub(crate) struct RawNumbers<R> {
     pub reader: R,
     pub file: PathBuf,
@@ -169,8 +169,6 @@ pub(crate) struct RawNumbers<R> {
     pub stored: usize,
     /// Those of them that are wanted.
     pub chosen: Vec<usize>,
-    /// Whether a record stores one channel after the other.
-    pub planar: bool,
 }
 
 impl<R: Read> Stream for RawNumbers<R> {
@@ -195,14 +193,7 @@ impl<R: Read> Stream for RawNumbers<R> {
                 format!("{read} of {bytes} bytes of a record"),
             ));
         }
-        let plane = count * wide;
-        let one = |channel: &usize| match self.planar {
-            true => {
-                let bytes = raw.get(channel * plane..(channel + 1) * plane);
-                self.number.samples(bytes.unwrap_or_default(), 0, 1)
-            }
-            false => self.number.samples(&raw, *channel, self.stored),
-        };
+        let one = |channel: &usize| self.number.samples(&raw, *channel, self.stored);
         Ok(self.chosen.iter().map(one).collect())
     }
 }

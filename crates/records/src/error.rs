@@ -176,8 +176,7 @@ pub enum RecordError {
     /// More samples in one piece than a shot can have.
     #[error(
         "{source_name}: more than {most} samples in one record; cut it into shots with --level, a \
-         single recording also with --shot-samples; channels that an NPY or NPZ has one after the \
-         other must be saved as columns for that"
+         single recording also with --shot-samples"
     )]
     TooLong {
         /// Which record.

@@ -19,6 +19,9 @@ pub struct Record {
     pub programmed_speed_m_s: Option<f64>,
     /// Speed of the striker in m/s, if the file says.
     pub speed_m_s: Option<f64>,
+    /// Speeds in m/s that the file tells of all its shots, in order, if these are more than its
+    /// recordings: which shot has which, only who cuts them out can tell.
+    pub speeds_m_s: Vec<f64>,
     /// Standard error of that speed in m/s, if the file says.
     pub speed_error_m_s: Option<f64>,
     /// Which section of the chain was wet and with what, if the file says.
@@ -47,6 +50,7 @@ impl Record {
             channels,
             programmed_speed_m_s: None,
             speed_m_s: None,
+            speeds_m_s: Vec::new(),
             speed_error_m_s: None,
             case: None,
             pretrigger: None,
@@ -76,6 +80,7 @@ impl Record {
             file: self.file.clone(),
             case: self.case.clone(),
             notes: self.notes.clone(),
+            speeds_m_s: self.speeds_m_s.clone(),
             channels: Vec::new(),
             ..*self
         }

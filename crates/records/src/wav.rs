@@ -42,7 +42,6 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         number,
         stored,
         chosen,
-        planar: false,
     };
     Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
 }

@@ -5,20 +5,34 @@ use crate::failure::Failure;
 use crate::inference::user;
 use crate::table::cell;
 use hertzchain_infer::{
-    Candidate, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting, Problem, design, fit,
-    usual_ways,
+    Candidate, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting, Identifiability,
+    Problem, design, fit, usual_ways, wrong_speed,
 };
 use hertzchain_study::parse_speeds;
 use serde_json::{Value, json};
 
+/// What could be measured, and what it would tell.
+pub struct Designed {
+    /// What could be measured.
+    pub candidates: Vec<Candidate>,
+    /// What each would tell.
+    pub design: Design,
+    /// Combinations of the parameters that the data so far leave open, in words.
+    pub undetermined: Vec<String>,
+}
+
 /// Speeds that could be measured.
 ///
 /// # Errors
-/// A list that is none.
+/// A list that is none, or a speed that no striker has.
 pub fn speeds(data: &Data, arguments: &Arguments) -> Result<Vec<f64>, Failure> {
-    match &arguments.speeds {
-        Some(speeds) => parse_speeds(speeds).map_err(user),
-        None => Ok(usual_speeds(&data.speeds_m_s())),
+    let Some(text) = &arguments.speeds else {
+        return Ok(usual_speeds(&data.speeds_m_s()));
+    };
+    let speeds = parse_speeds(text).map_err(user)?;
+    match speeds.iter().find_map(|speed| wrong_speed(*speed)) {
+        None => Ok(speeds),
+        Some(wrong) => Err(Failure::User(format!("--speeds {text}: {wrong}"))),
     }
 }
 
@@ -67,7 +81,7 @@ pub fn designed(
     targets: &[usize],
     speeds: &[f64],
     arguments: &Arguments,
-) -> Result<(Vec<Candidate>, Design), Failure> {
+) -> Result<Designed, Failure> {
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
     let ways = usual_ways(problem.model().experiment()).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
@@ -76,12 +90,20 @@ pub fn designed(
         .map_err(user)?;
     let picks = arguments.picks;
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
-    Ok((candidates, found))
+    let label = |at: usize| problem.residual_label(at);
+    let identified = Identifiability::new(problem.parameters(), &fit, label);
+    let open = identified.confused.into_iter();
+    Ok(Designed {
+        candidates,
+        design: found,
+        undetermined: open.map(|confusion| confusion.words).collect(),
+    })
 }
 
 /// Everything, in SI.
 #[must_use]
-pub fn json(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> Value {
+pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
+    let (candidates, found) = (&designed.candidates, &designed.design);
     let finite = |x: f64| x.is_finite().then_some(x);
     let one = |expected: &Expected| {
         json!({
@@ -95,12 +117,14 @@ pub fn json(problem: &CurveProblem, candidates: &[Candidate], found: &Design) ->
         "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
         "ranked": found.ranked.iter().map(one).collect::<Value>(),
         "series": found.greedy.iter().map(one).collect::<Value>(),
+        "undetermined": designed.undetermined,
     })
 }
 
 /// One line a candidate, best first.
 #[must_use]
-pub fn csv(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> String {
+pub fn csv(problem: &CurveProblem, designed: &Designed) -> String {
+    let (candidates, found) = (&designed.candidates, &designed.design);
     let names = found
         .targets
         .iter()

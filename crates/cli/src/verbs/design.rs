@@ -4,8 +4,9 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
-use hertzchain_infer::{Candidate, CurveProblem, Design, Expected, Problem};
+use hertzchain_infer::{CurveProblem, Expected, Problem};
 use hertzchain_verbs::arguments::infer::Design as Arguments;
+use hertzchain_verbs::design::Designed;
 use hertzchain_verbs::{design, inference};
 
 /// Candidates that anybody reads.
@@ -21,25 +22,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
-    let (candidates, found) =
-        pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
-    let all = design::json(&problem, &candidates, &found);
+    let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
+    let all = design::json(&problem, &designed);
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&text(&problem, &candidates, &found))?,
+        false => print::print(&text(&problem, &designed))?,
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.write(
-            "design.csv",
-            design::csv(&problem, &candidates, &found).as_bytes(),
-        )?;
+        folder.write("design.csv", design::csv(&problem, &designed).as_bytes())?;
         eprint!("Written:\n{}", folder.list());
         Ok(())
     })
 }
 
-fn text(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> String {
+fn text(problem: &CurveProblem, designed: &Designed) -> String {
+    let (candidates, found) = (&designed.candidates, &designed.design);
     let names: Vec<&str> = found
         .targets
         .iter()
@@ -64,12 +62,30 @@ fn text(problem: &CurveProblem, candidates: &[Candidate], found: &Design) -> Str
     let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
     let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
     format!(
-        "Now: {}\n\n{}\n{}\n{}\n{}",
+        "Now: {}\n{}\n{}\n{}\n{}\n{}",
         now.join(", "),
+        beware(problem, &designed.undetermined),
         heading("One measurement more, best first"),
         format::table(&head, &best),
         heading("A series, each the best after those before it"),
         format::table(&head, &greedy)
+    )
+}
+
+/// What standard errors of open combinations are worth, and what would close them.
+fn beware(problem: &CurveProblem, undetermined: &[String]) -> String {
+    if undetermined.is_empty() {
+        return String::new();
+    }
+    let open = undetermined
+        .iter()
+        .map(|words| format!("  Not determined so far: {words}.\n"));
+    let advice = problem.would_separate().into_iter();
+    let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
+    format!(
+        "Beware: the errors of parameters that the data leave open, and what is said of them below, mean little.\n{}{}",
+        open.collect::<String>(),
+        advice.collect::<String>()
     )
 }
 

@@ -46,6 +46,14 @@ impl Near {
             Self::Driven { .. } | Self::Free { .. } => None,
         }
     }
+
+    /// Index of the material that its body is given.
+    pub(crate) fn material(&self) -> Option<usize> {
+        match self {
+            Self::Striker { shape, .. } | Self::Driven { shape, .. } => shape.material,
+            Self::Free { .. } => None,
+        }
+    }
 }
 
 /// What bead N leans on.
@@ -65,6 +73,16 @@ pub(crate) enum Far {
         force_n: f64,
     },
     Free,
+}
+
+impl Far {
+    /// Index of the material that it is given.
+    pub(crate) fn material(&self) -> Option<usize> {
+        match self {
+            Self::HalfBead { shape, .. } | Self::Plane { shape, .. } => shape.material,
+            Self::Periodic { .. } | Self::Free => None,
+        }
+    }
 }
 
 fn shape(table: &View<'_>, materials: &Materials, keys: [&str; 2]) -> Result<Shape, Problem> {

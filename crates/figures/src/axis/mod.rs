@@ -25,6 +25,18 @@ pub(crate) struct Ticks {
     pub(crate) exponent: Option<i32>,
 }
 
+impl Ticks {
+    /// Those at whole numbers, for an axis that counts.
+    pub(crate) fn whole(mut self) -> Self {
+        self.minor.clear();
+        self.major.retain(|tick| tick.value.fract() == 0.0);
+        for tick in &mut self.major {
+            tick.label = format!("{}", tick.value);
+        }
+        self
+    }
+}
+
 /// The room an axis offers its labels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room {

@@ -9,6 +9,8 @@ use crate::heat::HeatLayer;
 pub(crate) struct Axis {
     pub(crate) label: String,
     pub(crate) log: bool,
+    /// Counts something: ticks at whole numbers alone.
+    pub(crate) whole: bool,
     pub(crate) range: Option<(f64, f64)>,
     /// Shared with a neighbour that carries the labels.
     pub(crate) unlabelled: bool,
@@ -80,6 +82,13 @@ impl Chart {
     #[must_use]
     pub fn x_log(mut self) -> Self {
         self.x.log = true;
+        self
+    }
+
+    /// Makes the x axis count: ticks at whole numbers alone.
+    #[must_use]
+    pub fn x_whole(mut self) -> Self {
+        self.x.whole = true;
         self
     }
 

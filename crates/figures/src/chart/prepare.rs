@@ -52,7 +52,10 @@ impl Prepared {
         Self {
             x,
             y,
-            x_ticks: ticks(&x, &x_room),
+            x_ticks: match chart.x.whole {
+                true => ticks(&x, &x_room).whole(),
+                false => ticks(&x, &x_room),
+            },
             y_ticks: ticks(&y, &y_room),
             style,
             spot,

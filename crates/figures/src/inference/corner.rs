@@ -81,18 +81,25 @@ impl Corner<'_> {
         let shaded: Vec<f64> = (x.iter().zip(&y))
             .map(|(x, y)| if inside(x) { *y } else { f64::NAN })
             .collect();
+        let [sampled, normal] = match k {
+            0 => ["posterior", "covariance"],
+            _ => [""; 2],
+        };
+        if k == 0 {
+            chart.legend = Legend::Auto;
+        }
         let chart = chart
             .with(
                 Series::band("", &x, &vec![0.0; CELLS], &shaded)
                     .colour(Colour::BLUE.mixed(Colour::WHITE, 0.7)),
             )
             .with(
-                Series::line("", &x, &y)
+                Series::line(sampled, &x, &y)
                     .colour(Colour::BLUE)
                     .dash(Dash::Solid),
             );
         match self.bell(k, &x) {
-            Some(bell) => chart.with(by_covariance(&x, &bell)),
+            Some(bell) => chart.with(by_covariance(normal, &x, &bell)),
             None => chart,
         }
     }
@@ -142,14 +149,14 @@ impl Corner<'_> {
             chart = chart.with(Series::line("", &x, &y).colour(colour).dash(Dash::Solid));
         }
         for (x, y) in (RADII.iter()).filter_map(|radius| self.ellipse(row, column, *radius)) {
-            chart = chart.with(by_covariance(&x, &y));
+            chart = chart.with(by_covariance("", &x, &y));
         }
         chart
     }
 }
 
-fn by_covariance(x: &[f64], y: &[f64]) -> Series {
-    Series::line("", x, y)
+fn by_covariance(name: &str, x: &[f64], y: &[f64]) -> Series {
+    Series::line(name, x, y)
         .colour(Colour::VERMILION)
         .dash(Dash::Dashed)
         .width(0.7)

@@ -47,7 +47,9 @@ impl SingularValues<'_> {
     }
 
     fn empty(&self, y_label: &str) -> Chart {
-        Chart::new("Direction", y_label).x_range(0.5, self.values.len() as f64 + 0.5)
+        Chart::new("Direction", y_label)
+            .x_whole()
+            .x_range(0.5, self.values.len() as f64 + 0.5)
     }
 
     fn sizes(&self) -> Chart {

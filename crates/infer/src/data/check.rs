@@ -12,8 +12,9 @@ const MOST_TIME_S: f64 = 0.1;
 /// Times from here on are rather microseconds than milliseconds.
 const MICROSECONDS_FROM: f64 = 20.0;
 
-/// What is wrong with a speed in m/s.
-pub(super) fn speed(value: f64) -> Option<String> {
+/// What is wrong with a speed of a striker in m/s, if anything is.
+#[must_use]
+pub fn wrong_speed(value: f64) -> Option<String> {
     if value <= 0.0 || !value.is_finite() {
         return Some(format!(
             "{value} is no speed of a striker; expected more than 0 m/s"

@@ -5,7 +5,9 @@ mod columns;
 mod error;
 mod read;
 
+pub use check::wrong_speed;
 pub use error::{DataError, Place};
+pub(crate) use read::with_plain_ends;
 pub use read::{Defaults, Selection};
 
 use hertzchain_signal::Estimate;

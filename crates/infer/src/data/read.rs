@@ -78,12 +78,22 @@ fn delimiter(text: &str) -> u8 {
     marks.next().unwrap_or(b',')
 }
 
+/// A text whose lines all end alike: the reader counts a carriage return and a line
+/// feed as one line too few.
+pub(crate) fn with_plain_ends(text: &str) -> String {
+    text.replace("\r\n", "\n").replace('\r', "\n")
+}
+
 fn records(file: &str, text: &str) -> Result<(Vec<String>, Vec<StringRecord>), DataError> {
     let no_table = |what: String| DataError::NoTable {
         file: file.to_owned(),
         what,
     };
+    let text = with_plain_ends(text);
     let text = text.trim_start_matches('\u{feff}');
+    if text.trim().is_empty() {
+        return Err(no_table("the file is empty".to_owned()));
+    }
     let mut reader = ReaderBuilder::new()
         .delimiter(delimiter(text))
         .comment(Some(b'#'))
@@ -148,6 +158,10 @@ impl Reader<'_> {
             (None, []) => String::new(),
             (None, [only]) => only.clone(),
             (None, _) => return wrong("one case must be chosen by --case".to_owned(), cases),
+            // Of the model, then: the table knows of none.
+            (Some(name), _) if self.columns.case.is_none() => {
+                return Ok((name.to_owned(), records));
+            }
             (Some(name), _) if cases.iter().any(|case| case == name) => name.to_owned(),
             (Some(name), _) => return wrong(format!("it has no case `{name}`"), cases),
         };
@@ -179,7 +193,7 @@ impl Reader<'_> {
             let what = "no speed; expected one in m/s".to_owned();
             self.cell_error(line, value, what)
         })?;
-        self.sound(check::speed(speed), line, value)?;
+        self.sound(check::wrong_speed(speed), line, value)?;
         let known = match sigma {
             Some(column) => self.number(record, line, column)?,
             None => None,

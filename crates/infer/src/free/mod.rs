@@ -13,6 +13,7 @@ use crate::Parameter;
 use hertzchain_experiment::{Experiment, PathError};
 pub use name::SHORT_NAMES;
 use name::Target;
+use std::collections::HashSet;
 
 /// How a number depends on the speed of the striker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,13 +167,11 @@ impl FreeNumber {
                 vec![one(&format!("{}.prefactor", self.name), value), exponent]
             }
             Form::EachSpeed => {
-                let at = |speed: &f64| {
-                    one(
-                        &format!("{}@{speed}", self.name),
-                        value * speed.powf(exponent),
-                    )
+                let at = |(speed, told): (&f64, String)| {
+                    let name = format!("{}@{told}", self.name);
+                    one(&name, value * speed.powf(exponent))
                 };
-                speeds_m_s.iter().map(at).collect()
+                speeds_m_s.iter().zip(apart(speeds_m_s)).map(at).collect()
             }
         }
     }
@@ -203,6 +202,26 @@ impl FreeNumber {
         }
     }
 }
+
+/// Speeds in m/s with as many digits as tell them apart, four at the least.
+fn apart(speeds_m_s: &[f64]) -> Vec<String> {
+    let rounded = |digits: usize| -> Vec<String> {
+        let short = |speed: &f64| {
+            let text = format!("{speed:.*e}", digits - 1);
+            text.parse().unwrap_or(*speed).to_string()
+        };
+        speeds_m_s.iter().map(short).collect()
+    };
+    let distinct = |texts: &Vec<String>| {
+        let once: HashSet<&String> = texts.iter().collect();
+        once.len() == texts.len()
+    };
+    let mut all = (4..=MOST_DIGITS).map(rounded);
+    all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS))
+}
+
+/// Digits that tell any two numbers apart.
+const MOST_DIGITS: usize = 17;
 
 /// All free numbers of a fit.
 #[derive(Clone, Debug)]

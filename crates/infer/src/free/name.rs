@@ -4,10 +4,12 @@ use super::{FreeError, Settings};
 use hertzchain_experiment::{Experiment, Place};
 
 /// Short names: what each stands for, and the end of its path.
-pub const SHORT_NAMES: [(&str, &str, &str); 8] = [
+pub const SHORT_NAMES: [(&str, &str, &str); 11] = [
     ("Y", "Young modulus", "young_modulus"),
     ("nu", "Poisson ratio", "poisson_ratio"),
     ("eta", "viscosity", "shear_viscosity"),
+    ("eta1", "shear viscosity", "shear_viscosity"),
+    ("eta2", "bulk viscosity", "bulk_viscosity"),
     ("K", "Hertz stiffness", "elastic_hertz.stiffness"),
     (
         "A",
@@ -15,6 +17,11 @@ pub const SHORT_NAMES: [(&str, &str, &str); 8] = [
         "damping_viscoelastic.relaxation_time",
     ),
     ("B", "cubic damping", "damping_cubic.coefficient"),
+    (
+        "preload",
+        "push on bead 1; give it one by a table [near_end] with `push` and `force`",
+        "near_end.force",
+    ),
     (
         WALL_GAIN,
         "sensitivity of the wall's sensor over that of the bead's",
@@ -143,11 +150,19 @@ fn of_short(
     let own = |place: &&Place| {
         let path = place.path.as_str();
         let contact = path.starts_with("contacts[") || path.starts_with("materials.");
-        contact && ends.iter().any(|end| path.ends_with(end.as_str()))
+        path == end || contact && ends.iter().any(|end| path.ends_with(end.as_str()))
     };
     let owners = owner.map(|owner| owner_paths(experiment, owner));
+    let used = experiment.used_materials();
     let of_owner = |place: &&Place| match &owners {
-        None => true,
+        // Of the chain: materials of other cases are not meant.
+        None => {
+            let path = place.path.strip_prefix("materials.");
+            path.is_none_or(|path| {
+                used.iter()
+                    .any(|name| path.starts_with(&format!("{name}.")))
+            })
+        }
         Some(owners) => owners.iter().any(|owner| place.path.starts_with(owner)),
     };
     let fitting: Vec<&Place> = places.iter().filter(own).filter(of_owner).collect();

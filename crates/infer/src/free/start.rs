@@ -26,11 +26,14 @@ pub(super) fn of(experiment: &Experiment, found: &Found, asked: Option<f64>) -> 
 }
 
 /// Stiffness and relaxation time of a section as they follow from materials, at
-/// the experiment's own speed.
+/// the experiment's own speed; a bulk viscosity as the shear one.
 fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     let Target::Number(path) = &found.target else {
         return None;
     };
+    if let Some(material) = path.strip_suffix("bulk_viscosity") {
+        return experiment.get(&format!("{material}shear_viscosity")).ok();
+    }
     let (chain, _) = experiment.chain(None).ok()?;
     let index = path.strip_prefix("contacts[")?.split(']').next()?;
     let pair = pair(&chain, index.parse().ok()?)?;

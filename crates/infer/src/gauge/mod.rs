@@ -13,12 +13,13 @@ mod verdict;
 pub use contacts::{Combination, Contact, WetRow};
 pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
+use verdict::LEAST_PROBABILITY;
 pub use verdict::{Match, OwnNumber, Verdict};
 
 use crate::curve::{CurveError, CurveProblem, Model};
 use crate::data::Data;
 use crate::free::{FreeError, FreeNumber, FreeNumbers};
-use crate::{Covariance, Fit, FitError, Fitting, ModelError, Parameter, fit};
+use crate::{Covariance, Fit, FitError, Fitting, Goodness, ModelError, Parameter, Problem, fit};
 use hertzchain_experiment::{Experiment, Mistakes};
 
 /// Why a liquid can't be gauged.
@@ -85,6 +86,9 @@ pub struct Gauge {
     radius_m: f64,
 }
 
+/// The load that friction holds in a tapped row.
+const PUSH: &str = "near_end.force";
+
 /// Numbers of a wet contact, the last of the wet model's: K and A.
 const CONTACT: usize = 2;
 
@@ -106,7 +110,7 @@ impl Gauge {
         let model = Model::new(chains.dry, numbers(chains.dry, &[])?)?;
         let dry = dry::problem(model.with_accuracy(chains.accuracy), dry)?;
         let dry_fit = fit(&dry, &Fitting::default()).map_err(GaugeError::Dry)?;
-        let parameters = crate::Problem::parameters(&dry);
+        let parameters = Problem::parameters(&dry);
         let dry_covariance = Covariance::new(parameters, &dry_fit);
         let wet_model = Model::new(chains.wet, numbers(chains.wet, &["wet.K", "wet.A"])?)?;
         Ok(Self {
@@ -125,6 +129,40 @@ impl Gauge {
     #[must_use]
     pub fn dry(&self) -> &CurveProblem {
         &self.dry
+    }
+
+    /// How well the dry curve follows its model.
+    #[must_use]
+    pub fn dry_goodness(&self) -> Goodness {
+        Goodness::new(Problem::parameters(&self.dry), &self.dry_fit)
+    }
+
+    /// What speaks against believing the verdict, and what to do: a dry curve that is
+    /// not its model's, or a pushed row that is nothing known while its push is the
+    /// file's.
+    #[must_use]
+    pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
+        let dry = self.dry_goodness().chi_square;
+        let dry = dry.filter(|found| found.probability < LEAST_PROBABILITY);
+        let pushed = self.own == 0 && self.wet.experiment().get(PUSH).is_ok();
+        let unknown = verdict.allowed().next().is_none();
+        let doubt = match (dry, pushed && unknown) {
+            (None, false) => return None,
+            (None, true) => String::new(),
+            (Some(dry), _) => format!(
+                "The dry curve does not follow its model (as far by chance: {:.0e}), so the wet one is \
+                 judged by a chain that is not the measured one. ",
+                dry.probability
+            ),
+        };
+        Some(match pushed {
+            true => format!(
+                "{doubt}A row that was tapped or shot before holds loads that are not its file's, since \
+                 friction froze them: let each chain have its own, with incident times alone (--own {PUSH} \
+                 --use incident), or lay it with less friction."
+            ),
+            false => format!("{doubt}Look at it first: hertzchain fit."),
+        })
     }
 
     /// How many of the dry fit's parameters hold for both chains: the first.

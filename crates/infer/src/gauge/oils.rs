@@ -1,5 +1,6 @@
 //! Known oils: what each makes of a contact.
 
+use crate::data::with_plain_ends;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use hertzchain_chain::{Material, Pair};
 
@@ -113,6 +114,7 @@ pub fn known_oils() -> Result<Vec<Oil>, OilError> {
 /// A line without a name, with a number that is none, or that gives neither all
 /// of an effective material nor all of a contact.
 pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, OilError> {
+    let text = with_plain_ends(text);
     let mut reader = ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(Trim::All)

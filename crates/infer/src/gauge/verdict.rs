@@ -51,7 +51,7 @@ const TOLERANCE: f64 = 0.01;
 const ITERATIONS: usize = 20;
 
 /// Below this probability an oil is rejected.
-const LEAST_PROBABILITY: f64 = 0.01;
+pub(super) const LEAST_PROBABILITY: f64 = 0.01;
 
 /// What the gauge says.
 #[derive(Clone, Debug, PartialEq)]

@@ -35,7 +35,7 @@ pub enum FitError {
     Start(#[source] ModelError),
     /// A parameter has no influence on any residual.
     #[error(
-        "{name} changes no residual near {value}: keep it fixed, or measure something that depends on it"
+        "{name} changes no residual near {value:.4e}: keep it fixed, or measure something that depends on it"
     )]
     ChangesNothing {
         /// The parameter.

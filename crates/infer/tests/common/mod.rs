@@ -33,8 +33,32 @@ pub fn model(experiment: &Experiment, names: &[&str]) -> Model {
 
 /// Speeds in equal ratios over the paper's range.
 pub fn speeds_m_s(count: usize) -> Vec<f64> {
-    let step = |at: usize| 0.075 * (1.23_f64 / 0.075).powf(at as f64 / (count - 1) as f64);
+    speeds_between(0.075, 1.23, count)
+}
+
+/// Speeds in m/s in equal ratios.
+pub fn speeds_between(slowest: f64, fastest: f64, count: usize) -> Vec<f64> {
+    let step = |at: usize| slowest * (fastest / slowest).powf(at as f64 / (count - 1) as f64);
     (0..count).map(step).collect()
+}
+
+/// Standard errors of a measured row.
+#[derive(Clone, Copy)]
+pub struct Noise {
+    /// Of the speed in m/s.
+    pub speed_m_s: f64,
+    /// Of each time of flight in s.
+    pub time_s: f64,
+}
+
+impl Noise {
+    /// That of the paper: means of 20 shots.
+    pub fn of_the_paper() -> Self {
+        Self {
+            speed_m_s: SPEED_M_S / SHOTS.sqrt(),
+            time_s: TIME_S / SHOTS.sqrt(),
+        }
+    }
 }
 
 /// A curve at the experiment's own numbers, a hundred times as accurate as a
@@ -83,12 +107,16 @@ impl Truth {
         }
     }
 
-    /// A repetition of the measurement: means of 20 shots, whose true mean speed
-    /// is not quite what was set.
+    /// A repetition of the measurement at the paper's noise.
     pub fn measured(&self, seed: u64) -> Data {
+        self.measured_with(Noise::of_the_paper(), seed)
+    }
+
+    /// A repetition of the measurement: the true speeds are not quite what was set.
+    pub fn measured_with(&self, noise: Noise, seed: u64) -> Data {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
-        let (speed_error, time_error) = (SPEED_M_S / SHOTS.sqrt(), TIME_S / SHOTS.sqrt());
+        let (speed_error, time_error) = (noise.speed_m_s, noise.time_s);
         let mut row = |at: usize| {
             let speed = self.speeds_m_s[at];
             let moved = speed_error * normal() / speed;

@@ -1,8 +1,9 @@
 //! Several arrays by name: samples, and what else is named as what it is.
 
+use crate::arrays::Axes;
 use crate::channels::{chosen, interval_s, list, seconds_taken};
 use crate::error::RecordError;
-use crate::options::{ReadOptions, Rows};
+use crate::options::{Parts, ReadOptions, Rows};
 use crate::read::Raw;
 use crate::record::Record;
 use std::path::Path;
@@ -41,8 +42,8 @@ pub(crate) trait Arrays {
     /// Names of all arrays of numbers.
     fn names(&self) -> Vec<String>;
 
-    /// Number of axes.
-    fn axes(&self, name: &str) -> Result<usize, RecordError>;
+    /// How long each axis is.
+    fn shape(&self, name: &str) -> Result<Vec<usize>, RecordError>;
 
     /// All numbers of a small array.
     fn values(&self, name: &str) -> Result<Vec<f64>, RecordError>;
@@ -86,9 +87,17 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
     let interval_s = interval_s(file, stated_s.or(nameless_s), options)?;
     let speeds = values(SPEEDS)?.unwrap_or_default();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
-    let samples = names.iter().filter(|name| !known.contains(&last(name)));
+    // Single numbers beside them are whatever they are.
+    let several = |name: &str| arrays.shape(name).map_or(true, |shape| !shape.is_empty());
+    let samples = names
+        .iter()
+        .filter(|name| !known.contains(&last(name)) && several(name));
     let samples: Vec<String> = samples.cloned().collect();
-    let records = of_samples(&arrays, samples, interval_s, options)?;
+    let (records, recordings) = of_samples(&arrays, samples, interval_s, options)?;
+    let speeds = Speeds {
+        told: speeds,
+        recordings,
+    };
     Ok(with_speeds(records, speeds, note))
 }
 
@@ -97,12 +106,21 @@ fn last(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
+/// Recordings in one array.
+fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, RecordError> {
+    let shape = arrays.shape(name)?;
+    let axes = Axes::of(&shape, options.rows);
+    let rows = axes.and_then(|axes| shape.get(axes.shots?));
+    Ok(rows.copied().unwrap_or(1))
+}
+
+/// The records of arrays of samples, and how many recordings they are of.
 fn of_samples(
     arrays: &Rc<dyn Arrays>,
     samples: Vec<String>,
     interval_s: f64,
     options: &ReadOptions,
-) -> Result<Raw, RecordError> {
+) -> Result<(Raw, usize), RecordError> {
     let file = arrays.file();
     // Columns of an array that is itself chosen are not chosen from.
     let free = ReadOptions {
@@ -112,18 +130,26 @@ fn of_samples(
     if let [one] = samples.as_slice() {
         let named = options.channels.contains(one);
         let options = if named { &free } else { options };
-        return arrays.records(one, interval_s, options);
+        let recordings = rows(&**arrays, one, options)?;
+        return Ok((arrays.records(one, interval_s, options)?, recordings));
     }
     let are_shots = samples.iter().all(|name| is_shot(last(name)));
     if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
-        return Ok(one_by_one(arrays.clone(), samples, interval_s, free));
+        let each = samples.iter().map(|name| rows(&**arrays, name, options));
+        let recordings = match options.parts {
+            // Shots of equal length come one by one, whatever array they are of.
+            Parts::Shots(_) => 0,
+            _ => each.sum::<Result<usize, RecordError>>()?,
+        };
+        let all = one_by_one(arrays.clone(), samples, interval_s, free);
+        return Ok((all, recordings));
     }
     let chosen = chosen(file, &samples, options)?;
     let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
     if options.channels.is_empty() {
         // Tables may as well be of different chains.
         for name in &chosen {
-            if arrays.axes(name)? > 1 {
+            if arrays.shape(name)?.len() > 1 {
                 return Err(RecordError::WhichChannel {
                     file: crate::error::name(file),
                     count: samples.len(),
@@ -132,7 +158,12 @@ fn of_samples(
             }
         }
     }
-    side_by_side(arrays, &chosen, interval_s, &free)
+    let recordings = chosen.first().map(|name| rows(&**arrays, name, options));
+    let recordings = recordings.unwrap_or(Ok(0))?;
+    Ok((
+        side_by_side(arrays, &chosen, interval_s, &free)?,
+        recordings,
+    ))
 }
 
 /// The even step of times.
@@ -215,21 +246,43 @@ fn one_by_one(
     }))
 }
 
-/// Speeds in the order of the records; pieces of one have the same.
-fn with_speeds(records: Raw, speeds: Vec<f64>, note: Option<String>) -> Raw {
-    let mut rest = speeds.clone().into_iter();
-    let mut own = None;
+/// Speeds that a file tells.
+struct Speeds {
+    told: Vec<f64>,
+    /// How many recordings there are.
+    recordings: usize,
+}
+
+impl Speeds {
+    /// That of a recording, by its number from 0: one is that of all.
+    fn of(&self, recording: usize) -> Option<f64> {
+        let speed = match self.told.as_slice() {
+            [one] => Some(one),
+            told if told.len() == self.recordings => told.get(recording),
+            _ => None,
+        };
+        speed.copied().filter(|speed| speed.is_finite())
+    }
+
+    /// All of them where they are of shots that are still to be cut out.
+    fn of_shots(&self) -> Vec<f64> {
+        match self.told.len() {
+            0 | 1 => Vec::new(),
+            count if count == self.recordings => Vec::new(),
+            _ => self.told.clone(),
+        }
+    }
+}
+
+/// Speeds in the order of the recordings; pieces of one have the same.
+fn with_speeds(records: Raw, speeds: Speeds, note: Option<String>) -> Raw {
+    let mut begun = 0_usize;
     Box::new(records.map(move |record| {
         let goes_on = record.as_ref().is_ok_and(|record| record.first_sample > 0);
-        if !goes_on {
-            own = rest.next();
-        }
-        let speed = match speeds.as_slice() {
-            [one] => Some(*one),
-            _ => own,
-        };
+        begun += usize::from(!goes_on);
         record.map(|record| Record {
-            speed_m_s: speed.filter(|speed| speed.is_finite()),
+            speed_m_s: speeds.of(begun.saturating_sub(1)),
+            speeds_m_s: speeds.of_shots(),
             notes: note.clone().into_iter().collect(),
             ..record
         })

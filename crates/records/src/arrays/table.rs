@@ -16,7 +16,7 @@ pub(crate) struct Axes {
 
 impl Axes {
     /// The axes of an array of this shape, if it can be one of samples.
-    fn of(shape: &[usize], rows: Rows) -> Option<Self> {
+    pub fn of(shape: &[usize], rows: Rows) -> Option<Self> {
         let (shots, channels, time) = match (shape, rows) {
             (&[_], _) => (None, None, 0),
             (&[a, b], Rows::Auto) if a <= b => (Some(0), None, 1),

@@ -63,16 +63,13 @@ impl Arrays for Datasets {
         self.names.clone()
     }
 
-    fn axes(&self, name: &str) -> Result<usize, RecordError> {
-        self.dataset(name).map(|dataset| dataset.shape().len())
+    fn shape(&self, name: &str) -> Result<Vec<usize>, RecordError> {
+        self.dataset(name).map(|dataset| dataset.shape())
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>, RecordError> {
-        let dataset = self.dataset(name)?;
-        let shape = dataset.shape();
-        let samples = numbers(&dataset, &vec![0; shape.len()], &shape);
-        let samples = samples.map_err(|error| refused(&self.file, name, &error))?;
-        Ok(samples.volts())
+        let values = self.dataset(name)?.read_numeric_as::<f64>();
+        values.map_err(|error| refused(&self.file, name, &error))
     }
 
     fn records(

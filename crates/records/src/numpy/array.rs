@@ -1,39 +1,32 @@
 //! One array: its header by npyz, its numbers raw.
 
+use super::order::{Passes, Planes, side_by_side};
+use super::place::{Bytes, Place};
 use crate::arrays::{Axes, Table};
-use crate::cut::{Cut, Head, MOST_SAMPLES, RawNumbers, Stream};
+use crate::cut::{Cut, MOST_SAMPLES, RawNumbers, Stream};
 use crate::error::{RecordError, name};
 use crate::numbers::{Kind, Number};
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::Samples;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
-use std::io::Read;
-use std::path::{Path, PathBuf};
 
 /// An array whose numbers are still to be read.
 pub(super) struct Array {
-    file: PathBuf,
+    place: Place,
     /// Its name in an NPZ.
     pub part: Option<String>,
     pub shape: Vec<usize>,
     fortran: bool,
     number: Number,
-    reader: Box<dyn Read>,
+    /// Its numbers from the first on.
+    bytes: Bytes,
 }
 
 impl Array {
-    pub fn open(
-        file: &Path,
-        part: Option<String>,
-        mut reader: Box<dyn Read>,
-    ) -> Result<Self, RecordError> {
-        let refused = |detail: String| RecordError::malformed(file, "a NumPy array", detail);
-        let header = NpyHeader::from_reader(&mut reader);
-        let header = header.map_err(|error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => RecordError::reading(file, error),
-            _ => refused(error.to_string()),
-        })?;
+    pub fn open(place: Place, part: Option<String>) -> Result<Self, RecordError> {
+        let (header, bytes) = opened(&place)?;
+        let refused = |detail: String| RecordError::malformed(&place.file, "a NumPy array", detail);
         let number = number(&header.dtype()).ok_or_else(|| {
             refused(format!(
                 "its items are {}, not real numbers; save a plain array",
@@ -42,13 +35,14 @@ impl Array {
         })?;
         let sizes = header.shape().iter();
         let shape: Option<Vec<usize>> = sizes.map(|size| usize::try_from(*size).ok()).collect();
+        let shape = shape.ok_or_else(|| refused("an axis is beyond all bounds".to_owned()))?;
         Ok(Self {
-            file: file.to_owned(),
+            place,
             part,
-            shape: shape.ok_or_else(|| refused("an axis is beyond all bounds".to_owned()))?,
+            shape,
             fortran: header.order() == Order::Fortran,
             number,
-            reader,
+            bytes,
         })
     }
 
@@ -60,10 +54,10 @@ impl Array {
             .try_fold(1, |n: usize, axis| n.checked_mul(*axis));
         let count = count.filter(|count| *count <= MOST_SAMPLES);
         let count = count.ok_or_else(|| RecordError::TooLong {
-            source_name: name(&self.file),
+            source_name: name(&self.place.file),
             most: MOST_SAMPLES,
         })?;
-        let mut stream = self.stream(vec![0], 1, false);
+        let mut stream = self.stream(vec![0], 1);
         let samples = stream.take(count)?;
         Ok(samples.first().map(Samples::volts).unwrap_or_default())
     }
@@ -73,10 +67,14 @@ impl Array {
         let fortran = self.fortran && self.shape.len() > 1;
         if fortran && self.shape.len() > 2 {
             let detail = "its three axes are stored column by column; save it with order C";
-            return Err(RecordError::malformed(&self.file, "a NumPy array", detail));
+            return Err(RecordError::malformed(
+                &self.place.file,
+                "a NumPy array",
+                detail,
+            ));
         }
         let table = Table::of(
-            &self.file,
+            &self.place.file,
             self.part.clone(),
             &self.shape,
             interval_s,
@@ -86,42 +84,94 @@ impl Array {
             shots, channels, ..
         } = table.axes;
         if fortran && shots.is_some() {
-            let all = (0..table.shots).collect();
-            return Ok(side_by_side(
-                table.head,
-                self.stream(all, table.shots, false),
-            ));
+            return self.alternating(table, options);
         }
         // Numbers of the last axis lie side by side; column by column those of the first.
         let planar = channels.is_some_and(|axis| (axis == 0) != fortran || shots.is_some());
-        let head = match planar {
-            true => table.head,
-            false => table.head.divided(options.parts),
-        };
-        let stream = self.stream(table.chosen, table.stored, planar);
-        Ok(Box::new(Cut::new(head, stream)))
+        let head = table.head.clone().divided(options.parts);
+        Ok(match planar {
+            true => Box::new(Cut::new(head, self.planes(&table)?)),
+            false => Box::new(Cut::new(head, self.stream(table.chosen, table.stored))),
+        })
     }
 
-    fn stream(self, chosen: Vec<usize>, stored: usize, planar: bool) -> RawNumbers<Box<dyn Read>> {
-        RawNumbers {
-            reader: self.reader,
-            file: self.file,
-            number: self.number,
-            stored,
-            chosen,
-            planar,
+    /// Shots of which samples alternate.
+    fn alternating(self, table: Table, options: &ReadOptions) -> Result<Raw, RecordError> {
+        let (shots, frames) = (table.shots, table.frames);
+        if shots.saturating_mul(frames) <= HELD {
+            let stream = self.stream((0..shots).collect(), shots);
+            return Ok(side_by_side(table.head, stream));
         }
+        let (place, number) = (self.place, self.number);
+        let open = move |shot| {
+            let (_, reader) = opened(&place)?;
+            Ok(numbers(reader, &place, number, vec![shot], shots))
+        };
+        let passes = Passes {
+            open: Box::new(open),
+            shots,
+            frames,
+            at: 0,
+            under_way: None,
+        };
+        Ok(Box::new(Cut::new(
+            table.head.divided(options.parts),
+            passes,
+        )))
+    }
+
+    /// A place in the file for every channel that is wanted.
+    fn planes(&self, table: &Table) -> Result<Planes, RecordError> {
+        let plane = (table.frames as u64).saturating_mul(self.number.width() as u64);
+        let channel = |channel: &usize| {
+            let (_, mut bytes) = opened(&self.place)?;
+            let skipped = bytes.skip(plane.saturating_mul(*channel as u64));
+            skipped.map_err(|cause| RecordError::reading(&self.place.file, cause))?;
+            Ok(numbers(bytes, &self.place, self.number, vec![0], 1))
+        };
+        let channels: Result<_, RecordError> = table.chosen.iter().map(channel).collect();
+        Ok(Planes {
+            channels: channels?,
+            between: plane.saturating_mul(table.stored.saturating_sub(1) as u64),
+            frames: table.frames,
+            at: 0,
+        })
+    }
+
+    fn stream(self, chosen: Vec<usize>, stored: usize) -> RawNumbers<Bytes> {
+        numbers(self.bytes, &self.place, self.number, chosen, stored)
     }
 }
 
-/// Shots whose samples alternate are read together.
-fn side_by_side(head: Head, mut stream: RawNumbers<Box<dyn Read>>) -> Raw {
-    let shots = match stream.take(head.each) {
-        Ok(shots) => shots,
-        Err(error) => return Box::new(std::iter::once(Err(error))),
-    };
-    let record = move |(row, samples)| Ok(head.record(row * head.row, vec![samples]));
-    Box::new(shots.into_iter().enumerate().map(record))
+/// Most numbers of alternating shots that are read together.
+const HELD: usize = 1 << 25;
+
+fn numbers(
+    reader: Bytes,
+    place: &Place,
+    number: Number,
+    chosen: Vec<usize>,
+    stored: usize,
+) -> RawNumbers<Bytes> {
+    RawNumbers {
+        reader,
+        file: place.file.clone(),
+        number,
+        stored,
+        chosen,
+    }
+}
+
+/// An array's header, and its numbers after it.
+fn opened(place: &Place) -> Result<(NpyHeader, Bytes), RecordError> {
+    let reading = |cause| RecordError::reading(&place.file, cause);
+    let mut bytes = place.open().map_err(reading)?;
+    let header = NpyHeader::from_reader(&mut bytes);
+    let header = header.map_err(|error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => reading(error),
+        _ => RecordError::malformed(&place.file, "a NumPy array", error),
+    })?;
+    Ok((header, bytes))
 }
 
 /// A number that a plain item is.

@@ -2,6 +2,8 @@
 
 mod array;
 mod npz;
+mod order;
+mod place;
 
 pub(crate) use npz::open as open_npz;
 
@@ -10,14 +12,18 @@ use crate::error::RecordError;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use array::Array;
-use std::fs::File;
-use std::io::BufReader;
+use place::Place;
 use std::path::Path;
 
 /// Opens one array.
 pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
-    let opened = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
-    let array = Array::open(file, None, Box::new(BufReader::new(opened)))?;
+    let place = Place {
+        file: file.to_owned(),
+        start: 0,
+        size: u64::MAX,
+        deflated: false,
+    };
+    let array = Array::open(place, None)?;
     let interval_s = interval_s(file, None, options)?;
     array.records(interval_s, options)
 }

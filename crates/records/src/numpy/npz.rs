@@ -1,13 +1,14 @@
 //! Several arrays in a ZIP.
 
 use super::array::Array;
+use super::place::Place;
 use crate::arrays::{self, Arrays};
 use crate::channels;
 use crate::error::RecordError;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use zip::{CompressionMethod, ZipArchive};
@@ -16,9 +17,7 @@ use zip::{CompressionMethod, ZipArchive};
 #[derive(Clone, Debug)]
 struct Entry {
     name: String,
-    start: u64,
-    size: u64,
-    deflated: bool,
+    place: Place,
 }
 
 /// An archive of arrays.
@@ -48,8 +47,8 @@ impl Arrays for Archive {
             .collect()
     }
 
-    fn axes(&self, name: &str) -> Result<usize, RecordError> {
-        self.array(name).map(|array| array.shape.len())
+    fn shape(&self, name: &str) -> Result<Vec<usize>, RecordError> {
+        self.array(name).map(|array| array.shape)
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>, RecordError> {
@@ -70,7 +69,7 @@ impl Archive {
     fn array(&self, name: &str) -> Result<Array, RecordError> {
         let entry = self.entries.iter().find(|entry| entry.name == name);
         match entry {
-            Some(entry) => array(&self.file, entry),
+            Some(entry) => Array::open(entry.place.clone(), Some(entry.name.clone())),
             None => Err(RecordError::NoChannel {
                 file: crate::error::name(&self.file),
                 wanted: name.to_owned(),
@@ -110,22 +109,13 @@ fn entries(file: &Path) -> Result<Vec<Entry>, RecordError> {
         })?;
         entries.push(Entry {
             name,
-            start,
-            size: entry.compressed_size(),
-            deflated,
+            place: Place {
+                file: file.to_owned(),
+                start,
+                size: entry.compressed_size(),
+                deflated,
+            },
         });
     }
     Ok(entries)
-}
-
-fn array(file: &Path, entry: &Entry) -> Result<Array, RecordError> {
-    let refused = |cause| RecordError::reading(file, cause);
-    let mut opened = File::open(file).map_err(refused)?;
-    opened.seek(SeekFrom::Start(entry.start)).map_err(refused)?;
-    let bytes = BufReader::with_capacity(1 << 16, opened).take(entry.size);
-    let reader: Box<dyn Read> = match entry.deflated {
-        true => Box::new(flate2::read::DeflateDecoder::new(bytes)),
-        false => Box::new(bytes),
-    };
-    Array::open(file, Some(entry.name.clone()), reader)
 }

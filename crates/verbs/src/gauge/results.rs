@@ -34,6 +34,7 @@ pub fn json(gauged: &Gauged) -> Value {
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": verdict.sentence(),
+        "doubts": gauge.doubts(verdict),
     })
 }
 

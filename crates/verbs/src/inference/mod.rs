@@ -124,8 +124,17 @@ pub fn opened(
 /// # Errors
 /// A case that has mistakes, or an experiment without units.
 pub fn in_case(mut experiment: Experiment, case: &str) -> Result<Experiment, Failure> {
-    if let Some(case) = experiment.case(case) {
-        experiment = case?;
+    let cases = experiment.cases();
+    match experiment.case(case) {
+        Some(chosen) => experiment = chosen?,
+        None if case.is_empty() || cases.is_empty() => {}
+        None => {
+            return Err(Failure::User(format!(
+                "{} has no case `{case}`; its cases are {}",
+                experiment.name(),
+                cases.join(", ")
+            )));
+        }
     }
     match experiment.units() {
         Units::Si => Ok(experiment),

@@ -1,8 +1,9 @@
 //! Figures of a fit.
 
 use super::{Fitted, report::short};
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
+use hertzchain_verbs::fit::Inferred;
 
 /// Looks of observables, in their order.
 const LOOKS: [(Colour, Marker); 4] = [
@@ -45,13 +46,15 @@ fn curves(fitted: &Fitted, shown: &[Observable]) -> Chart {
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
     let chart = chart.title(fitted.problem.model().experiment().title());
-    shown
-        .iter()
-        .fold(chart, |chart, of| with_curve(fitted, chart, *of))
+    let named = shown.iter().enumerate();
+    named.fold(chart, |chart, (at, of)| {
+        let line = if at == 0 { "fit" } else { "" };
+        with_curve(fitted, chart, *of, line)
+    })
 }
 
 /// Measured points, the fitted line and its 95 % band.
-fn with_curve(fitted: &Fitted, chart: Chart, of: Observable) -> Chart {
+fn with_curve(fitted: &Fitted, chart: Chart, of: Observable, line: &str) -> Chart {
     let rows = fitted.problem.data().rows.iter().enumerate();
     let rows: Vec<_> = rows
         .filter_map(|(at, row)| Some((at, row, row.value(of)?)))
@@ -77,7 +80,7 @@ fn with_curve(fitted: &Fitted, chart: Chart, of: Observable) -> Chart {
     chart
         .with(Series::band("", &speeds, &edge(-1.0), &edge(1.0)).colour(colour))
         .with(
-            Series::line("", &speeds, &predicted)
+            Series::line(line, &speeds, &predicted)
                 .colour(colour)
                 .dash(Dash::Solid)
                 .width(0.7),
@@ -85,7 +88,8 @@ fn with_curve(fitted: &Fitted, chart: Chart, of: Observable) -> Chart {
         .with(points.colour(colour).marker(marker))
 }
 
-/// Standardised residuals against speed.
+/// Standardised residuals against speed, with the band that the parameters' errors
+/// leave the fit, in the same standard errors.
 fn residuals(fitted: &Fitted) -> Chart {
     let data = fitted.problem.data();
     let measured = fitted.problem.measured();
@@ -93,22 +97,37 @@ fn residuals(fitted: &Fitted) -> Chart {
     let chart = Chart::new("Speed of the striker (m/s)", label)
         .x_log()
         .h_line(0.0, "");
-    let chart = chart.legend(Legend::Off);
     let residuals = measured.into_iter().zip(&fitted.inferred.fit.residuals);
-    let all: Vec<((usize, Observable), &f64)> = residuals.collect();
+    let spreads = spreads(fitted);
+    let all: Vec<_> = residuals.zip(&spreads).collect();
     Observable::ALL
         .into_iter()
         .filter(|of| data.has(*of))
         .fold(chart, |chart, of| {
-            let own = all.iter().filter(|((_, other), _)| *other == of);
-            let (speeds, values): (Vec<f64>, Vec<f64>) = own
-                .map(|((row, _), residual)| (data.rows[*row].speed_m_s.value, **residual))
+            let own = || all.iter().filter(|(((_, other), _), _)| *other == of);
+            let (speeds, values): (Vec<f64>, Vec<f64>) = own()
+                .map(|(((row, _), residual), _)| (data.rows[*row].speed_m_s.value, **residual))
                 .unzip();
+            let edge = |sign: f64| own().map(|(_, sd)| sign * BAND * **sd).collect::<Vec<_>>();
             let (colour, marker) = LOOKS[of as usize];
-            chart.with(
-                Series::points(short(of), &speeds, &values)
-                    .colour(colour)
-                    .marker(marker),
-            )
+            let band = format!("95 % of the fit, {}", short(of));
+            let points = Series::points("", &speeds, &values);
+            chart
+                .with(Series::band(&band, &speeds, &edge(-1.0), &edge(1.0)).colour(colour))
+                .with(points.colour(colour).marker(marker))
         })
+}
+
+/// Standard errors of the fitted curve in those of each residual.
+fn spreads(fitted: &Fitted) -> Vec<f64> {
+    let Inferred {
+        fit, covariance, ..
+    } = &fitted.inferred;
+    let slopes = |at: usize| {
+        let columns = fit.jacobian.columns.iter();
+        columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))
+    };
+    (0..fit.jacobian.data_rows)
+        .map(|at| covariance.sd_of(&slopes(at).collect::<Vec<f64>>()))
+        .collect()
 }

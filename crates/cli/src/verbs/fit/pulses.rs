@@ -65,14 +65,14 @@ fn advice() -> Vec<String> {
 fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure> {
     let shown = shown(fitted)?;
     folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
-    folder.figure("pulses", &picture(fitted, &shown))?;
+    folder.figure("pulses", &picture(&shown))?;
     write_inferred(&mut folder, &fitted.inferred, all)?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }
 
 /// The slowest and the fastest record with the fit, residuals below each.
-fn picture(fitted: &Pulsed, shown: &[Shown<'_>]) -> Figure {
+fn picture(shown: &[Shown<'_>]) -> Figure {
     let speed = |one: &&Shown<'_>| one.record.speed_m_s.value;
     let first = shown.iter().filter(|one| one.channel == 0);
     let slowest = first.clone().min_by(|a, b| speed(a).total_cmp(&speed(b)));
@@ -80,7 +80,7 @@ fn picture(fitted: &Pulsed, shown: &[Shown<'_>]) -> Figure {
     let mut figure = Figure::single_column(170.0);
     let one_speed = slowest.map(|s| speed(&s)) == fastest.map(|f| speed(&f));
     for one in slowest.into_iter().chain(fastest.filter(|_| !one_speed)) {
-        figure = figure.panel(signal(fitted, one)).panel(residuals(one));
+        figure = figure.panel(signal(one)).panel(residuals(one));
     }
     figure
 }
@@ -89,12 +89,21 @@ fn in_us(times: &[f64]) -> Vec<f64> {
     times.iter().map(|time| 1e6 * time).collect()
 }
 
-fn signal(fitted: &Pulsed, shown: &Shown<'_>) -> Chart {
+/// An empty chart over all of a record's time, so that panels below each other line up.
+fn over_time(shown: &Shown<'_>, label: &str) -> Chart {
+    let times = in_us(&shown.columns[0]);
+    let chart = Chart::new("Time after the passing maximum (µs)", label);
+    match (times.first(), times.last()) {
+        (Some(first), Some(last)) => chart.x_range(*first, *last),
+        _ => chart,
+    }
+}
+
+fn signal(shown: &Shown<'_>) -> Chart {
     let [times, measured, model] = &shown.columns;
-    let title = fitted.problem.model().experiment().title();
     let speed = digits(shown.record.speed_m_s.value, 4);
-    Chart::new("Time after the passing maximum (µs)", "Signal (V)")
-        .title(&format!("{title}: {speed} m/s"))
+    over_time(shown, "Signal (V)")
+        .title(&format!("{speed} m/s: {}", shown.record.source))
         .with(
             Series::points("measured", &in_us(times), measured)
                 .colour(Colour::BLUE)
@@ -108,11 +117,8 @@ fn residuals(shown: &Shown<'_>) -> Chart {
     let sigma = shown.record.sigma_v[shown.channel];
     let pairs = measured.iter().zip(model);
     let residuals: Vec<f64> = pairs.map(|(a, b)| (a - b) / sigma).collect();
-    Chart::new(
-        "Time after the passing maximum (µs)",
-        "Residual (standard errors)",
-    )
-    .h_line(0.0, "")
-    .legend(Legend::Off)
-    .with(Series::line("", &in_us(times), &residuals).colour(Colour::BLUE))
+    over_time(shown, "Residual (standard errors)")
+        .h_line(0.0, "")
+        .legend(Legend::Off)
+        .with(Series::line("", &in_us(times), &residuals).colour(Colour::BLUE))
 }

@@ -2,7 +2,7 @@
 
 use crate::format::{self, digits};
 use crate::print::heading;
-use crate::words::{doubt, estimate, percent};
+use crate::words::{chi_square_text, doubt, estimate, percent};
 use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
 use hertzchain_verbs::fit::{Fitted, Inferred, More, Rivals, Sampled};
 
@@ -40,7 +40,13 @@ pub fn described(fitted: &Inferred, problem: &dyn Problem) -> String {
 
 /// What is doubtful about the minimum.
 pub fn beware(fitted: &Inferred) -> String {
-    let doubt = doubt(&fitted.fit.ending);
+    let open = !fitted.identifiability.confused.is_empty();
+    let doubt = doubt(&fitted.fit.ending).map(|doubt| match open {
+        true => format!(
+            "{doubt}; where combinations are not determined there is no one minimum: settle these first"
+        ),
+        false => doubt,
+    });
     let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
     if fitted.fit.starts.len() > 1 {
         let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
@@ -62,34 +68,30 @@ pub fn values(fitted: &Inferred) -> String {
 /// Pairs whose correlation is worth a line.
 const TOLD: f64 = 0.5;
 
+/// Most of them that anybody reads.
+const PAIRS: usize = 6;
+
 fn correlations(fitted: &Inferred) -> String {
-    let parameters = &fitted.parameters;
-    let mut text = String::new();
-    for (i, one) in parameters.iter().enumerate() {
-        for (j, other) in parameters.iter().enumerate().skip(i + 1) {
-            let Some(value) = fitted.covariance.correlation(i, j) else {
-                continue;
-            };
-            if value.abs() >= TOLD {
-                let value = digits(value, 3);
-                text += &format!("Correlation of {} and {}: {value}\n", one.name, other.name);
-            }
-        }
+    let name = |at: usize| &fitted.parameters[at].name;
+    let count = fitted.parameters.len();
+    let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let known = pairs.filter_map(|(i, j)| Some((i, j, fitted.covariance.correlation(i, j)?)));
+    let mut told: Vec<(usize, usize, f64)> = known.filter(|pair| pair.2.abs() >= TOLD).collect();
+    told.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    let line = |(i, j, value): &(usize, usize, f64)| {
+        let value = digits(*value, 3);
+        format!("Correlation of {} and {}: {value}\n", name(*i), name(*j))
+    };
+    let text: String = told.iter().take(PAIRS).map(line).collect();
+    match told.len().saturating_sub(PAIRS) {
+        0 => text,
+        more => text + &format!("{more} more correlations of {TOLD} and above: in fit.json\n"),
     }
-    text
 }
 
 /// Chi-square, runs and the worst residual.
 fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
-    let mut text = String::new();
-    if let Some(c) = goodness.chi_square {
-        text += &format!(
-            "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
-            digits(c.value, 4),
-            c.freedom,
-            percent(c.probability)
-        );
-    }
+    let mut text = chi_square_text(goodness);
     if let Some(runs) = goodness.runs {
         text += &format!(
             "{} runs of equal sign, {} expected: as few or fewer in {} of repetitions\n",

@@ -9,9 +9,22 @@ use hertzchain_verbs::fit::Inferred;
 fn labels(fitted: &Inferred) -> Vec<String> {
     let label = |parameter: &Parameter| match parameter.unit.as_str() {
         "" => parameter.name.clone(),
-        unit => format!("{} ({unit})", parameter.name),
+        unit => format!("{} ({})", parameter.name, in_markup(unit)),
     };
     fitted.parameters.iter().map(label).collect()
+}
+
+/// A unit with its powers raised: `N/m^(3/2)` as a figure shows it.
+fn in_markup(unit: &str) -> String {
+    let mut parts = unit.split('^');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        let (power, rest) = match part.strip_prefix('(').and_then(|part| part.split_once(')')) {
+            Some(parts) => parts,
+            None => part.split_at(part.find([' ', '/']).unwrap_or(part.len())),
+        };
+        format!("{text}$^{{{power}}}${rest}")
+    })
 }
 
 /// Rise of chi-square along each parameter, beside the parabola that the

@@ -1,6 +1,6 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
 use hertzchain_infer::gauge::{Contact, Oil};
 use hertzchain_verbs::gauge::Gauged;
 
@@ -9,12 +9,12 @@ const POINTS: usize = 60;
 
 /// Both numbers, one panel each.
 pub fn contacts(gauged: &Gauged) -> Figure {
-    let figure = Figure::single_column(120.0).share_x();
     match tells_both(gauged) {
-        true => figure
+        true => Figure::single_column(120.0)
+            .share_x()
             .panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9))
             .panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
-        false => figure.panel(panel(
+        false => Figure::single_column(70.0).panel(panel(
             gauged,
             0,
             "$K$ if $A$ is as dry (GN/m$^{3/2}$)",
@@ -32,9 +32,12 @@ fn tells_both(gauged: &Gauged) -> bool {
 }
 
 fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
-    let chart = Chart::new("Speed of the striker (m/s)", label)
-        .x_log()
-        .y_log();
+    let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
+    let chart = match of {
+        // K changes by some percent, A tenfold; one legend does for both.
+        0 => chart,
+        _ => chart.y_log().legend(Legend::Off),
+    };
     let shown = if tells_both(gauged) {
         gauged.oils.len()
     } else {
@@ -55,7 +58,19 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         .y_error(&column(|p| p.2))
         .marker(Marker::Circle)
         .colour(Colour::BLACK);
-    chart.with(points)
+    let others = gauged.rows.iter().filter_map(|row| {
+        let others = &row.told.as_ref().ok()?.others;
+        Some(others.iter().map(|ln| (row.speed_m_s, unit * ln[of].exp())))
+    });
+    let (speeds, values): (Vec<f64>, Vec<f64>) = others.flatten().unzip();
+    match values.is_empty() {
+        true => chart.with(points),
+        false => {
+            let others =
+                Series::points("other pairs as good", &speeds, &values).marker(Marker::OpenCircle);
+            chart.with(others.colour(Colour::BLACK)).with(points)
+        }
+    }
 }
 
 /// What an oil would give.

@@ -2,7 +2,7 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{estimate, percent};
+use crate::words::{chi_square_text, estimate, percent};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, Gauge, SharedLaw, WetRow};
 use hertzchain_verbs::gauge::Gauged;
@@ -26,7 +26,9 @@ pub fn text(gauged: &Gauged) -> String {
     for (oil, why) in &gauged.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
-    text + &gauged.verdict.sentence() + "\n"
+    text += &format!("{}\n", gauged.verdict.sentence());
+    let doubts = gauged.gauge.doubts(&gauged.verdict);
+    text + &doubts.map_or(String::new(), |doubts| format!("Beware: {doubts}\n"))
 }
 
 fn dry(gauged: &Gauged) -> String {
@@ -36,7 +38,7 @@ fn dry(gauged: &Gauged) -> String {
         let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
     });
-    format::pairs(&rows.collect::<Vec<_>>())
+    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square_text(&gauge.dry_goodness())
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
