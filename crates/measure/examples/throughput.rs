@@ -3,7 +3,7 @@
 //!
 //! Writes one recording of 16-bit samples at 1 MS/s, 100,000 a shot as those of a
 //! campaign, without compression as NPY, WAV and HDF5, and measures each from the file to
-//! both times of flight of every shot.
+//! both times of flight of every shot; tells also the most memory that was needed meanwhile.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 #[path = "../../signal/tests/common/mod.rs"]
@@ -99,6 +99,8 @@ fn shot(seed: u64) -> Vec<i16> {
 /// Measures a file of so many megabytes of samples and tells how long it took.
 fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usize) -> Anyhow {
     let files: [PathBuf; 1] = [path.to_owned()];
+    // The kernel begins anew with its record of the most memory.
+    fs::write("/proc/self/clear_refs", "5").unwrap_or_default();
     let (start, before_s) = (Instant::now(), processor_s());
     let measured = measure(&files, options, &());
     let seconds = start.elapsed().as_secs_f64();
@@ -110,11 +112,12 @@ fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usi
         flight.is_ok_and(|flight| flight.reflected_s.is_some())
     });
     println!(
-        "{name}: {} of {} shots in {seconds:.2} s, {:.0} MB/s on {threads} threads; {:.0} MB in a second of one core",
+        "{name}: {} of {} shots in {seconds:.2} s, {:.0} MB/s on {threads} threads; {:.0} MB in a second of one core; {:.0} MiB of memory",
         whole.count(),
         measured.shots.len(),
         megabytes / seconds,
         megabytes / own_s.unwrap_or(f64::NAN),
+        most_mib().unwrap_or(f64::NAN),
     );
     Ok(())
 }
@@ -128,6 +131,16 @@ fn processor_s() -> Option<f64> {
     let mut fields = after.split_whitespace().skip(11);
     let mut next = || fields.next()?.parse::<f64>().ok();
     Some(0.01 * (next()? + next()?))
+}
+
+/// Most memory that was needed since the kernel began its record, in MiB.
+fn most_mib() -> Option<f64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib / 1024.0)
 }
 
 fn bytes(samples: &[i16]) -> Vec<u8> {

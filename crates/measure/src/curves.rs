@@ -2,7 +2,7 @@
 
 use crate::Shot;
 use hertzchain_signal::{
-    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
+    Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
     power_law_both_errors, ratios_at_common, shared, summary,
 };
 
@@ -222,7 +222,7 @@ fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
 fn shared_s(shots: &[&&Timed<'_>], time: usize) -> f64 {
     let has = |shot: &&&&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
     let own = shots.iter().filter(has);
-    let own: Vec<[f64; 2]> = own.map(|shot| shot.flight.picks.under_s()[time]).collect();
+    let own: Vec<[Moved; 2]> = own.map(|shot| shot.flight.picks.moved()[time]).collect();
     shared(&own)
 }
 
@@ -235,7 +235,7 @@ fn at_speed(shots: &[&&Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<E
         let factor = (speed_m_s.value / shot.speed.value).powf(EXPONENT);
         Some(Estimate {
             value: factor * of.value,
-            sigma: factor * alone(of.sigma, shot.flight.picks.under_s()[time]),
+            sigma: factor * alone(of.sigma, shot.flight.picks.moved()[time]),
         })
     };
     let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();

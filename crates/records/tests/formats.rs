@@ -316,6 +316,9 @@ with h5py.File("big-endian.h5", "w") as file:
     file["a"], file["speeds"] = shots.astype(">f8"), [0.1, 0.2, 0.3]
     file["b"] = (shots * 128).astype(">i4")
     file["c"] = numpy.array([[wave(0), wave(1)], [wave(2), wave(3)]])
+with h5py.File("numbers.h5", "w") as file:
+    file["volts"], file["dt"], file["speed"], file["temperature"] = shots, 1e-6, 0.5, 293
+numpy.savez("numbers.npz", volts=shots, dt=1e-6, speed=0.5, temperature=293)
 with h5py.File("columns.h5", "w") as file:
     file["x"] = shots[:2].T
 with h5py.File("text.h5", "w") as file:
@@ -336,6 +339,12 @@ with h5py.File("text.h5", "w") as file:
         channels: channels.iter().map(|name| (*name).to_owned()).collect(),
         ..at_1_mhz()
     };
+    for name in ["numbers.h5", "numbers.npz"] {
+        let records = all(&folder.join(name), &open);
+        let told = (records[2].interval_s, records[2].speed_m_s);
+        assert_eq!((records.len(), told), (3, (1e-6, Some(0.5))), "{name}");
+        assert_wave(&records[2], 0, 2, 1.0);
+    }
     let several = folder.join("big-endian.h5");
     let a = all(&several, &told(&["a"]));
     assert_eq!(a[1].speed_m_s, Some(0.2));

@@ -1,6 +1,6 @@
 //! Times of flight of one shot.
 
-use crate::{Picked, Picks};
+use crate::{Moved, Picked, Picks};
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,13 +44,12 @@ impl Estimate {
 }
 
 impl Picks {
-    /// How far what lies under them may have moved the two pulses of the incident and of the
-    /// reflected time, [`Picked::under_s`].
+    /// What may have moved the two pulses of the incident and of the reflected time.
     #[must_use]
-    pub fn under_s(&self) -> [[f64; 2]; 2] {
-        let wall = self.wall.under_s;
-        let back = self.returning.map_or(0.0, |back| back.under_s);
-        [[self.passing.under_s, wall], [wall, back]]
+    pub fn moved(&self) -> [[Moved; 2]; 2] {
+        let wall = self.wall.moved;
+        let back = self.returning.map(|back| back.moved).unwrap_or_default();
+        [[self.passing.moved, wall], [wall, back]]
     }
 
     /// Times of flight and attenuation from the three pulses.

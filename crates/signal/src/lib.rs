@@ -51,7 +51,7 @@ pub use flight::{Estimate, Flight};
 pub use level::{Level, level, median};
 pub use measure::{Measured, Measuring, measure};
 pub use picks::{
-    Method, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
+    Method, Moved, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
 };
 pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,

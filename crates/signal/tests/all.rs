@@ -9,4 +9,5 @@ mod nonsense;
 mod picking;
 mod power_law;
 mod reduction;
+mod shared;
 mod zero_phase;

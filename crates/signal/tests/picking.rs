@@ -6,7 +6,7 @@
 )]
 
 #[path = "common/dry.rs"]
-mod dry;
+pub mod dry;
 
 use crate::common::{Scene, channels, normal};
 use dry::Dry;

@@ -1,8 +1,8 @@
 //! From shots to curves.
 
 use hertzchain_signal::{
-    Estimate, FitError, Point, alone, coverage, groups, power_law, power_law_both_errors,
-    ratios_at_common, shared, summary,
+    Estimate, FitError, Point, coverage, groups, power_law, power_law_both_errors,
+    ratios_at_common, summary,
 };
 
 const SPEEDS: [f64; 7] = [0.075, 0.1, 0.25, 0.5, 0.75, 1.0, 1.23];
@@ -138,13 +138,4 @@ fn coverage_counts_what_lies_inside() {
     // erf(1/√2), rounding.
     assert!((found.expected - 0.682_689_492_137_085_9).abs() < 1e-12);
     assert!(coverage(&[], 1.0).is_none());
-}
-
-#[test]
-fn what_moves_all_shots_alike_stays_in_a_mean_and_noise_does_not() {
-    assert_eq!(shared(&[[3.0, 4.0], [3.0, 4.0]]), 5.0);
-    assert_eq!(shared(&[[1.0, 2.0], [-1.0, 2.0]]), 2.0);
-    assert_eq!(shared(&[]), 0.0);
-    assert_eq!(alone(5.0, [3.0, 0.0]), 4.0);
-    assert_eq!(alone(1.0, [3.0, 0.0]), 0.0);
 }

@@ -5,7 +5,7 @@ use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
 use hertzchain_measure::{Options, Shot, measure};
 use hertzchain_rig::{Case, Plan, Shard, campaign};
-use hertzchain_signal::{ChiSquare, Estimate, alone, chi_square, shared};
+use hertzchain_signal::{ChiSquare, Estimate, Moved, alone, chi_square, shared};
 use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
@@ -28,8 +28,8 @@ pub struct Judged {
     pub speed_m_s: Estimate,
     /// Times of flight in s, as measured.
     pub measured_s: [Option<Estimate>; 2],
-    /// How far in s what lies under them may have moved the two pulses of each.
-    pub under_s: [[f64; 2]; 2],
+    /// What may have moved the two pulses of each in all alike shots.
+    pub moved: [[Moved; 2]; 2],
     /// The recorded shot's own in s.
     pub true_s: [f64; 2],
     /// Those of the same chain in equilibrium at the measured speed, in s.
@@ -65,7 +65,7 @@ impl Judged {
         let value = measured.value - model_s;
         value.is_finite().then(|| Estimate {
             value,
-            sigma: alone(measured.sigma, self.under_s[time]).hypot(of_speed),
+            sigma: alone(measured.sigma, self.moved[time]).hypot(of_speed),
         })
     }
 }
@@ -93,7 +93,7 @@ pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
         let own = shots.iter().filter(|s| s.programmed_m_s == speed_m_s);
         let found = own.filter_map(|shot| {
             let departure_s = shot.departure(time, curve)?;
-            Some((departure_s, shot.under_s[time]))
+            Some((departure_s, shot.moved[time]))
         });
         mean(speed_m_s, found.unzip())
     };
@@ -106,10 +106,10 @@ pub fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
     chi_square(&means, &vec![0.0; means.len()], 0)
 }
 
-fn mean(speed_m_s: f64, (found, under_s): (Vec<Estimate>, Vec<[f64; 2]>)) -> Option<Speed> {
+fn mean(speed_m_s: f64, (found, moved): (Vec<Estimate>, Vec<[Moved; 2]>)) -> Option<Speed> {
     let summary = hertzchain_signal::summary(&found)?;
     let squares: f64 = found.iter().map(|one| one.sigma.powi(2)).sum();
-    let shared_s = shared(&under_s);
+    let shared_s = shared(&moved);
     Some(Speed {
         shared_s,
         speed_m_s,
@@ -178,7 +178,9 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
                 flight.map(|flight| flight.incident_s),
                 flight.and_then(|flight| flight.reflected_s),
             ],
-            under_s: flight.map_or([[0.0; 2]; 2], |flight| flight.picks.under_s()),
+            moved: flight
+                .map(|flight| flight.picks.moved())
+                .unwrap_or_default(),
             true_s,
             compact_s,
             own_s: true_s.map(|time_s| time_s * to_measured),

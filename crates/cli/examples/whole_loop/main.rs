@@ -8,7 +8,7 @@
 mod judged;
 
 use hertzchain_measure::Options;
-use hertzchain_signal::{Coverage, coverage, median};
+use hertzchain_signal::{Coverage, Method, Shape, Template, coverage, median};
 use judged::{Judged, Speed, TIMES, agreement, by_speed, judge, run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -41,16 +41,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     for folder in &folders {
         shots.extend(judge(folder, &Options::default())?);
     }
-    if own.exists() {
-        std::fs::remove_dir_all(own)?;
-    }
     let mut cases: Vec<&str> = shots.iter().map(|shot| shot.case.as_str()).collect();
     cases.dedup();
     cases.sort_unstable();
     cases.dedup();
     against_truth(&shots, &cases);
     against_model(&shots, &cases);
-    Ok(())
+    if own.exists() {
+        std::fs::remove_dir_all(own)?;
+        return Ok(());
+    }
+    by_other_methods(&folders, &cases)
 }
 
 fn compact(under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
@@ -103,6 +104,50 @@ fn truth_row(shots: &[&Judged], time: usize) -> Option<String> {
     ))
 }
 
+/// How far the other methods are off at the speed where that is most: medians of a speed's shots.
+fn by_other_methods(folders: &[PathBuf], cases: &[&str]) -> Result<(), Box<dyn Error>> {
+    println!("\nLargest median of a speed's errors by other methods, µs, incident and reflected\n");
+    for (name, method) in others() {
+        let mut options = Options::default();
+        options.measuring.method = method;
+        let mut shots = Vec::new();
+        for folder in folders {
+            shots.extend(judge(folder, &options)?);
+        }
+        for case in cases {
+            let own: Vec<&Judged> = shots.iter().filter(|shot| shot.case == *case).collect();
+            let [incident, reflected] = [0, 1].map(|time| 1e6 * largest_s(&own, time));
+            println!("  {name}, {case}: {incident:+.1}, {reflected:+.1}");
+        }
+    }
+    Ok(())
+}
+
+fn others() -> [(&'static str, Method); 3] {
+    let shape = Shape::cos_power(6.0);
+    [
+        ("onset at 50 %", Method::Onset { fraction: 0.5 }),
+        ("correlation", Method::CrossCorrelation(Template::Passing)),
+        ("matched shape", Method::MatchedShape { shape, width: 2.0 }),
+    ]
+}
+
+fn largest_s(shots: &[&Judged], time: usize) -> f64 {
+    let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let of_speed = |speed: &f64| {
+        let own = shots.iter().filter(|shot| shot.programmed_m_s == *speed);
+        let errors: Vec<f64> = own
+            .filter_map(|shot| Some(shot.error(time)?.value))
+            .collect();
+        median(&errors)
+    };
+    let off = speeds.iter().filter_map(of_speed);
+    off.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .unwrap_or(f64::NAN)
+}
+
 /// A share with its binomial error, in percent.
 fn share(of: Coverage) -> String {
     let error = (of.share * (1.0 - of.share) / of.count as f64).sqrt();
@@ -131,7 +176,8 @@ fn against_model(shots: &[Judged], cases: &[&str]) {
     }
 }
 
-/// Chi-square of all speeds, and the largest departure in stated errors.
+/// Chi-square of all speeds, also without what the shots of a speed share, the largest departure in
+/// stated errors, and how many speeds are within these.
 fn told(rows: &[Speed]) -> String {
     let judged = agreement(rows).map_or(String::new(), |c| {
         format!(
@@ -142,7 +188,15 @@ fn told(rows: &[Speed]) -> String {
     let pulls = rows.iter().map(|row| row.departure_s);
     let pulls: Vec<f64> = pulls.map(|of| (of.value / of.sigma).abs()).collect();
     let largest = pulls.iter().copied().fold(0.0, f64::max);
-    format!("{judged}, at most {largest:.1} errors")
+    let within = coverage(&pulls, 1.96).map_or(0, |found| found.inside);
+    let alone = rows.iter().map(|row| {
+        let own = row.departure_s.sigma.powi(2) - row.shared_s.powi(2);
+        row.departure_s.value.powi(2) / own
+    });
+    format!(
+        "{judged}, without what shots share {:.0}; at most {largest:.1} errors, {within} within 1.96",
+        alone.sum::<f64>()
+    )
 }
 
 fn speed_row(row: &Speed) -> String {

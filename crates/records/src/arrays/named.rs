@@ -87,7 +87,11 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
     let interval_s = interval_s(file, stated_s.or(nameless_s), options)?;
     let speeds = values(SPEEDS)?.unwrap_or_default();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
-    let samples = names.iter().filter(|name| !known.contains(&last(name)));
+    // Single numbers beside them are whatever they are.
+    let several = |name: &str| arrays.shape(name).map_or(true, |shape| !shape.is_empty());
+    let samples = names
+        .iter()
+        .filter(|name| !known.contains(&last(name)) && several(name));
     let samples: Vec<String> = samples.cloned().collect();
     let (records, recordings) = of_samples(&arrays, samples, interval_s, options)?;
     let speeds = Speeds {

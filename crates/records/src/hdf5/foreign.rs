@@ -68,11 +68,8 @@ impl Arrays for Datasets {
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>, RecordError> {
-        let dataset = self.dataset(name)?;
-        let shape = dataset.shape();
-        let samples = numbers(&dataset, &vec![0; shape.len()], &shape);
-        let samples = samples.map_err(|error| refused(&self.file, name, &error))?;
-        Ok(samples.volts())
+        let values = self.dataset(name)?.read_numeric_as::<f64>();
+        values.map_err(|error| refused(&self.file, name, &error))
     }
 
     fn records(

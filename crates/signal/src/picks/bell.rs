@@ -2,7 +2,7 @@
 
 use super::local_model::{Top, finish};
 use super::normal::{Descent, MOST, Normal, descend};
-use super::polynomial::{Polynomial, powers};
+use super::polynomial::{Polynomial, powers, slope_row};
 use super::{Picked, Sight};
 use crate::Pulse;
 
@@ -55,8 +55,17 @@ fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked 
         height_share: height * fit.value_variance(u).sqrt() * excess,
         slope_share: height * fit.slope_variance(u).sqrt() * excess,
         bend: height * at.bend,
+        open_share: height * open_variance(fit, u, sight.broad_noise(pulse)).sqrt() * excess,
     };
     finish(sight, pulse, fit, u, &top)
+}
+
+/// Variance of the slope at u, for unit noise, by coefficients that may be other than the 0 they
+/// are thought to be: C P C with C the covariance and P what is thought beforehand.
+fn open_variance(fit: &Polynomial, u: f64, noise: f64) -> f64 {
+    let along = fit.solution.covariance_with(&slope_row(u));
+    let open = along.iter().skip(SHAPE);
+    open.map(|covariance| (noise * covariance).powi(2)).sum()
 }
 
 /// The bell's logarithm about a centre, and where its maximum is.

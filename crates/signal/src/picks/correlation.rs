@@ -1,7 +1,7 @@
 //! Where a template correlates best with the signal.
 
 use super::local_model;
-use super::{Picked, Sight, Template};
+use super::{Moved, Picked, Sight, Template};
 use crate::Pulse;
 use crate::delay::{largest, quartic_maximum};
 use crate::error::SignalError;
@@ -109,7 +109,7 @@ impl Correlator {
         if let Some(own) = self.own.as_ref().filter(|own| own.at == pulse.at) {
             return Ok(Picked {
                 sigma_s,
-                under_s: 0.0,
+                moved: Moved::default(),
                 misfit: None,
                 ..own.picked
             });
@@ -121,7 +121,7 @@ impl Correlator {
         Ok(Picked {
             time_s,
             sigma_s: sigma_s.hypot(noise * self.products / at_top.height.abs()),
-            under_s: 0.0,
+            moved: Moved::default(),
             misfit: None,
             ..at_top
         })

@@ -1,7 +1,7 @@
 //! Maximum of a polynomial fitted about the largest sample.
 
 use super::polynomial::Polynomial;
-use super::{Picked, Sight};
+use super::{Moved, Picked, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
 
@@ -15,6 +15,8 @@ pub(super) struct Top {
     pub(super) height_share: f64,
     pub(super) slope_share: f64,
     pub(super) bend: f64,
+    /// The part of the slope's share that is of the shape, which the samples leave open.
+    pub(super) open_share: f64,
 }
 
 /// As [`pick`], for a height and a time that need not be free of bias.
@@ -54,6 +56,7 @@ fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked 
         height_share: fit.value_variance(u).sqrt(),
         slope_share: fit.slope_variance(u).sqrt(),
         bend: at.bend,
+        open_share: 0.0,
     };
     finish(sight, pulse, fit, u, &top)
 }
@@ -75,7 +78,10 @@ pub(super) fn finish(
     Picked {
         time_s: time,
         sigma_s: moved_by(noise * top.slope_share).hypot(under),
-        under_s: under,
+        moved: Moved {
+            under_s: under,
+            shape_s: moved_by(noise * top.open_share),
+        },
         height: top.height,
         height_sigma: noise * top.height_share,
         width_s: pulse.width_samples,

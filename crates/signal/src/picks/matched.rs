@@ -1,7 +1,7 @@
 //! A shape fitted to the whole pulse.
 
 use super::normal::{Descent, MOST, Normal, descend};
-use super::{Picked, Shape, Sight};
+use super::{Moved, Picked, Shape, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
 
@@ -39,7 +39,7 @@ pub(super) fn pick(
     Ok(Picked {
         time_s: model.time,
         sigma_s: sigma(1),
-        under_s: 0.0,
+        moved: Moved::default(),
         height: model.height,
         height_sigma: sigma(0),
         width_s: model.width,

@@ -9,6 +9,7 @@ pub(crate) mod normal;
 mod onset;
 pub(crate) mod polynomial;
 mod shape;
+mod under;
 
 pub use bound::{cramer_rao_of_samples_s, cramer_rao_s};
 pub use shape::Shape;
@@ -87,10 +88,8 @@ pub struct Picked {
     /// Standard deviation of that: by the record's noise and, of maxima, by what a
     /// shape leaves open and what lies under a pulse. Other biases are not in it.
     pub sigma_s: f64,
-    /// How far what lies under the pulse may have moved it, with its sign: part of the above,
-    /// which alike shots share and no mean over them makes smaller. 0 of other methods than
-    /// maxima, and in a channel of its own.
-    pub under_s: f64,
+    /// The part of that which alike shots share.
+    pub moved: Moved,
     /// Height above the baseline, or above the fit's own offset, in the samples' unit.
     pub height: f64,
     /// Standard deviation of that by the record's noise.
@@ -102,6 +101,16 @@ pub struct Picked {
     pub misfit: Option<f64>,
 }
 
+/// What may have moved a maximum in all alike shots by the same, so that no mean over them makes
+/// it smaller. 0 of other methods.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// How far in s what lies under the pulse in a summed channel may have moved it, with its sign.
+    pub under_s: f64,
+    /// What the samples leave open of the pulse's shape, in s.
+    pub shape_s: f64,
+}
+
 /// One channel with what turns it upright, as pickers see it.
 pub(crate) struct Sight<'a> {
     pub(crate) samples: &'a [f64],
@@ -109,12 +118,9 @@ pub(crate) struct Sight<'a> {
     pub(crate) rails: Option<Rails>,
     /// Whether both sensors are in this channel.
     pub(crate) summed: bool,
+    /// Sample of the wall's maximum, for the pulse that comes back from there.
+    pub(crate) wall: Option<usize>,
 }
-
-/// Full widths at half maximum from a pulse's maximum to where it has not begun.
-const FOOT: f64 = 1.3;
-/// Width of the stretch there that tells what lies under it.
-const UNDER: f64 = 0.3;
 
 impl Sight<'_> {
     /// Heights from sample `from` to `to`, clipped to the record, and the first's number.
@@ -138,27 +144,6 @@ impl Sight<'_> {
     fn broad_noise(&self, pulse: &Pulse) -> f64 {
         let broad = self.upright.level.broad_noise();
         broad.max(self.upright.rounding(pulse.height))
-    }
-
-    /// Fall, a sample, of what may lie under a pulse in a summed channel: from
-    /// what is there before the pulse begins to nothing at its maximum; under one that
-    /// trails, and whose flat top little can shift far, within its rise.
-    fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
-        let foot = time - 2.0 * FOOT * pulse.sides_samples.0;
-        let length = UNDER * pulse.width_samples;
-        let (_, heights) = self.window(foot - length, foot);
-        if !self.summed || foot <= length {
-            return 0.0;
-        }
-        let count = heights.len() as f64;
-        let mean = heights.iter().sum::<f64>() / count;
-        let noise = self.upright.level.broad_noise();
-        let beyond_noise = (mean * mean - noise * noise / count).max(0.0);
-        let within = match pulse.trails() {
-            true => pulse.sides_samples.0,
-            false => time - foot,
-        };
-        beyond_noise.sqrt().copysign(mean) / within
     }
 
     /// `left` over the noise, if there is noise.
@@ -202,6 +187,7 @@ pub fn pick(
         upright: found.sensor,
         rails: rails[0],
         summed: matches!(channels, Channels::Summed(_)),
+        wall: None,
     };
     let at_wall = Sight {
         samples: channels.wall(),
@@ -209,9 +195,13 @@ pub fn pick(
         rails: rails[1],
         ..sensor
     };
+    let coming_back = Sight {
+        wall: Some(wall.at),
+        ..sensor
+    };
     let picker = Picker::new(method, &sensor, &passing, interval_s)?;
     let finish = |picked: Picked| picked.in_seconds(interval_s);
-    let picked = |pulse: Pulse| picker.pick(&sensor, &pulse).ok();
+    let picked = |pulse: Pulse| picker.pick(&coming_back, &pulse).ok();
     let returning = found.returning.and_then(picked);
     Ok(Picks {
         passing: finish(picker.pick(&sensor, &passing)?),
@@ -226,7 +216,10 @@ impl Picked {
         Self {
             time_s: self.time_s * interval_s,
             sigma_s: self.sigma_s * interval_s,
-            under_s: self.under_s * interval_s,
+            moved: Moved {
+                under_s: self.moved.under_s * interval_s,
+                shape_s: self.moved.shape_s * interval_s,
+            },
             width_s: self.width_s * interval_s,
             ..self
         }

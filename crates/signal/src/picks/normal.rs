@@ -158,12 +158,17 @@ impl Normal {
 impl Solution {
     /// Variance of Σ row_k · parameter_k for unit noise.
     pub(crate) fn variance(&self, row: &[f64; MOST]) -> f64 {
-        let n = self.size;
-        let mut sum = 0.0;
-        for (weight, line) in row.iter().zip(&self.inverse).take(n) {
-            let along: f64 = line.iter().zip(row).take(n).map(|(c, r)| c * r).sum();
-            sum += weight * along;
-        }
-        sum
+        let along = self.covariance_with(row);
+        let used = row.iter().zip(along).take(self.size);
+        used.map(|(weight, along)| weight * along).sum()
+    }
+
+    /// Covariance of each parameter with Σ row_k · parameter_k for unit noise.
+    pub(crate) fn covariance_with(&self, row: &[f64; MOST]) -> [f64; MOST] {
+        let along = |line: &[f64; MOST]| {
+            let terms = line.iter().zip(row).take(self.size);
+            terms.map(|(c, r)| c * r).sum()
+        };
+        std::array::from_fn(|k| along(&self.inverse[k]))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::local_model;
 use super::polynomial::Polynomial;
-use super::{Picked, Sight};
+use super::{Moved, Picked, Sight};
 use crate::Pulse;
 use crate::error::SignalError;
 
@@ -30,7 +30,7 @@ pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Pi
     Ok(Picked {
         time_s: fit.sample(u),
         sigma_s: (of_value + of_height).sqrt() / slope,
-        under_s: 0.0,
+        moved: Moved::default(),
         misfit: sight.misfit(pulse, fit.left),
         ..top
     })

@@ -108,13 +108,18 @@ impl Polynomial {
 
     /// Variance of the slope at u for unit noise.
     pub(crate) fn slope_variance(&self, u: f64) -> f64 {
-        let mut row = [0.0; MOST];
-        let below = powers(u);
-        for k in 1..MOST {
-            row[k] = k as f64 * below[k - 1];
-        }
-        self.solution.variance(&row)
+        self.solution.variance(&slope_row(u))
     }
+}
+
+/// 0, 1, 2 u, 3 u² and so on.
+pub(crate) fn slope_row(u: f64) -> [f64; MOST] {
+    let mut row = [0.0; MOST];
+    let below = powers(u);
+    for k in 1..MOST {
+        row[k] = k as f64 * below[k - 1];
+    }
+    row
 }
 
 /// 1, u, u² and so on.

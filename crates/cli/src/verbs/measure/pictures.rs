@@ -2,7 +2,7 @@
 
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
 use hertzchain_measure::{Case, Curves, Example, SpeedRow};
-use hertzchain_signal::{FitError, Flight, PowerLaw, Ratio, Summary};
+use hertzchain_signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
 
 /// Examples that fit on a page.
 const MOST: usize = 4;
@@ -57,7 +57,8 @@ fn title(example: &Example, flight: &Flight) -> String {
     format!("{case}{speed}incident {incident_us:.2} µs")
 }
 
-/// Times of flight against speed with error bars and their power laws.
+/// Times of flight at the mean speeds with all their errors, and their power laws, dashed where
+/// the errors do not allow any.
 pub fn times(curves: &Curves) -> Figure {
     let chart = |title: &str| {
         Chart::new("Speed of the striker (m/s)", "Time of flight (µs)")
@@ -72,12 +73,8 @@ pub fn times(curves: &Curves) -> Figure {
     let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
     for (number, case) in curves.cases.iter().enumerate() {
         let laws = &case.laws;
-        incident = with_curve(incident, (number, case), &laws.incident, |row| {
-            Some(row.incident_s)
-        });
-        reflected = with_curve(reflected, (number, case), &laws.reflected, |row| {
-            row.reflected_s
-        });
+        incident = with_curve(incident, (number, case), &laws.incident, 0);
+        reflected = with_curve(reflected, (number, case), &laws.reflected, 1);
     }
     let figure = Figure::double_column(75.0).columns(2).letters();
     figure.panel(incident).panel(reflected)
@@ -91,30 +88,34 @@ fn with_curve(
     chart: Chart,
     (number, case): (usize, &Case),
     law: &Result<PowerLaw, FitError>,
-    of: impl Fn(&SpeedRow) -> Option<Summary>,
+    time: usize,
 ) -> Chart {
-    let known: Vec<(&SpeedRow, Summary)> = case
+    let known: Vec<(&SpeedRow, Estimate)> = case
         .rows
         .iter()
-        .filter_map(|row| Some((row, of(row)?)))
+        .filter_map(|row| Some((row, row.at_mean_speed_s[time]?)))
         .collect();
-    let column = |value: &dyn Fn(&(&SpeedRow, Summary)) -> f64| -> Vec<f64> {
+    let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
         known.iter().map(value).collect()
     };
     // A single shot may have no error: then there is no bar.
     let bar = |error: f64| if error.is_finite() { error } else { 0.0 };
     let speeds = column(&|point| point.0.speed_m_s.value);
-    let times = column(&|point| 1e6 * point.1.mean);
+    let times = column(&|point| 1e6 * point.1.value);
     let points = Series::points(&case.name, &speeds, &times)
         .marker(marker(number))
-        .y_error(&column(&|point| 1e6 * bar(point.1.error)))
+        .y_error(&column(&|point| 1e6 * bar(point.1.sigma)))
         .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
     let fitted = column(&|point| match law {
         Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
         Err(_) => f64::NAN,
     });
     let colour = colour(number);
-    let line = Series::line("", &speeds, &fitted).dash(Dash::Solid);
+    let dash = match law.as_ref().map(PowerLaw::is_supported) {
+        Ok(Some(false)) => Dash::Dashed,
+        _ => Dash::Solid,
+    };
+    let line = Series::line("", &speeds, &fitted).dash(dash);
     chart
         .with(points.colour(colour))
         .with(line.colour(colour).width(FIT_WIDTH))
