@@ -2,7 +2,7 @@
 
 use crate::Parameter;
 use crate::problem::{ModelError, Problem, Residuals};
-use hertzchain_study::{Fingerprint, Inputs};
+use hertzchain_study::{Fingerprint, Inputs, count_done};
 use std::sync::OnceLock;
 
 /// What became of the points of a batch, in their order.
@@ -91,7 +91,10 @@ impl<'a> Spread<'a> {
         let found = (self.compute)(&batches)?;
         let sizes = batches.iter().map(|batch| batch.points.len());
         match found.iter().map(Vec::len).eq(sizes) {
-            true => Ok(found.into_iter().flatten().collect()),
+            true => {
+                count_done(points.len());
+                Ok(found.into_iter().flatten().collect())
+            }
             false => Err("batches came back with other numbers of points".to_owned()),
         }
     }

@@ -1,9 +1,9 @@
 //! Many shots as columns of numbers.
 
-use hertzchain_study::Shot;
-use numpy::IntoPyArray;
+use hertzchain_study::{Odd, Shot};
+use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
 /// What a column is called and which number of a shot stands in it.
 type Column = (&'static str, fn(&Shot) -> Option<f64>);
@@ -66,4 +66,43 @@ impl Columns {
         }
         Ok(all)
     }
+}
+
+/// Numbers and rows between two looks for signals: a few milliseconds.
+const LOOK_EVERY: usize = 1 << 16;
+
+/// Numbers of an array of any layout, in the order of a C array; broken off by a signal.
+pub fn copied(py: Python<'_>, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
+    let array = array.as_array();
+    let mut copy = Vec::with_capacity(array.len());
+    for (at, number) in array.iter().enumerate() {
+        if at % LOOK_EVERY == 0 {
+            py.check_signals()?;
+        }
+        copy.push(*number);
+    }
+    Ok(copy)
+}
+
+/// Rows as a list; broken off by a signal.
+pub fn list<'py, T: IntoPyObject<'py>>(
+    py: Python<'py>,
+    rows: impl IntoIterator<Item = T>,
+) -> PyResult<Bound<'py, PyList>> {
+    let list = PyList::empty(py);
+    for (at, row) in rows.into_iter().enumerate() {
+        if at % LOOK_EVERY == 0 {
+            py.check_signals()?;
+        }
+        list.append(row)?;
+    }
+    Ok(list)
+}
+
+/// The first shot of which there is something to say, what, and of how many.
+pub type Told = (usize, Vec<String>, usize);
+
+/// What is odd, if anything is.
+pub fn told(odd: Option<Odd>) -> Option<Told> {
+    odd.map(|odd| (odd.place, odd.lines, odd.shots))
 }

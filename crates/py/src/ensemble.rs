@@ -1,19 +1,20 @@
 //! Ensembles: shots over arrays of speeds and of named numbers.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, copied, list, told};
 use crate::experiment::Experiment;
 use crate::failure::{Failed, of_path};
-use crate::job::{Job, Meter};
+use crate::job::Job;
 use crate::sweep::{Asked, judges, representative};
 use hertzchain_experiment as experiment;
+use hertzchain_experiment::Warning;
 use hertzchain_study::{
-    InstructionSet, Judges, Plan, Shot, StudyError, Tuned, shoot_all, shoot_tuned, shoot_unjudged,
-    stopped,
+    InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, shoot_all, shoot_tuned,
+    shoot_unjudged, stopped,
 };
 use hertzchain_verbs::arguments::{How, parsed};
 use hertzchain_verbs::failure::{Failure, of_speed};
 use hertzchain_verbs::input;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -27,22 +28,24 @@ const NEIGHBOURS: usize = 64;
 /// Rows among which pilots are looked for.
 const PILOT_ROWS: usize = 1000;
 
+/// A row's plan with what is odd about it in words, or why there is none.
+type Planned = Result<(Plan, Vec<String>), String>;
+
 /// Rows of speeds and numbers.
 struct Rows<'a> {
     experiment: &'a experiment::Experiment,
     speeds_m_s: Vec<f64>,
     names: Vec<String>,
-    /// All values of the first name, then those of the second.
-    values: Vec<f64>,
+    /// Of each name, one a row.
+    values: Vec<Vec<f64>>,
     how: &'a How,
     rebound: bool,
 }
 
 impl Rows<'_> {
     fn values_at(&self, row: usize) -> Vec<f64> {
-        let count = self.speeds_m_s.len();
-        let of = |name: usize| self.values.get(name * count + row).copied();
-        (0..self.names.len()).filter_map(of).collect()
+        let of = |values: &Vec<f64>| values.get(row).copied();
+        self.values.iter().filter_map(of).collect()
     }
 
     fn with(&self, values: &[f64]) -> Result<experiment::Experiment, String> {
@@ -57,7 +60,7 @@ impl Rows<'_> {
     }
 
     /// Plans of consecutive rows, or why a row has none.
-    fn plans(&self, rows: &[usize]) -> Vec<Result<Plan, String>> {
+    fn plans(&self, rows: &[usize]) -> Vec<Planned> {
         let mut latest: Option<(Vec<f64>, Result<experiment::Experiment, String>)> = None;
         let mut one = |row: usize| {
             if stopped() {
@@ -80,16 +83,16 @@ impl Rows<'_> {
         rows.iter().map(|row| one(*row)).collect()
     }
 
-    fn plan(&self, changed: &experiment::Experiment, row: usize) -> Result<Plan, String> {
+    fn plan(&self, changed: &experiment::Experiment, row: usize) -> Planned {
         let speed_m_s = self.speeds_m_s.get(row).copied();
-        let (mut plan, _warnings) = Plan::from_experiment(changed, speed_m_s)
+        let (mut plan, warnings) = Plan::from_experiment(changed, speed_m_s)
             .map_err(|wrong| of_speed(&wrong).unwrap_or_else(|| wrong.to_string()))?;
         input::adjust(self.how, &mut plan);
         plan.rebound = self.rebound;
-        Ok(plan)
+        Ok((plan, warnings.iter().map(Warning::one_line).collect()))
     }
 
-    fn planned(&self, rows: &[usize]) -> Vec<Result<Plan, String>> {
+    fn planned(&self, rows: &[usize]) -> Vec<Planned> {
         let parts: Vec<Vec<_>> = rows
             .par_chunks(NEIGHBOURS)
             .map(|part| self.plans(part))
@@ -102,7 +105,8 @@ impl Rows<'_> {
         let count = self.speeds_m_s.len();
         let step = count.div_ceil(PILOT_ROWS).max(1);
         let some: Vec<usize> = (0..count).step_by(step).collect();
-        let plans: Vec<Plan> = self.planned(&some).into_iter().flatten().collect();
+        let sound = self.planned(&some).into_iter().flatten();
+        let plans: Vec<Plan> = sound.map(|(plan, _)| plan).collect();
         Tuned::new(&Tuned::pilots(&plans), set)
     }
 }
@@ -128,9 +132,9 @@ impl Shooting {
         plans: &[Plan],
         set: InstructionSet,
         checked: bool,
-        meter: &Meter,
+        stop: &Stop,
     ) -> Vec<Result<Shot, StudyError>> {
-        let seen = || meter.count();
+        let seen = || stop.count(1);
         match self {
             Self::Judged => shoot_all(plans, set, checked, &seen),
             Self::Tuned(tuned) => shoot_tuned(plans, tuned, set, &seen),
@@ -143,42 +147,65 @@ impl Shooting {
     }
 }
 
-/// Columns, and why rows have none.
-type Fired = (Columns, Vec<(usize, String)>);
+/// What came of rows.
+#[derive(Default)]
+struct Fired {
+    columns: Columns,
+    /// Why rows have no shot.
+    errors: Vec<(usize, String)>,
+    odd: Option<Odd>,
+}
 
-fn fired(
-    rows: &Rows<'_>,
-    judges: Option<Judges>,
-    set: InstructionSet,
-    meter: &Meter,
-) -> Result<Fired, Failure> {
-    let shooting = Shooting::of(judges, rows, set);
-    let mut columns = Columns::default();
-    let mut errors = Vec::new();
-    let all: Vec<usize> = (0..rows.speeds_m_s.len()).collect();
-    for part in all.chunks(TOGETHER) {
-        let planned = rows.planned(part);
-        let plans: Vec<Plan> = planned.iter().flatten().cloned().collect();
-        let mut shots = shooting
-            .shots(&plans, set, rows.how.check, meter)
-            .into_iter();
-        for (row, plan) in part.iter().zip(planned) {
-            let shot = match plan {
-                Ok(_) => shots.next().map(|shot| shot.map_err(|why| why.to_string())),
-                Err(why) => {
-                    meter.count();
-                    Some(Err(why))
-                }
-            };
-            let shot = shot.unwrap_or_else(|| Err(StudyError::Stopped.to_string()));
-            columns.push(shot.as_ref().ok());
-            errors.extend(shot.err().map(|why| (*row, why)));
+impl Fired {
+    /// Of all rows, some thousands at a time.
+    fn of(
+        rows: &Rows<'_>,
+        judges: Option<Judges>,
+        set: InstructionSet,
+        stop: &Stop,
+    ) -> Result<Self, Failure> {
+        let shooting = Shooting::of(judges, rows, set);
+        let mut fired = Self::default();
+        let count = rows.speeds_m_s.len();
+        for first in (0..count).step_by(TOGETHER) {
+            let part: Vec<usize> = (first..count.min(first + TOGETHER)).collect();
+            let planned = rows.planned(&part);
+            let sound = planned.iter().flatten();
+            let plans: Vec<Plan> = sound.map(|(plan, _)| plan.clone()).collect();
+            let shots = shooting.shots(&plans, set, rows.how.check, stop);
+            if stopped() {
+                return Err(Failure::User(StudyError::Stopped.to_string()));
+            }
+            let mut shots = shots.into_iter();
+            for (row, planned) in part.into_iter().zip(planned) {
+                fired.take(row, planned, &mut shots, stop);
+            }
         }
-        if stopped() {
-            return Err(Failure::User(StudyError::Stopped.to_string()));
-        }
+        Ok(fired)
     }
-    Ok((columns, errors))
+
+    /// One row more; its shot is the next if it has a plan.
+    fn take(
+        &mut self,
+        row: usize,
+        planned: Planned,
+        shots: &mut impl Iterator<Item = Result<Shot, StudyError>>,
+        stop: &Stop,
+    ) {
+        let shot = match planned {
+            Ok((_, warnings)) => {
+                Odd::add(&mut self.odd, row, &warnings);
+                let shot = shots.next().unwrap_or(Err(StudyError::Stopped));
+                shot.map_err(|why| why.to_string())
+            }
+            Err(why) => {
+                stop.count(1);
+                Err(why)
+            }
+        };
+        self.columns.push(shot.as_ref().ok());
+        self.errors.extend(shot.err().map(|why| (row, why)));
+    }
 }
 
 /// Shots of rows of speeds and numbers.
@@ -187,9 +214,9 @@ fn fired(
 pub fn ensemble<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    speeds_m_s: PyReadonlyArray1<'py, f64>,
+    speeds_m_s: PyReadonlyArrayDyn<'py, f64>,
     names: Vec<String>,
-    values: PyReadonlyArray2<'py, f64>,
+    values: Vec<PyReadonlyArrayDyn<'py, f64>>,
     asked: Asked,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -202,20 +229,33 @@ pub fn ensemble<'py>(
     let set = input::instruction_set().map_err(Failed::from)?;
     let rows = Rows {
         experiment: &experiment.inner,
-        speeds_m_s: speeds_m_s.as_array().to_vec(),
-        values: values.as_array().iter().copied().collect(),
+        speeds_m_s: copied(py, &speeds_m_s)?,
+        values: all_copied(py, &values)?,
         names,
         how: &how,
         rebound: asked.rebound,
     };
-    if rows.values.len() != rows.names.len() * rows.speeds_m_s.len() {
+    let count = rows.speeds_m_s.len();
+    if rows.values.len() != rows.names.len() || rows.values.iter().any(|own| own.len() != count) {
         let text = "every name needs as many values as there are speeds";
         return Err(Failed::from(Failure::User(text.to_owned())).into());
     }
     let job = Job::pooled(progress, asked.threads);
-    let (columns, errors) = job.run(py, |meter| fired(&rows, judges, set, meter))?;
-    let told = PyDict::new(py);
-    told.set_item("columns", columns.arrays(py)?)?;
-    told.set_item("errors", errors)?;
-    Ok(told)
+    let fired = job.run(py, |stop| Fired::of(&rows, judges, set, stop))?;
+    let found = PyDict::new(py);
+    found.set_item("speed_m_s", rows.speeds_m_s.into_pyarray(py))?;
+    let values = rows.values.into_iter().map(|own| own.into_pyarray(py));
+    found.set_item("values", values.collect::<Vec<_>>())?;
+    found.set_item("columns", fired.columns.arrays(py)?)?;
+    found.set_item("errors", list(py, fired.errors)?)?;
+    found.set_item("odd", told(fired.odd))?;
+    Ok(found)
+}
+
+/// Numbers of several arrays.
+pub fn all_copied(
+    py: Python<'_>,
+    arrays: &[PyReadonlyArrayDyn<'_, f64>],
+) -> PyResult<Vec<Vec<f64>>> {
+    arrays.iter().map(|array| copied(py, array)).collect()
 }

@@ -18,7 +18,26 @@ enum Change {
     Case(String),
 }
 
-/// A described experiment, valid and in SI.
+/// A described experiment, valid and in SI; unchangeable and picklable.
+///
+/// Made by `hertzchain.load`, `hertzchain.preset` or `hertzchain.build`.
+///
+/// Attributes
+/// ----------
+/// name, title, text : str
+///     Of the file or preset: its name, what it is, all that it says.
+/// speed_m_s : float or None
+///     Speed of the striker in m/s.
+/// beads, sensor_bead : int
+///     Number N of beads; number n of the one whose signal times the pulses.
+/// has_wall, is_dimensionless : bool
+///     Whether bead N leans on something; whether K = m = 1 stands for SI.
+/// cases : list of str
+///     Names of the chains that a campaign measures.
+///
+/// References
+/// ----------
+/// Words, signs and units: docs/conventions.md.
 #[pyclass(frozen, module = "hertzchain", name = "Experiment")]
 #[derive(Clone, Debug)]
 pub struct Experiment {
@@ -73,20 +92,45 @@ impl Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Reads an experiment file.
+    /// Reads an experiment file: see `hertzchain.load`.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
     #[staticmethod]
     fn open(path: std::path::PathBuf) -> Result<Self, Failed> {
         let read = experiment::Experiment::open(path);
         Ok(Self::read(read.map_err(of_file)?))
     }
 
-    /// Reads an experiment from text; its name is used in messages.
+    /// Reads an experiment from text: see `hertzchain.build`.
+    ///
+    /// Parameters
+    /// ----------
+    /// name, text : str
+    ///     The name that messages use, and TOML.
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
     #[staticmethod]
     fn from_text(name: &str, text: &str) -> Result<Self, Failed> {
         Ok(Self::read(experiment::Experiment::from_text(name, text)?))
     }
 
-    /// An experiment that comes with the program.
+    /// An experiment that comes with the program: see `hertzchain.preset`.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
     #[staticmethod]
     fn preset(name: &str) -> Result<Self, Failed> {
         let found = experiment::preset(name);
@@ -110,52 +154,66 @@ impl Experiment {
         Ok((restored, parts.into_pyobject(py)?))
     }
 
+    /// Name of the file or preset.
     #[getter]
     fn name(&self) -> &str {
         self.inner.name()
     }
 
+    /// What the experiment is.
     #[getter]
     fn title(&self) -> &str {
         self.inner.title()
     }
 
+    /// The file's text, as it was read.
     #[getter]
     fn text(&self) -> &str {
         self.inner.text()
     }
 
+    /// Whether K = m = 1 stands for SI.
     #[getter]
     fn is_dimensionless(&self) -> bool {
         self.inner.units() == Units::Dimensionless
     }
 
+    /// Speed of the striker in m/s; None without a striker.
     #[getter]
     fn speed_m_s(&self) -> Option<f64> {
         self.inner.speed_m_s()
     }
 
+    /// Number N of beads.
     #[getter]
     fn beads(&self) -> usize {
         self.inner.beads()
     }
 
+    /// Number n of the bead whose signal times the pulses.
     #[getter]
     fn sensor_bead(&self) -> usize {
         self.inner.sensor_bead()
     }
 
+    /// Whether bead N leans on something, so that there is a wall signal.
     #[getter]
     fn has_wall(&self) -> bool {
         self.inner.has_wall()
     }
 
+    /// Names of the chains that a campaign measures.
     #[getter]
     fn cases(&self) -> Vec<&str> {
         self.inner.cases()
     }
 
-    /// Every number that the file gives: path, value in SI, unit.
+    /// Every number that the file gives.
+    ///
+    /// Returns
+    /// -------
+    /// list of (str, float, str)
+    ///     Path, value in SI, SI unit.
     fn numbers(&self) -> Vec<(String, f64, String)> {
         let all = self.inner.numbers().into_iter();
         all.map(|named| (named.path, named.value, named.unit))
@@ -163,11 +221,40 @@ impl Experiment {
     }
 
     /// One number in SI.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str
+    ///     Its path, or an unmistakable end of it.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A path that is no number's, or several'.
     fn get(&self, path: &str) -> Result<f64, Failed> {
         Ok(self.inner.get(path).map_err(of_path)?)
     }
 
-    /// This experiment with numbers set: in SI, or as text with a unit.
+    /// This experiment with numbers set.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : dict of str to float or str
+    ///     By path: in SI, or as text with a unit.
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
+    ///     Another one; this stays as it is.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError, ExperimentError
+    ///     Paths and values that do not fit.
     fn set(&self, values: Bound<'_, PyDict>) -> PyResult<Self> {
         let (mut numbers, mut texts) = (Vec::new(), Vec::new());
         for (path, value) in values {
@@ -188,6 +275,20 @@ impl Experiment {
     }
 
     /// The chain of one of a campaign's cases.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     One of ``cases``.
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A name that no case has.
     fn case(&self, name: &str) -> Result<Self, Failed> {
         self.changed(Change::Case(name.to_owned()))
     }

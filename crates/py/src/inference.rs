@@ -5,15 +5,17 @@ use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
 use hertzchain_infer::gauge::{Chains, known_oils, oils};
-use hertzchain_infer::{CurveProblem, Data};
+use hertzchain_infer::{CurveProblem, Data, Problem};
 use hertzchain_verbs::arguments::infer::{Design, Fit, Gauge, Measured};
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::fit::pulses;
 use hertzchain_verbs::inference::{changed, in_case, model, parsed as data, problem, user};
 use hertzchain_verbs::{design as designing, fit as fitting, gauge as gauging};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 /// A table by name and text.
 pub type Table = (String, String);
@@ -29,21 +31,60 @@ fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Res
 
 /// Contact parameters from times of flight.
 #[pyfunction]
-#[pyo3(signature = (table, experiment, options))]
+#[pyo3(signature = (table, experiment, options, progress))]
 pub fn fit<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
     options: Vec<String>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Fit = parsed("fit", &options).map_err(Failed::from)?;
+    found(py, &options, progress, |arguments| {
+        let problem = posed(&table, experiment, arguments)?;
+        let fitted = fitting::fitted(problem, arguments)?;
+        Ok(Found::of(&fitted, arguments))
+    })
+}
+
+fn found<'py>(
+    py: Python<'py>,
+    options: &[String],
+    progress: Option<Bound<'py, PyAny>>,
+    fitted: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments: Fit = parsed("fit", options).map_err(Failed::from)?;
     let threads = arguments.modelled.threads.unwrap_or(0);
-    let found = Job::pooled(None, threads).run(py, |_| {
-        let problem = posed(&table, experiment, &arguments)?;
-        let fitted = fitting::fitted(problem, &arguments)?;
-        Ok(Found::of(&fitted, &arguments))
-    })?;
+    let found = Job::pooled(progress, threads).run(py, |_| fitted(&arguments))?;
     found.told(py)
+}
+
+/// Whether a file is a table of curves; what else can be read is a recording.
+#[pyfunction]
+pub fn is_table(path: PathBuf) -> PyResult<bool> {
+    Ok(hertzchain_verbs::inference::is_table(&path).map_err(Failed::from)?)
+}
+
+/// Contact parameters from whole pulses of recordings.
+#[pyfunction]
+#[pyo3(signature = (experiment, options, progress))]
+pub fn fit_pulses<'py>(
+    py: Python<'py>,
+    experiment: &Experiment,
+    options: Vec<String>,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    found(py, &options, progress, |arguments| {
+        let case = arguments.measured.case.as_deref().unwrap_or_default();
+        let inner = in_case(experiment.inner.clone(), case)?;
+        let inner = changed(inner, &arguments.modelled.set)?;
+        let recorded = pulses::recorded_of(&inner, arguments)?;
+        let fitted = pulses::fitted(recorded, arguments)?;
+        Ok(Found {
+            fit: pulses::json(&fitted, arguments),
+            rows: pulses::rows_json(&pulses::shown(&fitted)?),
+            samples: samples(&fitted.inferred),
+        })
+    })
 }
 
 /// What is to be fitted to what.
@@ -72,7 +113,7 @@ impl Found {
         Self {
             fit: fitting::json(fitted, arguments),
             rows: fitting::rows_json(fitted),
-            samples: samples(fitted),
+            samples: samples(&fitted.inferred),
         }
     }
 
@@ -90,8 +131,8 @@ impl Found {
 }
 
 /// Samples of a posterior, parameter by parameter, and how many parameters there are.
-fn samples(fitted: &fitting::Fitted) -> Option<(usize, Vec<f64>)> {
-    match &fitted.inferred.more {
+fn samples(inferred: &fitting::Inferred) -> Option<(usize, Vec<f64>)> {
+    match &inferred.more {
         fitting::More::Sampled(sampled) => {
             let posterior = sampled.posterior.as_ref().ok()?;
             let parameters = posterior.mean.len();
@@ -106,16 +147,17 @@ fn samples(fitted: &fitting::Fitted) -> Option<(usize, Vec<f64>)> {
 
 /// What to measure next.
 #[pyfunction]
-#[pyo3(signature = (table, experiment, options))]
+#[pyo3(signature = (table, experiment, options, progress))]
 pub fn design<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
     options: Vec<String>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Design = parsed("design", &options).map_err(Failed::from)?;
     let threads = arguments.modelled.threads.unwrap_or(0);
-    let found = Job::pooled(None, threads).run(py, |_| {
+    let found = Job::pooled(progress, threads).run(py, |_| {
         let data = read(&table, &arguments.measured, None)?;
         let speeds = designing::speeds(&data, &arguments)?;
         let inner = in_case(experiment.inner.clone(), &data.case)?;
@@ -124,24 +166,28 @@ pub fn design<'py>(
         let problem: CurveProblem = problem(model, data, &arguments.freed)?;
         let targets = designing::targets(&problem, &arguments)?;
         let found = designing::designed(&problem, &targets, &speeds, &arguments)?;
-        Ok(designing::json(&problem, &found))
+        let mut told = designing::json(&problem, &found);
+        let unit = |at: &usize| problem.parameters()[*at].unit.clone();
+        told["units"] = targets.iter().map(unit).collect();
+        Ok(told)
     })?;
     json::object(py, &found)
 }
 
 /// Which oil is on the contacts.
 #[pyfunction]
-#[pyo3(signature = (tables, experiments, more_oils, options))]
+#[pyo3(signature = (tables, experiments, more_oils, options, progress))]
 pub fn gauge<'py>(
     py: Python<'py>,
     tables: (Table, Table),
     experiments: (PyRef<'py, Experiment>, PyRef<'py, Experiment>),
     more_oils: Option<Table>,
     options: Vec<String>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Gauge = parsed("gauge", &options).map_err(Failed::from)?;
     let (wet_model, dry_model) = (experiments.0.inner.clone(), experiments.1.inner.clone());
-    let found = Job::pooled(None, arguments.threads.unwrap_or(0)).run(py, |_| {
+    let found = Job::pooled(progress, arguments.threads.unwrap_or(0)).run(py, |_| {
         let measured = &arguments.measured;
         let wet = read(&tables.0, measured, arguments.wet_case.as_ref())?;
         let dry = read(&tables.1, measured, arguments.dry_case.as_ref())?;

@@ -17,17 +17,6 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Room for deep calls, as a main thread has.
 const STACK_BYTES: usize = 16 << 20;
 
-/// What is done so far, counted from any thread.
-#[derive(Debug, Default)]
-pub struct Meter(AtomicU64);
-
-impl Meter {
-    /// One more is done.
-    pub fn count(&self) {
-        self.0.fetch_add(1, Ordering::Relaxed);
-    }
-}
-
 /// Where a job is computed.
 #[derive(Clone, Copy, Debug)]
 pub enum Threads {
@@ -45,6 +34,8 @@ pub struct Job<'py> {
     pub threads: Threads,
     /// Asked once Python wants no more.
     pub stop: Stop,
+    /// What progress is told of.
+    counted: fn(&Stop) -> u64,
 }
 
 impl<'py> Job<'py> {
@@ -54,6 +45,7 @@ impl<'py> Job<'py> {
             progress,
             threads: Threads::Many(threads),
             stop: Stop::default(),
+            counted: Stop::done,
         }
     }
 
@@ -63,25 +55,35 @@ impl<'py> Job<'py> {
             progress: None,
             threads: Threads::One,
             stop: Stop::default(),
+            counted: Stop::done,
+        }
+    }
+
+    /// In one thread, telling of the steps of a single shot.
+    pub fn of_steps(progress: Option<Bound<'py, PyAny>>) -> Self {
+        Self {
+            progress,
+            counted: Stop::steps,
+            ..Self::alone()
         }
     }
 
     /// Computes without Python's lock. A signal, or a progress that raises,
-    /// breaks off and is raised.
+    /// breaks off and is raised. Progress is told of what is counted on the
+    /// [`Stop`] that the work gets.
     ///
     /// # Errors
     /// What Python raised meanwhile, or what `work` says.
     pub fn run<T: Send>(
         self,
         py: Python<'py>,
-        work: impl FnOnce(&Meter) -> Result<T, Failure> + Send,
+        work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
     ) -> PyResult<T> {
-        let meter = Meter::default();
         let teller = self.progress.map(Bound::unbind);
-        let (stop, threads) = (self.stop, self.threads);
+        let (stop, threads, counted) = (self.stop, self.threads, self.counted);
         let told = AtomicU64::new(0);
         let tell = || {
-            let done = meter.0.load(Ordering::Relaxed);
+            let done = counted(&stop);
             let news = done - told.swap(done, Ordering::Relaxed);
             Python::attach(|py| match &teller {
                 Some(teller) if news > 0 => teller.call1(py, (news,)).map(drop),
@@ -89,7 +91,7 @@ impl<'py> Job<'py> {
             })
         };
         let look = || Python::attach(|py| py.check_signals()).and_then(|()| tell());
-        let (outcome, raised) = py.detach(|| watched(&stop, threads, || work(&meter), look));
+        let (outcome, raised) = py.detach(|| watched(&stop, threads, || work(&stop), look));
         match raised {
             Some(error) => Err(error),
             None => {

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Number, Value};
 
-/// Dicts, lists, strings, numbers, None; no digit is lost on the way.
+/// Dicts, lists, strings, numbers, None; no digit is lost on the way. Broken off by a signal.
 pub fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     match value {
         Value::Null => Ok(py.None().into_bound(py)),
@@ -12,7 +12,8 @@ pub fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>
         Value::Number(value) => number(py, value),
         Value::String(text) => Ok(text.into_pyobject(py)?.into_any()),
         Value::Array(values) => {
-            let all: PyResult<Vec<_>> = values.iter().map(|value| object(py, value)).collect();
+            let one = |value| py.check_signals().and_then(|()| object(py, value));
+            let all: PyResult<Vec<_>> = values.iter().map(one).collect();
             Ok(PyList::new(py, all?)?.into_any())
         }
         Value::Object(fields) => {

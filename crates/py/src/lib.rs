@@ -28,7 +28,7 @@ mod _hertzchain {
     #[pymodule_export]
     use super::experiment::{Experiment, presets, schema};
     #[pymodule_export]
-    use super::inference::{design, fit, gauge};
+    use super::inference::{design, fit, fit_pulses, gauge, is_table};
     #[pymodule_export]
     use super::law::Force;
     #[pymodule_export]

@@ -2,14 +2,15 @@
 
 use crate::experiment::Experiment;
 use crate::failure::Failed;
-use crate::job::{Job, Meter};
+use crate::job::Job;
 use crate::json;
 use hertzchain_measure::{Curves, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
 use hertzchain_rig::{Plan, RigError};
-use hertzchain_study::stopped;
+use hertzchain_study::{Stop, stopped};
 use hertzchain_verbs::arguments::measure::Measure;
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
+use hertzchain_verbs::inference::wanted;
 use hertzchain_verbs::measure as measuring;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -40,11 +41,11 @@ pub fn campaign<'py>(
     let part = part.map_err(|error: hertzchain_rig::ShardError| {
         Failed::from(Failure::User(error.to_string()))
     })?;
-    let (done, seed) = Job::pooled(progress, threads).run(py, |meter| {
+    let (done, seed) = Job::pooled(progress, threads).run(py, |stop| {
         let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
         let watch = |progress: hertzchain_rig::Progress| {
             if progress.fired > 0 {
-                meter.count();
+                stop.count(1);
             }
         };
         let done = hertzchain_rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
@@ -60,11 +61,11 @@ pub fn campaign<'py>(
     Ok(told)
 }
 
-struct Counted<'a>(&'a Meter);
+struct Counted<'a>(&'a Stop);
 
 impl Watch for Counted<'_> {
     fn seen(&self) {
-        self.0.count();
+        self.0.count(1);
     }
 
     fn stopped(&self) -> bool {
@@ -82,12 +83,14 @@ pub fn measure<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Measure = parsed("measure", &options).map_err(Failed::from)?;
-    let (found, tables) = Job::pooled(progress, threads).run(py, |meter| {
+    let (found, tables) = Job::pooled(progress, threads).run(py, |stop| {
         let files = measuring::files(&arguments.records, arguments.shots.as_deref())?;
         let how = measuring::options(&arguments)?;
-        let measured = hertzchain_measure::measure(&files, &how, &Counted(meter));
+        let measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
+        wanted()?;
         let grouping = measuring::grouping(&arguments);
         let curves = Curves::of(&measured.shots, &grouping);
+        wanted()?;
         let mut found = measuring::json(&measured, &curves);
         let wrong = measuring::judge(&measured).err();
         found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {

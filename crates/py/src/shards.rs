@@ -1,5 +1,7 @@
 //! Parts of a run, for several machines.
 
+use crate::columns::{copied, list, told as told_of};
+use crate::ensemble::all_copied;
 use crate::experiment::Experiment;
 use crate::failure::{Failed, of_path};
 use crate::job::Job;
@@ -9,7 +11,7 @@ use hertzchain_study::{COLUMNS, How, RunError, Shard};
 use hertzchain_verbs::arguments::{How as Options, parsed};
 use hertzchain_verbs::failure::Failure;
 use hertzchain_verbs::input;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::{Path, PathBuf};
@@ -71,22 +73,19 @@ impl Run {
     #[new]
     #[pyo3(signature = (experiment, speeds_m_s, names, values, asked))]
     fn new(
+        py: Python<'_>,
         experiment: &Experiment,
-        speeds_m_s: PyReadonlyArray1<'_, f64>,
+        speeds_m_s: PyReadonlyArrayDyn<'_, f64>,
         names: Vec<String>,
-        values: PyReadonlyArray2<'_, f64>,
+        values: Vec<PyReadonlyArrayDyn<'_, f64>>,
         asked: Asked,
-    ) -> Result<Self, Failed> {
-        let speeds_m_s = speeds_m_s.as_array().to_vec();
-        let values: Vec<Vec<f64>> = values
-            .as_array()
-            .rows()
-            .into_iter()
-            .map(|row| row.to_vec())
-            .collect();
+    ) -> PyResult<Self> {
+        let speeds_m_s = copied(py, &speeds_m_s)?;
+        let values = all_copied(py, &values)?;
         let numbers: Vec<_> = names.iter().cloned().zip(values.iter().cloned()).collect();
+        let inner = run(experiment, &speeds_m_s, &numbers, &asked);
         Ok(Self {
-            inner: run(experiment, &speeds_m_s, &numbers, &asked)?,
+            inner: inner.map_err(Failed::from)?,
             experiment: experiment.clone(),
             speeds_m_s,
             names,
@@ -105,14 +104,11 @@ impl Run {
         asked.set_item("rebound", self.asked.rebound)?;
         asked.set_item("judges", &self.asked.judges)?;
         asked.set_item("threads", self.asked.threads)?;
-        let values = self.values.concat().into_pyarray(py);
-        let shape = (self.names.len(), self.speeds_m_s.len());
-        let values = values.call_method1("reshape", (shape,))?;
         let parts = (
             self.experiment.clone(),
             self.speeds(py),
             self.names.clone(),
-            values,
+            self.values(py),
             asked,
         );
         Ok((class, parts.into_pyobject(py)?))
@@ -152,8 +148,8 @@ pub fn shard<'py>(
 ) -> PyResult<bool> {
     let part = Shard::new(number, of);
     let part = part.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
-    Job::pooled(progress, threads).run(py, |meter| {
-        let done = hertzchain_shards::run(&run.inner, part, &folder, &|| meter.count());
+    Job::pooled(progress, threads).run(py, |stop| {
+        let done = hertzchain_shards::run(&run.inner, part, &folder, &|| stop.count(1));
         Ok(done.map_err(failure)?.kept)
     })
 }
@@ -175,6 +171,7 @@ pub fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDi
         .map(|failed| (failed.place, failed.why));
     let told = PyDict::new(py);
     told.set_item("columns", columns)?;
-    told.set_item("errors", errors.collect::<Vec<_>>())?;
+    told.set_item("errors", list(py, errors)?)?;
+    told.set_item("odd", told_of(whole.rows.odd))?;
     Ok(told)
 }

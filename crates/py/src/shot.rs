@@ -16,6 +16,9 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Sensors by kind and number, and the interval of their samples in s.
+type Watched = (Vec<(String, usize)>, Option<f64>);
+
 /// A sensor by its kind and the number of its bead or contact.
 fn sensor(kind: &str, number: usize) -> Result<Sensor, Failure> {
     match kind {
@@ -30,16 +33,10 @@ fn sensor(kind: &str, number: usize) -> Result<Sensor, Failure> {
     }
 }
 
-/// The sensors asked for; the experiment's own if that is what was asked.
-fn sensors(
-    experiment: &Experiment,
-    asked: Option<&[(String, usize)]>,
-) -> Result<Option<Vec<Sensor>>, Failure> {
-    let Some(asked) = asked else {
-        return Ok(None);
-    };
+/// The sensors asked for; the experiment's own where none is named.
+fn sensors(experiment: &Experiment, asked: &[(String, usize)]) -> Result<Vec<Sensor>, Failure> {
     if asked.is_empty() {
-        return Ok(Some(experiment.inner.sensors()));
+        return Ok(experiment.inner.sensors());
     }
     let bodies = experiment.inner.beads() + 1;
     let within = |(kind, number): &(String, usize)| match *number <= bodies {
@@ -49,7 +46,7 @@ fn sensors(
             bodies - 1
         ))),
     };
-    asked.iter().map(within).collect::<Result<_, _>>().map(Some)
+    asked.iter().map(within).collect()
 }
 
 /// Kind and number of a sensor.
@@ -63,17 +60,18 @@ const fn name(sensor: Sensor) -> (&'static str, usize) {
     }
 }
 
-/// A shot at a speed as it would be written on the command line.
+/// A shot at a speed as it would be written on the command line; `watch` are sensors
+/// by kind and number, with the interval of their samples in s.
 #[pyfunction]
-#[pyo3(signature = (experiment, speed, options, watch, interval_s, forces))]
+#[pyo3(signature = (experiment, speed, options, watch, forces, progress))]
 pub fn shot<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speed: Option<String>,
     options: Vec<String>,
-    watch: Option<Vec<(String, usize)>>,
-    interval_s: Option<f64>,
+    watch: Option<Watched>,
     forces: Vec<Bound<'py, Force>>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let inner = &experiment.inner;
     let how: How = parsed("shot", &options).map_err(Failed::from)?;
@@ -82,11 +80,12 @@ pub fn shot<'py>(
     let speed_m_s = input::speed(given.as_ref(), inner).map_err(Failed::from)?;
     let planned = planned(experiment, given.as_ref(), speed_m_s, &how);
     let (mut plan, warnings) = planned.map_err(Failed::from)?;
-    let job = Job::alone();
+    let job = Job::of_steps(progress);
     let replacing = Replacing::of(&forces, &job.stop);
     replacing.put_into(&mut plan.chain).map_err(Failed::from)?;
     plan.budget = replacing.have_energy();
-    if let Some(sensors) = sensors(experiment, watch.as_deref()).map_err(Failed::from)? {
+    if let Some((asked, interval_s)) = watch {
+        let sensors = sensors(experiment, &asked).map_err(Failed::from)?;
         plan = plan.watching(sensors, interval_s);
     }
     let computed = job.run(py, |_| {

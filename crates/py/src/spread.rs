@@ -149,15 +149,16 @@ impl Elsewhere {
 /// Contact parameters from times of flight, with residuals computed elsewhere in
 /// batches of `size` points; here without `compute`.
 #[pyfunction]
-#[pyo3(signature = (likelihood, size, compute))]
+#[pyo3(signature = (likelihood, size, compute, progress))]
 pub fn fit_spread<'py>(
     py: Python<'py>,
     likelihood: &Likelihood,
     size: usize,
     compute: Option<Py<PyAny>>,
+    progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments = &likelihood.arguments;
-    let job = Job::pooled(None, arguments.modelled.threads.unwrap_or(0));
+    let job = Job::pooled(progress, arguments.modelled.threads.unwrap_or(0));
     let stop = job.stop.clone();
     let elsewhere = compute.map(|compute| Elsewhere { compute, stop });
     let found = job.run(py, |_| {

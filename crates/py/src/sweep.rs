@@ -1,15 +1,18 @@
 //! Times of flight against speed.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, copied, list};
 use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
-use hertzchain_study::{Judges, Plan, Settings, Sweep, parse_speeds};
+use hertzchain_experiment::Experiment as Known;
+use hertzchain_study::{
+    Column, Judges, Plan, Point, Rows, Settings, Tuned, parse_speeds, sweep_each,
+};
 use hertzchain_verbs::arguments::{How, parsed};
 use hertzchain_verbs::failure::Failure;
 use hertzchain_verbs::{input, json as results};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -52,17 +55,17 @@ pub struct Asked {
 pub fn sweep<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    speeds_m_s: PyReadonlyArray1<'py, f64>,
+    speeds_m_s: PyReadonlyArrayDyn<'py, f64>,
     asked: Asked,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let speeds_m_s = speeds_m_s.as_array().to_vec();
+    let speeds_m_s = copied(py, &speeds_m_s)?;
     let inner = &experiment.inner;
     let how: How = parsed("sweep", &asked.options).map_err(Failed::from)?;
     let judges = judges(&asked.judges).map_err(Failed::from)?;
     let plan = representative(experiment, &how).map_err(Failed::from)?;
     let set = input::instruction_set().map_err(Failed::from)?;
-    let swept = Job::pooled(progress, asked.threads).run(py, |meter| {
+    let swept = Job::pooled(progress, asked.threads).run(py, |stop| {
         let settings = Settings {
             adjust: &|plan| {
                 input::adjust(&how, plan);
@@ -71,11 +74,56 @@ pub fn sweep<'py>(
             checked: how.check,
             judges,
             set,
-            progress: &|| meter.count(),
+            progress: &|| stop.count(1),
         };
-        Ok(hertzchain_study::sweep(inner, &speeds_m_s, &settings))
+        Ok(Swept::of(inner, &speeds_m_s, &settings))
     })?;
-    told(py, experiment, &plan, &swept, speeds_m_s)
+    swept.told(py, experiment, plan.accuracy)
+}
+
+/// A sweep as numbers: no shot of it is kept whole.
+#[derive(Default)]
+struct Swept {
+    columns: Columns,
+    rows: Rows,
+    warnings: Vec<(usize, Vec<String>)>,
+    tuned: Option<Tuned>,
+}
+
+impl Swept {
+    fn of(experiment: &Known, speeds_m_s: &[f64], settings: &Settings<'_>) -> Self {
+        let mut swept = Self::default();
+        let tuned = sweep_each(experiment, speeds_m_s, settings, |point| swept.take(point));
+        Self { tuned, ..swept }
+    }
+
+    fn take(&mut self, point: Point) {
+        let place = self.rows.len();
+        self.rows.add(place, &point);
+        self.columns.push(point.shot.as_ref().ok());
+        if !point.warnings.is_empty() {
+            self.warnings.push((place, point.warnings));
+        }
+    }
+
+    fn told<'py>(
+        self,
+        py: Python<'py>,
+        experiment: &Experiment,
+        accuracy: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let laws = [Column::Incident, Column::Reflected].map(|of| self.rows.law(of, accuracy));
+        let through = laws.each_ref().map(|(law, least)| (law, least.clone()));
+        let found = results::outline(&experiment.inner, self.tuned, through);
+        let told = json::object(py, &found)?.cast_into::<PyDict>()?;
+        let [speeds_m_s, ..] = self.rows.columns;
+        told.set_item("speed_m_s", speeds_m_s.into_pyarray(py))?;
+        told.set_item("columns", self.columns.arrays(py)?)?;
+        let errors = self.rows.failed.into_iter();
+        told.set_item("errors", list(py, errors.map(|it| (it.place, it.why)))?)?;
+        told.set_item("warnings", list(py, self.warnings)?)?;
+        Ok(told)
+    }
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.
@@ -87,37 +135,4 @@ pub fn representative(experiment: &Experiment, how: &How) -> Result<Plan, Failur
     input::adjust(how, &mut plan);
     input::check_effort(how, &plan, inner.units())?;
     Ok(plan)
-}
-
-fn told<'py>(
-    py: Python<'py>,
-    experiment: &Experiment,
-    plan: &Plan,
-    swept: &Sweep,
-    speeds_m_s: Vec<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let mut columns = Columns::default();
-    for point in &swept.points {
-        columns.push(point.shot.as_ref().ok());
-    }
-    // The points stand in the columns.
-    let outline = Sweep {
-        points: Vec::new(),
-        ..swept.clone()
-    };
-    let mut found = results::sweep(&experiment.inner, plan, &outline);
-    found["power_law_incident"] = results::fit(&swept.incident, swept.incident_uncertainty().ok());
-    found["power_law_reflected"] =
-        results::fit(&swept.reflected, swept.reflected_uncertainty().ok());
-    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
-    told.set_item("speed_m_s", speeds_m_s.into_pyarray(py))?;
-    told.set_item("columns", columns.arrays(py)?)?;
-    let points = || swept.points.iter().enumerate();
-    let errors =
-        points().filter_map(|(at, point)| Some((at, point.shot.as_ref().err()?.to_string())));
-    told.set_item("errors", errors.collect::<Vec<_>>())?;
-    let odd = points().filter(|(_, point)| !point.warnings.is_empty());
-    let warnings = odd.map(|(at, point)| (at, point.warnings.clone()));
-    told.set_item("warnings", warnings.collect::<Vec<_>>())?;
-    Ok(told)
 }

@@ -69,6 +69,22 @@ pub fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyA
 }
 
 /// The vector instructions with which ensembles are computed here.
+///
+/// Last bits depend on them; ``HERTZCHAIN_INSTRUCTION_SET`` chooses others.
+///
+/// Returns
+/// -------
+/// str
+///     Such as ``"avx2"``.
+///
+/// Raises
+/// ------
+/// OptionError
+///     A choice that this machine does not have.
+///
+/// References
+/// ----------
+/// What must be the same on all machines: docs/across-machines.md.
 #[pyfunction]
 pub fn instruction_set() -> PyResult<&'static str> {
     Ok(input::instruction_set().map_err(Failed::from)?.name())

@@ -17,7 +17,9 @@ from dask.distributed import Client, LocalCluster
 from test_inference import noisy
 
 import hertzchain as hc
+from hertzchain import _hertzchain as _native
 from hertzchain import distributed
+from hertzchain._posing import csv
 
 RIG = ROOT / "crates/rig/tests/small.toml"
 SPEEDS = np.linspace(0.1, 1.0, 120)
@@ -118,6 +120,7 @@ def test_workers_killed_twice_lose_nothing_but_time(small, tmp_path):
     same(run.load(), hc.ensemble(small, speeds))
 
 
+@pytest.mark.long
 def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
     rig = hc.load(RIG)
     hc.campaign(rig, tmp_path / "here")
@@ -146,6 +149,7 @@ def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
             process.wait()
 
 
+@pytest.mark.long
 def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
     speeds = np.linspace(0.1, 1.0, 480)
     folder = tmp_path / "run"
@@ -194,6 +198,48 @@ def test_a_poisoned_shard_is_told_and_stops_nothing(where, small, client, tmp_pa
     same(mended.load(), clean.load())
 
 
+def test_a_poisoned_series_of_a_campaign_is_told_and_stops_nothing(client, tmp_path):
+    rig = hc.load(RIG)
+    hc.campaign(rig, tmp_path / "here")
+    lost = sorted(recordings(tmp_path / "here"))[2]
+    # A folder where its file should go: no worker can write it.
+    (tmp_path / "there" / lost / "in the way").mkdir(parents=True)
+    run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
+    (number,) = run.poisoned
+    assert f"shard {number} is poisoned" in repr(run) and lost in run.poisoned[number]
+    written = {path.name: path.read_bytes() for path in (tmp_path / "there").glob("*.h5") if path.is_file()}
+    assert written == {name: data for name, data in recordings(tmp_path / "here").items() if name != lost}
+    (tmp_path / "there" / lost / "in the way").rmdir()
+    (tmp_path / "there" / lost).rmdir()
+    mended = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
+    assert (mended.kept, mended.poisoned) == (5, {})
+    assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
+
+
+@pytest.mark.long
+def test_a_campaign_goes_on_after_its_scheduler_was_killed(tmp_path):
+    rig = hc.load(RIG)
+    hc.campaign(rig, tmp_path / "here")
+    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+        with pytest.raises(ConnectionError, match="the same call goes on"):
+            distributed.campaign(rig, tmp_path / "there", client=client, shards=6, progress=lambda _: scheduler.kill())
+    assert recordings(tmp_path / "there")
+    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+        run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
+    assert run.kept >= 1 and run.poisoned == {}
+    assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
+
+
+def test_what_is_odd_comes_back_from_shards(client, tmp_path):
+    pump, speeds = hc.preset("pump"), np.array([0.5, 0.1, 0.05, 0.6])
+    run = distributed.sweep(pump, speeds, folder=tmp_path, client=client, shards=2)
+    with pytest.warns(hc.ExperimentWarning, match="Poisson ratio"):
+        found = run.load()
+    with pytest.warns(hc.ExperimentWarning):
+        whole = hc.ensemble(pump, speeds)
+    assert found.odd == whole.odd and found.odd is not None
+
+
 @contextmanager
 def other_instructions(client: Client) -> Iterator[None]:
     """Workers take vector instructions that this process does not."""
@@ -206,6 +252,7 @@ def other_instructions(client: Client) -> Iterator[None]:
         client.run(lambda: os.environ.pop(variable))
 
 
+@pytest.mark.long
 def test_a_worker_that_would_compute_other_bits_is_told_and_computes_nothing(small, posterior, client, tmp_path):
     data, how, _ = posterior
     with other_instructions(client):
@@ -226,6 +273,7 @@ def posterior(tmp_path_factory) -> tuple[dict[str, np.ndarray], dict[str, object
     return data, {"model": row, **how}, hc.fit(data, row, direct=True, **how)
 
 
+@pytest.mark.long
 def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client, tmp_path):
     data, how, here = posterior
     there = distributed.fit(data, folder=tmp_path / "there", client=client, **how)
@@ -236,26 +284,58 @@ def test_a_posterior_on_workers_has_the_bits_of_one_in_process(posterior, client
     assert chains[0] == chains[1]
 
 
+@pytest.mark.long
 def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_path):
     data, how, here = posterior
     with cluster() as local, Client(local) as client:
-        done = threading.Event()
-        dead: set[int] = set()
+        done: list[int] = []
+        dead: dict[int, int] = {}
 
-        def kill() -> None:
-            while len(dead) < 2 and not done.wait(0.5):
-                if alive := pids(local) - dead:
-                    os.kill(pid := alive.pop(), signal.SIGKILL)
-                    dead.add(pid)
+        def kill(curves: int) -> None:
+            """One worker after some hundred curves, another after some hundred more."""
+            done.append(curves)
+            if len(dead) < 2 and sum(done) > 500 * (len(dead) + 1) and (alive := pids(local) - set(dead)):
+                os.kill(pid := alive.pop(), signal.SIGKILL)
+                dead[pid] = sum(done)
 
-        killer = threading.Thread(target=kill, daemon=True)
-        killer.start()
-        there = distributed.fit(data, folder=tmp_path, client=client, **how)
-        done.set()
-        killer.join()
-    assert len(dead) == 2 and there.details == here.details
+        there = distributed.fit(data, folder=tmp_path, client=client, progress=kill, **how)
+    # In mid-run: curves came before and after each.
+    assert len(dead) == 2 and all(500 < curves < sum(done) - 500 for curves in dead.values())
+    assert there.details == here.details
 
 
+@pytest.mark.long
+def test_a_poisoned_point_of_a_batch_is_told_and_changes_no_other(posterior, client, tmp_path):
+    data, how, here = posterior
+    best = [parameter.value for parameter in here.parameters.values()]
+    likelihood = _native.Likelihood(("data", csv(data)), how["model"], ["--free=eta,B", "--tof-error=1e-06", "--", "data"])
+    path = distributed._written(likelihood, tmp_path)
+    points = [best, [float("nan"), 77.0], [-1e300, 77.0], best]
+
+    def there(points: list[list[float]]) -> list[object]:
+        return client.submit(distributed._outcomes, path, likelihood.name, points, pure=False).result()
+
+    first, *poisoned, last = there(points)
+    assert all(isinstance(why, str) and why for why in poisoned)
+    assert [first] == [last] == there([best]) == likelihood.outcomes([best])
+
+
+@pytest.mark.long
+def test_a_poisoned_batch_ends_the_fit_and_says_why(posterior, client, tmp_path, monkeypatch):
+    data, how, here = posterior
+
+    def gone(work, folder):
+        """As if no worker saw the folder."""
+        return str(folder / "nowhere.pickle")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(distributed, "_written", gone)
+        with pytest.raises(hc.OptionError, match=r"nowhere\.pickle"):
+            distributed.fit(data, folder=tmp_path, client=client, **how)
+    assert distributed.fit(data, folder=tmp_path, client=client, **how).details == here.details
+
+
+@pytest.mark.long
 def test_a_posterior_goes_on_where_its_chain_stands(posterior, client, tmp_path):
     data, how, here = posterior
     distributed.fit(data, folder=tmp_path, client=client, **{**how, "steps": 20})

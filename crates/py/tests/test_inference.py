@@ -1,8 +1,10 @@
 """Fits, gauges and designs: the command line's numbers."""
 
+from csv import reader
+
 import numpy as np
 import pytest
-from conftest import pickled
+from conftest import ROOT, pickled
 
 import hertzchain as hc
 from hertzchain._posing import csv
@@ -79,6 +81,7 @@ def test_bounds_priors_and_starts_are_those_of_the_command_line(cli, table):
         assert ours == theirs
 
 
+@pytest.mark.long
 def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table, dry_data):
     told = cli("design", table, "--preset", "dry", "--free", "eta,B", "--target", "B", "--picks", "2")
     found = hc.design(dry_data, free="eta,B", target="B", picks=2)
@@ -91,6 +94,27 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     gauged = hc.gauge(wet, dry_data, model="motor")
     assert gauged.details == told and gauged.verdict in repr(gauged)
     assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
+
+
+def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
+    rig = ROOT / "crates/rig/tests/small.toml"
+    row = hc.load(rig)
+    hc.campaign(row, tmp_path / "records")
+    options = ("--case", "dry", "--free", "steel.eta,sensor_gain", "--most-shots", "2", "--out", tmp_path / "out")
+    told = cli("fit", tmp_path / "records", "--model", rig, *options)
+    seen: list[int] = []
+    found = hc.fit(tmp_path / "records", row, case="dry", free=["steel.eta", "sensor_gain"], most_shots=2, progress=seen.append)
+    assert found.details == told and sum(seen) > 10
+    with open(tmp_path / "out/pulses.csv", newline="", encoding="utf-8") as file:
+        titles, *lines = reader(file)
+    theirs = dict(zip(titles, zip(*lines, strict=True), strict=True))
+    for own, their in (("time_s", "time_s"), ("measured_v", "measured_V"), ("fitted_v", "fitted_V")):
+        assert found.rows[own].tolist() == list(map(float, theirs[their]))
+    assert found.to_pandas().attrs["units"]["measured_v"] == "V" and "whole pulses of 2 records" in repr(found)
+    files = sorted((tmp_path / "records").glob("*.h5"))
+    assert hc.fit(files, row, case="dry", free="steel.eta,sensor_gain", most_shots=2).details == {**told, "free": told["free"]}
+    with pytest.raises(hc.OptionError, match="no record is left"):
+        hc.fit(files[:1], row, case="another", free="steel.eta")
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from test_inference import noisy
 
 import hertzchain as hc
 
@@ -44,6 +45,25 @@ def test_progress_counts_every_shot(small):
         assert bar.n == 30
 
 
+def test_progress_is_told_of_fits_gauges_designs_and_single_shots():
+    from tqdm import tqdm
+
+    dry, wet = noisy("dry", 1, 3), noisy("motor", 2, 2)
+    calls = {
+        "fit": lambda progress: hc.fit(dry, free="B", progress=progress),
+        "posterior": lambda progress: hc.fit(dry, free="B", method="posterior", steps=50, progress=progress),
+        "design": lambda progress: hc.design(dry, free="B", picks=1, progress=progress),
+        "gauge": lambda progress: hc.gauge(wet, dry, model="motor", dry_free="dry.B", accuracy=1e-3, progress=progress),
+        "shot": lambda progress: hc.shot(hc.preset("dry"), accuracy=1e-9, progress=progress),
+    }
+    for verb, call in calls.items():
+        seen: list[int] = []
+        with tqdm(disable=False, file=open(os.devnull, "w")) as bar:
+            assert repr(call(bar)) == repr(call(seen.append)), verb
+            # What is counted does not depend on when it is told.
+            assert bar.n == sum(seen) > 10, verb
+
+
 def test_a_bar_without_tqdm_says_how_to_get_it(small, monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     with pytest.raises(ModuleNotFoundError, match="pip install tqdm"):
@@ -60,7 +80,9 @@ def test_a_progress_that_raises_stops_the_call(small):
 
 CALLS = {
     "ensemble": "hc.ensemble(hc.preset('dry'), np.linspace(0.1, 1.0, 2_000_000))",
-    "sweep": "hc.sweep(hc.preset('dry'), np.linspace(0.1, 1.0, 100_000), rebound=True)",
+    "sweep": "hc.sweep(hc.preset('dry'), np.linspace(0.1, 1.0, 100_000))",
+    "sweep with rebound": "hc.sweep(hc.preset('dry'), np.linspace(0.1, 1.0, 100_000), rebound=True)",
+    "inputs of an ensemble": "hc.ensemble(hc.preset('dry'), np.full(5000, 0.5), {'young_modulus': np.full((9000, 1), 2e11)})",
     "shot": "hc.shot(hc.preset('dry').set({'beads[0].count': 20000.0}), 0.5, accuracy=1e-10)",
     "campaign": "hc.campaign(hc.preset('paper'), folder)",
     "posterior": "hc.fit(data, free='eta,B', method='posterior', direct=True)",

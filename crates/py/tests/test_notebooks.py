@@ -14,7 +14,10 @@ FOLDER = ROOT / "crates/py/examples"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+LONG = {"infer"}
+
+
+@pytest.mark.parametrize("path", [pytest.param(path, marks=[pytest.mark.long] * (path.stem in LONG)) for path in NOTEBOOKS], ids=lambda path: path.stem)
 def test_a_notebook_runs(path):
     notebook = nbformat.read(path, as_version=4)
     NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
@@ -29,6 +32,7 @@ def code(path: Path) -> str:
     return "\n\n".join(cell.source for cell in cells if cell.cell_type == "code")
 
 
+@pytest.mark.long
 def test_pyright_in_strict_mode_finds_nothing_in_the_examples(tmp_path):
     for path in NOTEBOOKS:
         (tmp_path / f"{path.stem}.py").write_text(code(path))

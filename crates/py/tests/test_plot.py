@@ -75,3 +75,19 @@ def test_functions_draw_into_axes_they_are_given(small):
     own = plt.subplots()[1]
     assert plot.times_of_flight(swept, ax=own) is own
     assert plot.ratios({"same": swept}, swept, ax=own) is own
+
+
+def test_fits_of_pulses_show_samples_in_volts_and_residuals_in_standard_errors():
+    time_s = np.linspace(-1e-4, 4e-4, 50)
+    measured = np.exp(-((time_s / 3e-5) ** 2))
+    rows = {
+        "source": np.array(["first"] * 50 + ["second"] * 50), "channel": np.ones(100), "time_s": np.tile(time_s, 2),
+        "measured_v": np.tile(measured, 2), "error_v": np.full(100, 0.01), "fitted_v": np.tile(measured + 0.02, 2),
+    }  # fmt: skip
+    fitted = dataclasses.replace(hc.fit(noisy("dry", 3, 3), free="B"), rows=rows)
+    upper, lower = plot.fit(fitted)
+    times, volts = upper.lines[0].get_data()
+    assert np.array_equal(times, 1e6 * time_s) and np.array_equal(volts, measured)
+    residuals = lower.lines[1].get_ydata()
+    assert residuals.shape == (50,) and np.allclose(residuals, -2.0, rtol=1e-9)  # rounding of a difference
+    assert upper.get_ylabel() == "Signal (V)" and lower.get_xlabel().endswith("(µs)")

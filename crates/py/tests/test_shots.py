@@ -125,6 +125,19 @@ def test_what_fails_is_told_and_the_rest_is_computed(small):
         hc.ensemble(small, [-1.0, np.nan])
 
 
+def test_what_is_odd_is_warned_of_once_a_call_and_told():
+    pump, speeds = hc.preset("pump"), np.array([[0.5, 0.1], [0.05, 0.6]])
+    with pytest.warns(hc.ExperimentWarning, match="Poisson ratio") as warned:
+        found = hc.ensemble(pump, speeds)
+    assert len(warned) == 1 and found.odd is not None
+    assert (found.odd.index, found.odd.shots) == ((0, 1), 2)
+    assert "Poisson ratio" in found.odd.lines[0] and "odd" in repr(found)
+    with pytest.warns(hc.ExperimentWarning, match="another shot"):
+        swept = hc.sweep(pump, speeds.ravel())
+    assert sorted(swept.warnings) == [1, 2] and swept.warnings[1] == found.odd.lines
+    assert hc.ensemble(pump, [0.5, 0.6]).odd is None
+
+
 def test_traces_are_sampled_where_asked(small):
     found = hc.shot(small, 0.5, trace=["bead_3", ("contact", 10), "velocity_0", "position_10"], interval_s=1e-6)
     trace = found.trace

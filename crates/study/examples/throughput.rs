@@ -1,9 +1,14 @@
 //! What an ensemble costs without Python: for every line on standard input, all
 //! shots are planned and computed once, and the seconds printed.
 //!
-//! `bench/python/overhead.py` runs it beside the same ensemble from Python.
+//! `bench/python/overhead.py` runs it beside the same ensemble from Python:
+//!
+//! ```text
+//! throughput dry 8192                               # at as many speeds
+//! throughput dry 8192 damping_cubic.coefficient     # each with this number of its own
+//! ```
 
-use hertzchain_experiment::preset;
+use hertzchain_experiment::{Experiment, preset};
 use hertzchain_study::{InstructionSet, Plan, shoot_all};
 use rayon::prelude::*;
 use std::error::Error;
@@ -19,20 +24,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     let count: usize = arguments.next().map_or(Ok(4096), |text| text.parse())?;
     let dry = preset(&name)?;
     let speed = |at: usize| 0.1 * 12.0_f64.powf(at as f64 / (count.max(2) - 1) as f64);
-    let speeds: Vec<f64> = (0..count).map(speed).collect();
+    let number = arguments.next();
+    let rows: Vec<usize> = (0..count).collect();
+    let own = |at: usize| -> Result<Experiment, String> {
+        let Some(name) = &number else {
+            return Ok(dry.clone());
+        };
+        let usual = dry.get(name).map_err(|error| error.to_string())?;
+        let value = usual * (1.0 + 0.1 * at as f64 / count as f64);
+        let changed = dry.set(&[(name.as_str(), value)]);
+        changed.map_err(|error| error.to_string())
+    };
+    let plan = |at: usize| -> Result<Plan, String> {
+        let planned = Plan::from_experiment(&own(at)?, Some(speed(at)));
+        let (plan, _) = planned.map_err(|error| error.to_string())?;
+        Ok(plan.for_flights())
+    };
     for _line in stdin().lines() {
         let begun = Instant::now();
         let mut sum_s = 0.0;
-        for part in speeds.chunks(TOGETHER) {
-            let planned = part
-                .par_iter()
-                .map(|speed| Plan::from_experiment(&dry, Some(*speed)));
-            let plans: Result<Vec<_>, _> = planned.collect();
-            let plans: Vec<Plan> = plans?
-                .into_iter()
-                .map(|(plan, _)| plan.for_flights())
-                .collect();
-            for shot in shoot_all(&plans, InstructionSet::default(), false, &|| {}) {
+        for part in rows.chunks(TOGETHER) {
+            let plans: Result<Vec<Plan>, String> = part.par_iter().map(|at| plan(*at)).collect();
+            for shot in shoot_all(&plans?, InstructionSet::default(), false, &|| {}) {
                 sum_s += shot?.flight.map_or(0.0, |flight| flight.incident_s);
             }
         }

@@ -7,16 +7,26 @@ use crate::flight::Flight;
 use crate::following::Following;
 use crate::plan::{Plan, Solver, Watch};
 use crate::shot::{Rebound, Shot, reported, tie};
-use crate::stop::stopped;
+use crate::stop::{count_steps, stopped};
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Flow, Limits, Method, Observer, Outcome, Piece, run};
 use hertzchain_chain::{Start, System};
 
-/// Ends a shot that is no longer wanted.
-struct BreakingOff;
+/// Ends a shot that is no longer wanted, and counts its steps.
+#[derive(Default)]
+struct BreakingOff {
+    steps: u64,
+}
+
+/// Steps that are counted at a time: threads that share a counter wait for each other.
+const COUNTED: u64 = 64;
 
 impl Observer for BreakingOff {
     fn step(&mut self, _: &Piece<'_>) -> Flow {
+        self.steps += 1;
+        if self.steps.is_multiple_of(COUNTED) {
+            count_steps(COUNTED);
+        }
         match stopped() {
             true => Flow::Finished,
             false => Flow::Continue,
@@ -241,7 +251,7 @@ impl<'a> Gun<'a> {
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut breaking_off = BreakingOff;
+        let mut breaking_off = BreakingOff::default();
         let mut observers: Vec<&mut dyn Observer> =
             vec![&mut breaking_off, &mut following, &mut separation];
         if self.end.when_apart {

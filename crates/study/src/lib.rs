@@ -50,8 +50,8 @@ pub use run::{How, Part, Run, RunError};
 pub use shard::{Shard, ShardError};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
-pub use stop::{Stop, stopped};
-pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep};
+pub use stop::{Stop, count_done, stopped};
+pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep, sweep_each};
 pub use tuned::{PILOTS, Tuned};
 
 /// The README's example, compiled and run with the tests.

@@ -1,6 +1,5 @@
 //! A sweep as a table: what is stored of every shot.
 
-use crate::several::Told;
 use crate::shot::Shot;
 use crate::sweep::Point;
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
@@ -59,6 +58,20 @@ pub struct Odd {
     pub shots: usize,
 }
 
+impl Odd {
+    /// Counts a shot of which there may be something to say.
+    pub fn add(odd: &mut Option<Self>, place: usize, lines: &[String]) {
+        if !lines.is_empty() {
+            let first = || Self {
+                place,
+                lines: lines.to_vec(),
+                shots: 0,
+            };
+            odd.get_or_insert_with(first).shots += 1;
+        }
+    }
+}
+
 /// A power law, and what accuracies alone leave open of it.
 pub type Law = (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>);
 
@@ -79,38 +92,21 @@ impl Rows {
     pub fn of(points: &[Point]) -> Self {
         let mut rows = Self::default();
         for (place, point) in points.iter().enumerate() {
-            let shot = point.shot.as_ref().map_err(ToString::to_string);
-            rows.push(place, point.speed_m_s, shot, &point.warnings);
+            rows.add(place, point);
         }
         rows
     }
 
-    pub(crate) fn take(&mut self, place: usize, speed_m_s: f64, (shot, warnings): &Told) {
-        let shot = shot.as_ref().map_err(ToString::to_string);
-        self.push(place, speed_m_s, shot, warnings);
-    }
-
-    fn push(
-        &mut self,
-        place: usize,
-        speed_m_s: f64,
-        shot: Result<&Shot, String>,
-        warnings: &[String],
-    ) {
-        if !warnings.is_empty() {
-            let odd = self.odd.get_or_insert_with(|| Odd {
-                place,
-                lines: warnings.to_vec(),
-                shots: 0,
-            });
-            odd.shots += 1;
-        }
-        let cells = match shot {
-            Ok(shot) => cells(speed_m_s, shot),
+    /// A row more, of the point at a place from 0.
+    pub fn add(&mut self, place: usize, point: &Point) {
+        Odd::add(&mut self.odd, place, &point.warnings);
+        let cells = match &point.shot {
+            Ok(shot) => cells(point.speed_m_s, shot),
             Err(why) => {
+                let why = why.to_string();
                 self.failed.push(Failed { place, why });
                 let mut none = [None; COLUMNS.len()];
-                none[Column::Speed as usize] = Some(speed_m_s);
+                none[Column::Speed as usize] = Some(point.speed_m_s);
                 none
             }
         };

@@ -5,13 +5,10 @@ use crate::plan::{Pick, Plan, Solver};
 use crate::rows::Rows;
 use crate::several::{Planned, Several};
 use crate::shard::Shard;
-use crate::sweep::{Judges, PointError, Settings};
+use crate::sweep::{Judges, Point, PointError, Settings};
 use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Mistakes, PathError, Units};
 use std::sync::OnceLock;
-
-/// Shots that are planned and held in memory at once.
-const AT_ONCE: usize = 8192;
 
 /// How the shots of a run are computed, as data: what a plan says of it, and
 /// who judges.
@@ -243,12 +240,14 @@ impl Run {
         let tuned = several.tuned();
         let places: Vec<usize> = shard.places(self.shots()).collect();
         let mut rows = Rows::default();
-        for places in places.chunks(AT_ONCE) {
-            let told = several.shoot(places, tuned.as_ref());
-            for (place, told) in places.iter().zip(&told) {
-                rows.take(*place, self.speeds_m_s[*place], told);
-            }
-        }
+        several.shoot(&places, tuned.as_ref(), |place, (shot, warnings)| {
+            let point = Point {
+                speed_m_s: self.speeds_m_s[place],
+                shot,
+                warnings,
+            };
+            rows.add(place, &point);
+        });
         Part {
             tuned: tuned.map(|tuned| tuned.to_string()),
             rows,

@@ -45,11 +45,23 @@ impl Several<'_> {
         }
     }
 
-    /// Shots at some places, in their order. Bits do not depend on which others
-    /// are asked for along.
-    pub(crate) fn shoot(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {
-        let parts = places.chunks(TOGETHER);
-        parts.flat_map(|part| self.together(part, tuned)).collect()
+    /// Shots at some places, in their order, each handed over once those that are
+    /// in memory beside it are shot. Bits do not depend on which others are asked
+    /// for along. Whoever is asked to stop plans no more.
+    pub(crate) fn shoot(
+        &self,
+        places: &[usize],
+        tuned: Option<&Tuned>,
+        mut take: impl FnMut(usize, Told),
+    ) {
+        for part in places.chunks(TOGETHER) {
+            if stopped() {
+                return;
+            }
+            for (place, told) in part.iter().zip(self.together(part, tuned)) {
+                take(*place, told);
+            }
+        }
     }
 
     fn together(&self, places: &[usize], tuned: Option<&Tuned>) -> Vec<Told> {

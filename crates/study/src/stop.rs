@@ -1,31 +1,55 @@
-//! Breaking off what takes long.
+//! Breaking off what takes long, and telling how far it is.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 thread_local! {
     static OWN: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
 /// A wish to break off, which all threads of a pool look at: between blocks of
-/// an ensemble, between steps of a shot.
+/// an ensemble, between steps of a shot. The other way, they count here what is done.
 ///
 /// What is broken off ends with [`crate::StudyError::Stopped`]; nothing of it counts.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<AtomicBool>);
+pub struct Stop(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    asked: AtomicBool,
+    done: AtomicU64,
+    steps: AtomicU64,
+}
 
 impl Stop {
     /// Asks everything in the pool to break off.
     pub fn ask(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.asked.store(true, Ordering::Relaxed);
     }
 
     /// Whether that was asked.
     #[must_use]
     pub fn is_asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.asked.load(Ordering::Relaxed)
+    }
+
+    /// Counts so many more as done, from any thread.
+    pub fn count(&self, more: u64) {
+        self.0.done.fetch_add(more, Ordering::Relaxed);
+    }
+
+    /// Steps of single shots so far, to some dozens.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.0.steps.load(Ordering::Relaxed)
+    }
+
+    /// How many are done.
+    #[must_use]
+    pub fn done(&self) -> u64 {
+        self.0.done.load(Ordering::Relaxed)
     }
 
     /// Threads that look at this wish, all cores' if 0 are asked for.
@@ -50,4 +74,21 @@ impl Stop {
 #[must_use]
 pub fn stopped() -> bool {
     OWN.with(|own| own.borrow().as_ref().is_some_and(Stop::is_asked))
+}
+
+/// Counts so many more as done for whoever can ask the calling thread to break
+/// off; for nobody where nobody can.
+pub fn count_done(more: usize) {
+    told(|stop| stop.count(more as u64));
+}
+
+/// Counts steps of a shot in the same way.
+pub(crate) fn count_steps(more: u64) {
+    told(|stop| {
+        stop.0.steps.fetch_add(more, Ordering::Relaxed);
+    });
+}
+
+fn told(tell: impl Fn(&Stop)) {
+    OWN.with(|own| own.borrow().as_ref().map(tell));
 }

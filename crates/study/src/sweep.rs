@@ -128,6 +128,32 @@ impl Default for Settings<'_> {
 /// others.
 #[must_use]
 pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_>) -> Sweep {
+    let mut points = Vec::new();
+    let take = |point| points.push(point);
+    let tuned = sweep_each(experiment, speeds_m_s, settings, take);
+    let mut sweep = Sweep {
+        tuned,
+        points,
+        incident: Err(FitError::TooFew),
+        reflected: Err(FitError::TooFew),
+    };
+    if stopped() {
+        return sweep;
+    }
+    sweep.incident = sweep.law(Column::Incident).0;
+    sweep.reflected = sweep.law(Column::Reflected).0;
+    sweep
+}
+
+/// The same for whoever keeps no whole shots: points are handed over in the order
+/// of their speeds, some thousands at a time; none more once it is asked to stop.
+/// Gives the setting that pilots chose.
+pub fn sweep_each(
+    experiment: &Experiment,
+    speeds_m_s: &[f64],
+    settings: &Settings<'_>,
+    mut take: impl FnMut(Point),
+) -> Option<Tuned> {
     let plan = |place: usize| -> Planned {
         let speed_m_s = speeds_m_s.get(place).copied();
         let (mut plan, warnings) = Plan::from_experiment(experiment, speed_m_s)?;
@@ -141,23 +167,12 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
     };
     let tuned = several.tuned();
     let places: Vec<usize> = (0..speeds_m_s.len()).collect();
-    let shots = several.shoot(&places, tuned.as_ref()).into_iter();
-    let mut sweep = Sweep {
-        tuned,
-        points: (speeds_m_s.iter().zip(shots))
-            .map(|(&speed_m_s, (shot, warnings))| Point {
-                speed_m_s,
-                shot,
-                warnings,
-            })
-            .collect(),
-        incident: Err(FitError::TooFew),
-        reflected: Err(FitError::TooFew),
-    };
-    if stopped() {
-        return sweep;
-    }
-    sweep.incident = sweep.law(Column::Incident).0;
-    sweep.reflected = sweep.law(Column::Reflected).0;
-    sweep
+    several.shoot(&places, tuned.as_ref(), |place, (shot, warnings)| {
+        take(Point {
+            speed_m_s: speeds_m_s[place],
+            shot,
+            warnings,
+        });
+    });
+    tuned
 }

@@ -1,7 +1,8 @@
 //! Sweeps over speed.
 
 use hertzchain_experiment::preset;
-use hertzchain_study::{Settings, Sweep, parse_speeds, sweep};
+use hertzchain_study::{Rows, Settings, Stop, Sweep, parse_speeds, sweep, sweep_each};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn hertz(accuracy: f64, speeds: &str) -> Sweep {
     let settings = Settings {
@@ -51,13 +52,54 @@ fn a_speed_that_fails_does_not_stop_the_others() {
 
 #[test]
 fn progress_is_told_once_a_shot() {
-    let count = std::sync::atomic::AtomicUsize::new(0);
+    let count = AtomicUsize::new(0);
     let settings = Settings {
         progress: &|| {
-            count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            count.fetch_add(1, Ordering::Relaxed);
         },
         ..Settings::default()
     };
     let _ = sweep(&preset("hertz").unwrap(), &[0.5, 1.0, 2.0], &settings);
     assert_eq!(count.into_inner(), 3);
+}
+
+#[test]
+fn what_is_broken_off_at_its_first_shot_has_planned_one_piece_of_many() {
+    let stop = Stop::default();
+    let planned = AtomicUsize::new(0);
+    let settings = Settings {
+        adjust: &|_| {
+            planned.fetch_add(1, Ordering::Relaxed);
+        },
+        progress: &|| stop.ask(),
+        ..Settings::default()
+    };
+    let experiment = preset("hertz").unwrap();
+    let tiny = experiment.set(&[("beads[0].count", 7.0)]).unwrap();
+    let speeds: Vec<f64> = (1..=5 * PIECE).map(|at| 1e-3 * at as f64).collect();
+    let mut handed = 0;
+    let pool = stop.pool(2).unwrap();
+    pool.install(|| sweep_each(&tiny, &speeds, &settings, |_| handed += 1));
+    assert_eq!((planned.into_inner(), handed), (PIECE, PIECE));
+}
+
+/// Speeds that are planned together: what a stop can't take back.
+const PIECE: usize = 4096;
+
+#[test]
+fn points_handed_over_are_those_of_the_whole_sweep() {
+    let hertz = preset("hertz").unwrap();
+    let speeds = [0.3, -1.0, 0.7, 0.5];
+    let whole = sweep(&hertz, &speeds, &Settings::default());
+    let mut rows = Rows::default();
+    let _ = sweep_each(&hertz, &speeds, &Settings::default(), |point| {
+        rows.add(rows.len(), &point);
+    });
+    assert_eq!(rows.failed[0].place, 1);
+    let bits = |rows: &Rows| {
+        rows.columns
+            .clone()
+            .map(|of| of.iter().map(|v| v.to_bits()).collect::<Vec<_>>())
+    };
+    assert_eq!(bits(&rows), bits(&Rows::of(&whole.points)));
 }

@@ -98,15 +98,39 @@ fn budget(budget: &Budget) -> Json {
 #[must_use]
 pub fn sweep(experiment: &Experiment, plan: &Plan, swept: &Sweep) -> Json {
     let units = experiment.units();
+    let laws = [
+        (&swept.incident, swept.incident_uncertainty()),
+        (&swept.reflected, swept.reflected_uncertainty()),
+    ];
+    let mut told = outline(experiment, swept.tuned, laws);
+    let points = swept.points.iter();
+    told["points"] = points
+        .map(|point| self::point(point, units, plan))
+        .collect();
+    told
+}
+
+/// A sweep without its points; laws are the incident and the reflected times'.
+#[must_use]
+pub fn outline(
+    experiment: &Experiment,
+    tuned: Option<Tuned>,
+    [incident, reflected]: [Through<'_>; 2],
+) -> Json {
     let pilots = |tuned: Tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()});
     json!({
         "experiment": experiment.name(),
-        "pilots": swept.tuned.map(pilots),
-        "points": swept.points.iter().map(|point| self::point(point, units, plan)).collect::<Json>(),
-        "power_law_incident": fit(&swept.incident, swept.incident_uncertainty().ok()),
-        "power_law_reflected": fit(&swept.reflected, swept.reflected_uncertainty().ok()),
+        "pilots": tuned.map(pilots),
+        "power_law_incident": fit(incident.0, incident.1.ok()),
+        "power_law_reflected": fit(reflected.0, reflected.1.ok()),
     })
 }
+
+/// A power law, and what accuracies alone leave open of it.
+pub type Through<'a> = (
+    &'a Result<PowerLaw, FitError>,
+    Result<Uncertainty, FitError>,
+);
 
 /// What stands in the place of the energy budget in a sweep.
 const NO_BUDGET: &str =

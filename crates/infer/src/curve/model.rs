@@ -4,7 +4,7 @@ use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_study::{
-    InstructionSet, Plan, Shot, StudyError, shoot_all, shoot_unjudged, stopped,
+    InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
 };
 use rayon::prelude::*;
 use std::fmt::Display;
@@ -126,7 +126,9 @@ impl Model {
             })
             .collect()
         };
-        gains.into_iter().map(curve).collect()
+        let curves = gains.into_iter().map(curve).collect();
+        count_done(points.len());
+        curves
     }
 
     /// The largest relative error of one curve's times of flight, each shot of

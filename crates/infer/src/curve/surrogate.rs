@@ -10,6 +10,7 @@ use super::problem::{CurveError, CurveProblem};
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, Parameter};
+use hertzchain_study::count_done;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -248,6 +249,8 @@ impl Problem for Surrogate {
         // Side by side, as they are dear.
         let beyond = points.iter().zip(&inside).filter(|(_, own)| own.is_none());
         let beyond: Vec<Vec<f64>> = beyond.map(|(point, _)| point.clone()).collect();
+        // Those that are computed count themselves.
+        count_done(points.len() - beyond.len());
         let mut computed = self.problem.residuals(&beyond).into_iter();
         let none = || Err(ModelError("no residuals were computed".into()));
         let all = inside.into_iter();

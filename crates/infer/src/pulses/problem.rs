@@ -6,7 +6,7 @@ use crate::curve::{Model, Shooting, Speeds};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
 use hertzchain_chain::Sensor;
-use hertzchain_study::{Shot, shoot};
+use hertzchain_study::{Shot, count_done, shoot};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
@@ -300,7 +300,11 @@ impl Problem for PulseProblem {
         let records = self.records.len();
         let all: Vec<Result<Vec<f64>, ModelError>> = (0..points.len() * records)
             .into_par_iter()
-            .map(|n| self.record_residuals(&points[n / records], n % records))
+            .map(|n| {
+                let found = self.record_residuals(&points[n / records], n % records);
+                count_done(1);
+                found
+            })
             .collect();
         let mut all = all.into_iter();
         let point = |_| {

@@ -11,7 +11,15 @@ words and numbers as the ``hertzchain`` program.
 """
 
 from ._hertzchain import instruction_set
-from .errors import ExperimentError, ExperimentWarning, Finding, HertzchainError, InternalError, OptionError
+from .curves import Ensemble, Odd, Sweep
+from .errors import (
+    ExperimentError,
+    ExperimentWarning,
+    Finding,
+    HertzchainError,
+    InternalError,
+    OptionError,
+)
 from .experiment import (
     Beads,
     Contacts,
@@ -28,10 +36,11 @@ from .experiment import (
     schema,
 )
 from .force import ForceLaw
-from .inferring import Designed, Fitted, Gauged, Parameter, design, fit, gauge
+from .inferred import Designed, Fitted, Gauged, Parameter
+from .inferring import design, fit, gauge
 from .knowing import Description, Group, LawInfo, Row, check, laws, theory
 from .recording import Campaigned, Case, Measured, campaign, measure
-from .results import Ensemble, PowerLaw, Shot, Sweep, Trace
+from .results import PowerLaw, Shot, Trace
 from .shooting import ensemble, shot, sweep
 
 __all__ = [
@@ -57,6 +66,7 @@ __all__ = [
     "LawInfo",
     "Material",
     "Measured",
+    "Odd",
     "OptionError",
     "Parameter",
     "PowerLaw",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -79,13 +80,26 @@ def _there(shard: Shard, arguments: Arguments, of: int, client: Client) -> Itera
         return client.submit(shard, *arguments(number), key=key, pure=False, retries=RETRIES)
 
     room = _Room(client)
-    running = as_completed([hand_out(number) for number in islice(waiting, room.now())])
-    for future in running:
-        number = numbers.pop(future.key)
-        yield _outcome(number, future)
-        future.release()
-        for following in islice(waiting, max(0, room.now() - len(numbers))):
-            running.add(hand_out(following))
+    with _connected():
+        running = as_completed([hand_out(number) for number in islice(waiting, room.now())])
+        for future in running:
+            number = numbers.pop(future.key)
+            yield _outcome(number, future)
+            future.release()
+            for following in islice(waiting, max(0, room.now() - len(numbers))):
+                running.add(hand_out(following))
+
+
+@contextmanager
+def _connected() -> Iterator[None]:
+    """A scheduler may die between any two words with it."""
+    from dask.distributed import CancelledError
+    from distributed.comm import CommClosedError
+
+    try:
+        yield
+    except (CommClosedError, CancelledError) as error:
+        raise ConnectionError(GONE) from error
 
 
 def _outcome(number: int, future: Future) -> tuple[int, bool | str]:
@@ -129,24 +143,24 @@ Batches = list[tuple[str, list[list[float]]]]
 
 def batches(task: Callable[..., Any], work: tuple[str, str], client: Client) -> Callable[[Batches], Callable[[float], Any]]:
     """A way to have batches of points of a work, by its file and name, computed as the library asks for it."""
-    from dask.distributed import CancelledError, TimeoutError, wait
+    from dask.distributed import TimeoutError, wait
 
     call = uuid4().hex
 
     def compute(named: Batches) -> Callable[[float], Any]:
         """Hands out batches; gives what waits for them."""
         keys = ((f"hertzchain-batch-{call}-{name}", points) for name, points in named)
-        futures = [client.submit(task, *work, points, key=key, pure=False, retries=RETRIES) for key, points in keys]
+        with _connected():
+            futures = [client.submit(task, *work, points, key=key, pure=False, retries=RETRIES) for key, points in keys]
 
         def waiting(seconds: float) -> Any:
             """Outcomes in order, or None if there are some to come."""
             try:
-                wait(futures, timeout=seconds)
-                return client.gather(futures)
+                with _connected():
+                    wait(futures, timeout=seconds)
+                    return client.gather(futures)
             except TimeoutError:
                 return None
-            except CancelledError:
-                raise ConnectionError(GONE) from None
 
         return waiting
 

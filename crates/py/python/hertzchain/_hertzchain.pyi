@@ -81,7 +81,7 @@ class Run:
     """A sweep or an ensemble with everything that its numbers follow from."""
 
     def __new__(
-        cls, experiment: Experiment, speeds_m_s: Floats, names: Sequence[str], values: Floats, asked: _Asked
+        cls, experiment: Experiment, speeds_m_s: Floats, names: Sequence[str], values: Sequence[Floats], asked: _Asked
     ) -> Run: ...
     @property
     def name(self) -> str: ...
@@ -104,6 +104,7 @@ def fit_spread(
     likelihood: Likelihood,
     size: int,
     compute: Callable[[_Batches], Callable[[float], list[list[_Outcome]] | None]] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def shard(
     run: Run, number: int, of: int, folder: str, threads: int, progress: _Progress
@@ -115,9 +116,9 @@ def shot(
     experiment: Experiment,
     speed: str | None,
     options: Sequence[str],
-    watch: Sequence[tuple[str, int]] | None,
-    interval_s: float | None,
+    watch: tuple[Sequence[tuple[str, int]], float | None] | None,
     forces: Sequence[Force],
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def speeds(text: str) -> Floats: ...
 def sweep(
@@ -127,7 +128,7 @@ def ensemble(
     experiment: Experiment,
     speeds_m_s: Floats,
     names: Sequence[str],
-    values: Floats,
+    values: Sequence[Floats],
     asked: _Asked,
     progress: _Progress,
 ) -> dict[str, Any]: ...
@@ -144,11 +145,14 @@ def campaign(
     progress: _Progress,
 ) -> dict[str, Any]: ...
 def measure(options: Sequence[str], threads: int, progress: _Progress) -> dict[str, Any]: ...
-def fit(table: _Table, experiment: Experiment, options: Sequence[str]) -> dict[str, Any]: ...
-def design(table: _Table, experiment: Experiment, options: Sequence[str]) -> dict[str, Any]: ...
+def is_table(path: str | PathLike[str]) -> bool: ...
+def fit(table: _Table, experiment: Experiment, options: Sequence[str], progress: _Progress) -> dict[str, Any]: ...
+def fit_pulses(experiment: Experiment, options: Sequence[str], progress: _Progress) -> dict[str, Any]: ...
+def design(table: _Table, experiment: Experiment, options: Sequence[str], progress: _Progress) -> dict[str, Any]: ...
 def gauge(
     tables: tuple[_Table, _Table],
     experiments: tuple[Experiment, Experiment],
     more_oils: _Table | None,
     options: Sequence[str],
+    progress: _Progress,
 ) -> dict[str, Any]: ...

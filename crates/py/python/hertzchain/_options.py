@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal, Protocol, runtime_checkable
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, Literal, Protocol, runtime_checkable
 
 from .errors import OptionError
 
@@ -104,12 +105,22 @@ def count(name: str, value: int | None, least: int = 0) -> int:
     return value
 
 
-def progress(wanted: object, total: int | None, unit: str) -> tuple[object, object]:
-    """What is to be told of progress, and a bar that is to be closed then.
+@contextmanager
+def progress(wanted: object, total: int | None, unit: str) -> Iterator[Any]:
+    """What is to be told of progress; a bar that was drawn for it is closed in the end.
 
     ``True`` draws tqdm's bar; something with ``update``, or any function, is
     called with what was done since the last time.
     """
+    update, bar = _teller(wanted, total, unit)
+    try:
+        yield update
+    finally:
+        if bar is not None:
+            bar.close()
+
+
+def _teller(wanted: object, total: int | None, unit: str) -> tuple[Any, Any]:
     if wanted is None or wanted is False:
         return None, None
     if wanted is True:
@@ -124,8 +135,3 @@ def progress(wanted: object, total: int | None, unit: str) -> tuple[object, obje
     if callable(wanted):
         return wanted, None
     raise OptionError(f"progress = {wanted!r}: expected True, a bar with `update`, or a function")
-
-
-def names(values: Sequence[str] | str) -> list[str]:
-    """One name or several."""
-    return [values] if isinstance(values, str) else list(values)

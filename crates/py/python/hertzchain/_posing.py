@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 
+from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
+from .curves import Sweep
 from .errors import OptionError
 from .experiment import preset
 from .recording import Measured
-from .results import Sweep
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -27,6 +28,7 @@ Data = "str | os.PathLike[str] | Mapping[str, Any] | Measured | Sweep | pd.DataF
 
 def table(data: Any, name: str = "data") -> tuple[str, str]:
     """The text of a table and its name in messages."""
+    data = _only(data)
     if isinstance(data, (str, os.PathLike)):
         try:
             return os.fspath(data), Path(data).read_text(encoding="utf-8")
@@ -41,6 +43,22 @@ def table(data: Any, name: str = "data") -> tuple[str, str]:
     if hasattr(data, "to_dict") and hasattr(data, "columns"):
         return name, csv(data.reset_index().to_dict("list"))
     raise OptionError(f"data of type {type(data).__name__}: expected a file, columns by name, a table, or what `measure` gives")
+
+
+def recordings(data: Any) -> list[str] | None:
+    """Paths of recordings; None if the data are a table."""
+    data = _only(data)
+    if isinstance(data, (str, os.PathLike)):
+        path = os.fspath(data)
+        return None if _native.is_table(path) else [path]
+    if isinstance(data, (list, tuple)):
+        return [os.fspath(path) for path in data]
+    return None
+
+
+def _only(data: Any) -> Any:
+    """What a list of one holds."""
+    return data[0] if isinstance(data, (list, tuple)) and len(data) == 1 else data
 
 
 def csv(columns: Mapping[str, Any]) -> str:

@@ -33,10 +33,11 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from ._posing import FitOptions, modelled, table, words
-from ._table import lines
+from ._table import Tabled, lines, warned
+from .curves import Ensemble, Odd
 from .errors import OptionError
-from .inferring import Fitted, fitted
-from .results import Ensemble
+from .inferred import Fitted
+from .inferring import fitted
 from .shooting import broadcast, units_of
 
 if TYPE_CHECKING:
@@ -48,9 +49,9 @@ __all__ = ["Distributed", "campaign", "fit", "sweep"]
 SHOTS_A_SHARD = 20_000
 """So many that a shard takes seconds: what a scheduler spends on one is then below 2 %."""
 
-@dataclass(frozen=True)
-class Distributed:
-    """What a distributed run has done.
+@dataclass(frozen=True, repr=False)
+class Distributed(Tabled):
+    """What a distributed run has done: a table of its shards; its numbers are what `load` gives.
 
     Attributes
     ----------
@@ -62,7 +63,13 @@ class Distributed:
         Shards that were there before, whole.
     poisoned : dict of int to str
         Shards by number from 1 that could not be computed, and why; the rest is there.
+
+    References
+    ----------
+    Shards, their names and what becomes of those that fail: docs/across-machines.md.
     """
+
+    _index = "shard"
 
     folder: Path
     shards: int
@@ -76,10 +83,20 @@ class Distributed:
     def load(self) -> Ensemble:
         """All shards put together: the bits of a run in one process.
 
+        Returns
+        -------
+        Ensemble
+            Columns of the run's shape in SI, NaN where there is no number.
+
         Raises
         ------
         OptionError
-            Shards that are missing, damaged, or of several runs.
+            Shards that are missing, damaged, or of several runs; a campaign's.
+
+        Warns
+        -----
+        ExperimentWarning
+            What is odd about the first such shot, and of how many; it is in ``Ensemble.odd``.
         """
         if self._run is None or self._experiment is None:
             raise OptionError("recordings of a campaign are measured, not loaded: see hertzchain.measure")
@@ -88,6 +105,9 @@ class Distributed:
         shape = self._shape
         columns = {name: column.reshape(shape) for name, column in found["columns"].items() if name != "speed_m_s"}
         values = run.values()
+        odd = Odd.of(found["odd"], shape)
+        if odd is not None:
+            warned(odd.lines, odd.shots)
         return Ensemble(
             experiment=self._experiment.name,
             shape=shape,
@@ -96,8 +116,14 @@ class Distributed:
             columns=columns,
             errors={tuple(int(i) for i in np.unravel_index(at, shape)): why for at, why in found["errors"]},
             units=units_of(self._experiment, self._names),
+            odd=odd,
             dimensionless=self._experiment.is_dimensionless,
         )
+
+    def _columns(self) -> dict[str, list[Any]]:
+        numbers = list(range(1, self.shards + 1))
+        why = [self.poisoned.get(number, "") for number in numbers]
+        return {"shard": numbers, "poisoned": [bool(said) for said in why], "why": why}
 
     def __repr__(self) -> str:
         rows = {"shards": f"{self.shards}, {self.kept} of them kept"}
@@ -181,7 +207,7 @@ def sweep(
     Parameters
     ----------
     experiment, speed, parameters, accuracy, pick, rebound, judges
-        As for `hertzchain.ensemble`.
+        As for `hertzchain.ensemble`: speeds in m/s and numbers in SI, broadcast to one shape.
     folder : path
         Where shards go, seen by all workers under this name. The same folder
         again goes on where a run was broken off.
@@ -208,20 +234,19 @@ def sweep(
     -----
     All workers must have the build and the instruction set of whoever calls: where
     they have not, shards are poisoned. A shard has the bits of ``hertzchain sweep --shard i/n``.
+
+    References
+    ----------
+    Shards, clusters and what they cost: docs/across-machines.md.
     """
     speeds, named = broadcast(experiment, speed, parameters)
     how = options.how(accuracy, None, None, None, pick, False)
     asked = {"options": how, "rebound": bool(rebound), "judges": judges, "threads": 0}
-    table = np.ascontiguousarray([np.ravel(value) for value in named.values()], dtype=float).reshape(len(named), speeds.size)
-    run = _native.Run(experiment, np.ravel(speeds), list(named), table, asked)
+    run = _native.Run(experiment, speeds, list(named), list(named.values()), asked)
     path = _written(run, Path(folder))
     of = shards or max(1, -(-speeds.size // SHOTS_A_SHARD))
-    update, bar = options.progress(progress, of, "shard")
-    try:
+    with options.progress(progress, of, "shard") as update:
         kept, poisoned = _dask.run(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
-    finally:
-        if bar is not None:
-            bar.close()  # type: ignore[attr-defined]
     return Distributed(Path(folder), of, kept, poisoned, run, experiment, speeds.shape, tuple(named))
 
 
@@ -246,19 +271,28 @@ def campaign(
         Everything stays in this process when absent.
     shards : int
         Parts into which series are dealt.
+    progress : bool, bar or function, optional
+        Told of shards.
+
+    Returns
+    -------
+    Distributed
+        Shards that can't be computed are told in it; the others' recordings are in the folder.
 
     Raises
     ------
     OptionError, ExperimentError
         As for `hertzchain.campaign`, where no shard can be run.
+    ConnectionError
+        The scheduler is lost: the same call goes on where this one stood.
+
+    References
+    ----------
+    Series and their files: docs/rig.md; shards: docs/across-machines.md.
     """
     into = str(Path(out).resolve())
-    update, bar = options.progress(progress, shards, "shard")
-    try:
+    with options.progress(progress, shards, "shard") as update:
         kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
-    finally:
-        if bar is not None:
-            bar.close()  # type: ignore[attr-defined]
     if len(poisoned) == shards:
         raise OptionError(next(iter(poisoned.values())))
     return Distributed(Path(out), shards, kept, poisoned)
@@ -278,6 +312,7 @@ def fit(
     folder: str | os.PathLike[str],
     client: Client | None = None,
     points: int | None = None,
+    progress: object = None,
     **how: Unpack[FitOptions],
 ) -> Fitted:
     """Fits contact parameters with the model's curves computed on a cluster.
@@ -288,7 +323,7 @@ def fit(
     Parameters
     ----------
     data, model, free
-        As for `hertzchain.fit`.
+        As for `hertzchain.fit`, of tables: times of flight in s, numbers in SI.
     folder : path
         Where the problem and the walkers' chain are, seen by all workers under this
         name. The same folder again goes on with the walkers of a run that was broken off.
@@ -296,6 +331,8 @@ def fit(
         Everything stays in this process when absent.
     points : int, optional
         Most points of a batch; as many as make a batch for every thread when absent.
+    progress : bool, bar or function, optional
+        Told of curves.
     **how
         As for `hertzchain.fit`, but ``direct``, which is meant, and ``against``.
 
@@ -307,7 +344,12 @@ def fit(
     Raises
     ------
     OptionError, ExperimentError
-        As for `hertzchain.fit`; batches that no worker could compute.
+        As for `hertzchain.fit`; batches that no worker could compute, a scheduler that is
+        lost: the same call goes on with the walkers that were saved.
+
+    References
+    ----------
+    The sampler: [GoodmanWeare2010], docs/inferring.md; batches: docs/across-machines.md.
     """
     into = Path(folder).resolve()
     how["direct"] = True
@@ -316,8 +358,9 @@ def fit(
         told.append("--resume")
     name, text = table(data)
     likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
-    if client is None:
-        return fitted(_native.fit_spread(likelihood, POINTS, None))
-    compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
-    size = points or max(1, POINTS // max(1, _dask.threads(client)))
-    return fitted(_native.fit_spread(likelihood, size, compute))
+    size, compute = POINTS, None
+    if client is not None:
+        compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
+        size = points or max(1, POINTS // max(1, _dask.threads(client)))
+    with options.progress(progress, None, "curve") as update:
+        return fitted(_native.fit_spread(likelihood, size, compute, update))

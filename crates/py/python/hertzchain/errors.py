@@ -65,7 +65,18 @@ class Finding:
 
     @classmethod
     def of(cls, raw: RawFinding) -> Finding:
-        """From the extension's own."""
+        """From the extension's own.
+
+        Parameters
+        ----------
+        raw : dict
+            As the extension tells it.
+
+        Returns
+        -------
+        Finding
+            With the key that its message names.
+        """
         named = _KEY.search(raw["message"])
         return cls(key=named.group(1) if named else None, **raw)
 
@@ -74,7 +85,7 @@ class Finding:
 
 
 class HertzchainError(Exception):
-    """Any failure of hertzchain."""
+    """Any failure of hertzchain: the base of `ExperimentError`, `OptionError` and `InternalError`."""
 
 
 class ExperimentError(HertzchainError, ValueError):

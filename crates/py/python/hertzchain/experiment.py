@@ -34,7 +34,18 @@ Quantity = float | str
 class PowerOfSpeed:
     """A material's number that follows the striker's speed v in m/s.
 
-    ``prefactor * v**exponent``; the prefactor in SI, or as text with a unit.
+    ``prefactor * v**exponent``.
+
+    Parameters
+    ----------
+    prefactor : float or str
+        Its value at 1 m/s, in SI or as text with a unit.
+    exponent : float
+        Of the speed.
+
+    References
+    ----------
+    Effective numbers of oils: [Labbe2017].
     """
 
     prefactor: Quantity
@@ -58,7 +69,11 @@ class Material:
     density : float or str, optional
         In kg/m³; needed where beads have no mass.
     shear_viscosity, bulk_viscosity : float or str, optional
-        η₁ and η₂ in Pa s, as in [Goldobin2015]; η₂ is η₁ where it is left out.
+        η₁ and η₂ in Pa s; η₂ is η₁ where it is left out.
+
+    References
+    ----------
+    Viscosities of a body: [Goldobin2015].
     """
 
     young_modulus: Quantity | PowerOfSpeed = field(metadata=_si("Pa"))
@@ -70,7 +85,23 @@ class Material:
 
 @dataclass(frozen=True)
 class Beads:
-    """Beads alike in a row: radius in m, mass in kg, name of a material."""
+    """Beads alike in a row. Numbers are in SI, texts have units of their own.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    radius : float or str
+        In m.
+    material : str
+        Name of a material.
+    mass : float or str, optional
+        In kg; by the density when absent.
+
+    References
+    ----------
+    Which bead is which: docs/conventions.md.
+    """
 
     count: int = field(metadata=_si(""))
     radius: Quantity = field(metadata=_si("m"))
@@ -82,6 +113,17 @@ class Law:
     """A contact law by its name, with its parameters in SI or as texts.
 
     ``hertzchain.laws()`` lists names, equations, parameters and units.
+
+    Parameters
+    ----------
+    name : str
+        Of a law of the registry.
+    **parameters : float or str
+        Its parameters, in SI or as texts with units.
+
+    References
+    ----------
+    Each law's own: `hertzchain.laws`; docs/physics.md.
 
     Examples
     --------
@@ -98,7 +140,13 @@ class Law:
         return f"Law({self.name!r}{given})"
 
     def table(self) -> str | dict[str, object]:
-        """As it stands in an experiment file."""
+        """As it stands in an experiment file.
+
+        Returns
+        -------
+        str or dict
+            Text or table of TOML.
+        """
         if not self.parameters:
             return self.name
         units = {known["name"]: known["unit"] for known in _native.laws(self.name)[0]["parameters"]}
@@ -113,8 +161,20 @@ class Law:
 class Contacts:
     """Laws of consecutive contacts, whose forces add.
 
-    Contact 0 is the striker's, contact N the wall's; ``to=None`` is the wall.
-    ``material`` is an effective one of both sides, ``wet`` is for readings.
+    Parameters
+    ----------
+    laws : sequence of str or Law
+        Their forces add.
+    from_, to : int, optional
+        The first and the last contact: 0 is the striker's, ``to=None`` the wall's.
+    material : str, optional
+        Name of an effective one, in place of both sides'.
+    wet : bool, optional
+        Whether readings take it for wet.
+
+    References
+    ----------
+    Wet and dry contacts of the paper: [Labbe2017]; readings: docs/physics.md.
     """
 
     laws: Sequence[str | Law]
@@ -124,7 +184,13 @@ class Contacts:
     wet: bool | None = None
 
     def table(self) -> dict[str, object]:
-        """As it stands in an experiment file."""
+        """As it stands in an experiment file.
+
+        Returns
+        -------
+        str or dict
+            Text or table of TOML.
+        """
         laws = [law.table() if isinstance(law, Law) else law for law in self.laws]
         rest = {"to": self.to, "material": self.material, "wet": self.wet}
         given = {key: value for key, value in rest.items() if value is not None}
@@ -133,7 +199,21 @@ class Contacts:
 
 @dataclass(frozen=True)
 class Striker:
-    """The bead that hits bead 1: speed in m/s; as bead 1 where nothing else is said."""
+    """The bead that hits bead 1; as bead 1 where nothing else is said.
+
+    Parameters
+    ----------
+    speed : float or str
+        In m/s.
+    radius, mass : float or str, optional
+        In m and kg.
+    material : str, optional
+        Name of a material.
+
+    References
+    ----------
+    Its weight loads nothing at rest: docs/conventions.md.
+    """
 
     speed: Quantity = field(metadata=_si("m/s"))
     radius: Quantity | None = field(default=None, metadata=_si("m"))
@@ -143,7 +223,21 @@ class Striker:
 
 @dataclass(frozen=True)
 class FarEnd:
-    """What bead N leans on: "half-bead", "plane", "stop", "plane-stop", "free" or "periodic"."""
+    """What bead N leans on.
+
+    Parameters
+    ----------
+    kind : {"half-bead", "plane", "stop", "plane-stop", "free", "periodic"}
+        A fixed half-bead or plane, a stop of finite mass with either, nothing, or bead 1.
+    radius, mass : float or str, optional
+        Of a half-bead in m, of a stop in kg.
+    material : str, optional
+        Name of a material.
+
+    References
+    ----------
+    Ends of chains: docs/conventions.md; the paper's stop: [Labbe2017].
+    """
 
     kind: str = field(default="half-bead", metadata=_si(""))
     radius: Quantity | None = field(default=None, metadata=_si("m"))
@@ -179,28 +273,82 @@ def _part(part: object) -> object:
 def load(path: str | os.PathLike[str]) -> Experiment:
     """Reads an experiment file (TOML).
 
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    Experiment
+        As the file describes it, in SI.
+
     Raises
     ------
     ExperimentError
         Every mistake in the file at once, each with its line, underlined.
     OptionError
         A file that can't be read.
+
+    References
+    ----------
+    Keys and units of the file: `schema`, docs/conventions.md.
     """
     return Experiment.open(path)
 
 
 def preset(name: str) -> Experiment:
-    """An experiment that comes with the program; `presets` lists them."""
+    """An experiment that comes with the program.
+
+    Parameters
+    ----------
+    name : str
+        One of `presets`.
+
+    Returns
+    -------
+    Experiment
+        In SI.
+
+    Raises
+    ------
+    OptionError
+        A name that no preset has.
+
+    References
+    ----------
+    The paper's chains: [Labbe2017]; each file of experiments/ names its own.
+    """
     return Experiment.preset(name)
 
 
 def presets() -> dict[str, str]:
-    """Names of the experiments that come with the program, with their titles."""
+    """The experiments that come with the program.
+
+    Returns
+    -------
+    dict of str to str
+        Titles by name.
+
+    References
+    ----------
+    The files of experiments/, which name their sources.
+    """
     return dict(_native.presets())
 
 
 def schema() -> str:
-    """The JSON Schema of experiment files."""
+    """The JSON Schema of experiment files.
+
+    Returns
+    -------
+    str
+        JSON, with every key, its unit and what it means.
+
+    References
+    ----------
+    Words and signs: docs/conventions.md.
+    """
     return _native.schema()
 
 
@@ -220,10 +368,17 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
     **more
         Further keys.
 
+    Returns
+    -------
+    Experiment
+        In SI.
+
     Raises
     ------
     ExperimentError
         Every mistake, at its line of the text that was made of the dict.
+    OptionError
+        Values that no experiment can hold.
 
     Examples
     --------
@@ -236,6 +391,10 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
     ... )
     >>> chain.beads
     20
+
+    References
+    ----------
+    Keys and units: `schema`, docs/conventions.md; laws: `laws`.
     """
     if isinstance(tables, str):
         if more:

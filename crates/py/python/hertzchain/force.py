@@ -48,6 +48,11 @@ class ForceLaw:
     >>> K = 8.79e9
     >>> hertz = ForceLaw(lambda overlap, rate: K * overlap**1.5, energy=lambda overlap: 0.4 * K * overlap**2.5)
     >>> shot = hc.shot(hc.preset("hertz"), 1.0, forces=hertz)
+
+    References
+    ----------
+    Gates and signs: docs/conventions.md; laws of the registry, each with its source:
+    `hertzchain.laws`.
     """
 
     force: Callable[[Floats, Floats], Any]
@@ -59,5 +64,11 @@ class ForceLaw:
     beside: bool = False
 
     def native(self) -> _native.Force:
-        """As the extension takes it."""
+        """As the extension takes it.
+
+        Returns
+        -------
+        Force
+            The extension's own.
+        """
         return _native.Force(self.name, self.equation, self.force, self.energy, self.first, self.last, self.beside)

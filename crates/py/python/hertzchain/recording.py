@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 from collections.abc import Iterable, Mapping
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._table import Floats, lines
+from ._table import Floats, Tabled, dataset, frame, lines, span, unit
 from .errors import OptionError
 from .results import PowerLaw
 
@@ -29,9 +30,9 @@ __all__ = ["Campaigned", "Case", "Measured", "campaign", "measure"]
 Path_ = str | os.PathLike[str]
 
 
-@dataclass(frozen=True)
-class Campaigned:
-    """What a run of a campaign has done.
+@dataclass(frozen=True, repr=False)
+class Campaigned(Tabled):
+    """What a run of a campaign has done: a table of one row.
 
     Attributes
     ----------
@@ -47,6 +48,10 @@ class Campaigned:
         Series that can't be computed, each with the reason; the others are there.
     seed : int
         Of all that is random.
+
+    References
+    ----------
+    The virtual rig: docs/rig.md; the paper's: [Labbe2017].
     """
 
     folder: Path
@@ -61,6 +66,20 @@ class Campaigned:
     def files(self) -> list[Path]:
         """The recordings, by name."""
         return sorted(self.folder.glob("*.h5"))
+
+    def _columns(self) -> dict[str, list[Any]]:
+        return {
+            "folder": [str(self.folder)], "kept": [self.kept], "run": [self.run], "shots": [self.shots],
+            "bytes": [self.bytes], "failed": [len(self.failed)], "seed": [self.seed],
+        }  # fmt: skip
+
+    def _units(self) -> dict[str, str]:
+        return {"bytes": "B"}
+
+    def __repr__(self) -> str:
+        rows = {"series": f"{self.run} run now, {self.kept} kept", "shots": str(self.shots), "size": f"{self.bytes / 1e6:.3g} MB", "seed": str(self.seed)}
+        rows |= {f"failed {at}": why for at, why in enumerate(self.failed, 1)}
+        return lines(f"Campaign in {self.folder}", rows)
 
 
 def campaign(
@@ -90,19 +109,24 @@ def campaign(
     threads, progress
         As for `sweep`; progress counts shots.
 
+    Returns
+    -------
+    Campaigned
+        Where recordings are and how many; series that can't be computed are told in it.
+
     Raises
     ------
     OptionError, ExperimentError
         An experiment that no rig can do, a folder with something else in it.
     InternalError
         A recording that can't be written.
+
+    References
+    ----------
+    The rig and its runs: docs/rig.md, after [Labbe2017].
     """
-    update, bar = options.progress(progress, None, "shot")
-    try:
-        done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)  # type: ignore[arg-type]
-    finally:
-        if bar is not None:
-            bar.close()  # type: ignore[attr-defined]
+    with options.progress(progress, None, "shot") as update:
+        done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)
     return Campaigned(folder=Path(out), **done)
 
 
@@ -118,6 +142,10 @@ class Case:
         ``speed_m_s``, ``tof_incident_s`` … with ``*_error`` for standard errors.
     power_law_incident, power_law_reflected : PowerLaw or None
         Weighted fits.
+
+    References
+    ----------
+    From shots to curves: docs/measuring.md.
     """
 
     name: str
@@ -129,21 +157,27 @@ class Case:
         return self.columns[column]
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row a speed."""
-        from ._table import frame
+        """The curve as pandas has it.
 
+        Returns
+        -------
+        pandas.DataFrame
+            One row a speed; units in ``attrs["units"]``.
+        """
         return frame(self.columns, False)
 
     def to_xarray(self) -> xr.Dataset:
-        """One variable a column over ``speed_m_s``."""
-        from ._table import dataset
+        """The curve as xarray has it.
 
+        Returns
+        -------
+        xarray.Dataset
+            One variable a column over ``speed_m_s``, its unit in ``attrs["units"]``.
+        """
         rest = {name: (("speed_m_s",), values) for name, values in self.columns.items() if name != "speed_m_s"}
         return dataset(rest, {"speed_m_s": (("speed_m_s",), self.columns["speed_m_s"])}, False, {"case": self.name})
 
     def __repr__(self) -> str:
-        from ._table import span
-
         names = ("speed_m_s", "tof_incident_s", "tof_reflected_s")
         return lines(f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", {name: span(self.columns[name], name) for name in names})
 
@@ -168,6 +202,10 @@ class Measured:
         What was refused or not found, as the program ends with.
     tables : dict of str to str
         The program's tables as text: ``shots.csv``, ``speeds.csv`` …
+
+    References
+    ----------
+    What is measured, and how sure: docs/measuring.md.
     """
 
     shots: list[dict[str, Any]]
@@ -180,18 +218,46 @@ class Measured:
     tables: dict[str, str]
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row a shot, as in ``shots.csv``."""
+        """All records as pandas has them, as in ``shots.csv``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a record; units in ``attrs["units"]``.
+        """
         import pandas as pd
 
-        return pd.read_csv(io.StringIO(self.tables["shots.csv"]), float_precision="round_trip")
+        titles, *rows = csv.reader(io.StringIO(self.tables["shots.csv"]))
+        made = pd.DataFrame({title: _numbers([row[at] for row in rows]) for at, title in enumerate(titles)})
+        made.attrs["units"] = {str(name): unit(str(name)) for name in made.columns}
+        return made
 
     def to_xarray(self) -> xr.Dataset:
-        """One row a shot."""
-        made = self.to_pandas().to_xarray()
-        return made.rename({"index": "record"}) if "index" in made.dims else made
+        """All records as xarray has them.
+
+        Returns
+        -------
+        xarray.Dataset
+            One variable a column over ``record``, its unit in ``attrs["units"]``.
+        """
+        made = self.to_pandas().rename_axis("record").to_xarray()
+        for name in made.data_vars:
+            made[name].attrs["units"] = unit(str(name))
+        return made
 
     def save(self, folder: Path_) -> list[Path]:
-        """Writes the tables into a folder; tables without rows are left out."""
+        """Writes the tables into a folder; tables without rows are left out.
+
+        Parameters
+        ----------
+        folder : path
+            Made if need be.
+
+        Returns
+        -------
+        list of Path
+            The files.
+        """
         into = Path(folder)
         into.mkdir(parents=True, exist_ok=True)
         written: list[Path] = []
@@ -255,19 +321,36 @@ def measure(
         In m/s: standard error where nobody tells one; speeds nearer than the gap are one.
     threads, progress
         As for `sweep`; progress counts records.
-    trust_rate, channel, time_unit, shot_samples, level, whole, rows, method, onset, beads, \
-sensor, polarity, wall_polarity, low_pass, high_pass, reference, keep_dubious
+    channel : str, int or iterable, optional
+        Channel, column or array by name or number from 1; two: the sensor bead's, the wall's.
+    method : {"local", "onset", "correlation", "shape"}
+        How pulses are timed.
+    low_pass, high_pass : str or float, optional
+        Corners of filters in Hz.
+    level : float, optional
+        In V: where shots of a long recording begin.
+    trust_rate, time_unit, shot_samples, whole, rows, onset, beads, sensor, polarity, \
+wall_polarity, reference, keep_dubious
         As the options of ``hertzchain measure``.
 
     Returns
     -------
     Measured
-        Bad records are told in it one by one, the rest is measured.
+        Times in s with standard errors, peaks in V. Bad records are told in it one by one,
+        the rest is measured.
 
     Raises
     ------
     OptionError
         Options that do not go together, a folder without recordings.
+
+    Notes
+    -----
+    The numbers are those of ``hertzchain measure --json``, bit for bit.
+
+    References
+    ----------
+    How pulses are timed and how sure that is: docs/measuring.md.
     """
     channels = [channel] if isinstance(channel, (str, int)) else list(channel)
     told = options.words(
@@ -277,14 +360,9 @@ sensor, polarity, wall_polarity, low_pass, high_pass, reference, keep_dubious
         speed_error=speed_error, speed_gap=speed_gap, reference=reference, keep_dubious=keep_dubious,
     )  # fmt: skip
     told += [f"--channel={name}" for name in channels]
-    with TemporaryDirectory(prefix="hertzchain-") as folder:
+    with TemporaryDirectory(prefix="hertzchain-") as folder, options.progress(progress, None, "record") as update:
         files = _files(records, Path(folder))
-        update, bar = options.progress(progress, None, "record")
-        try:
-            found = _native.measure([*told, "--", *files], options.count("threads", threads), update)  # type: ignore[arg-type]
-        finally:
-            if bar is not None:
-                bar.close()  # type: ignore[attr-defined]
+        found = _native.measure([*told, "--", *files], options.count("threads", threads), update)
     cases = [_case(case) for case in found.pop("cases")]
     return Measured(cases={case.name: case for case in cases}, **found)
 
@@ -298,6 +376,16 @@ def _files(records: Path_ | Iterable[Path_] | NDArray[Any], folder: Path) -> lis
     if isinstance(records, (str, os.PathLike)):
         return [os.fspath(records)]
     return [os.fspath(record) for record in records]
+
+
+def _numbers(cells: list[str]) -> NDArray[Any] | list[str]:
+    """Cells of a column, with all their digits where they are numbers; NaN where they are empty."""
+    try:
+        if all(cell.isdigit() for cell in cells):
+            return np.array(cells, dtype=int)
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return cells
 
 
 def _case(raw: Mapping[str, Any]) -> Case:

@@ -1,4 +1,4 @@
-"""What shots, sweeps and ensembles give: numbers in SI as NumPy arrays."""
+"""What a shot gives: numbers in SI as NumPy arrays."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._table import Floats, dataset, frame, lines, short, span
+from ._table import Floats, Tabled, dataset, frame, lines, number, short, unit
 from .errors import Finding
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["Ensemble", "PowerLaw", "Shot", "Sweep", "Trace"]
+__all__ = ["PowerLaw", "Shot", "Trace"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,6 +31,12 @@ class Trace:
         ``velocity_3`` in m/s, ``bead_plus_wall_7`` in N.
     energy : dict of str to ndarray, shape (steps,)
         The energy budget along the way in J, at its own ``time_s``.
+    dimensionless : bool
+        Whether K = m = 1 stands for SI: all units are then "1".
+
+    References
+    ----------
+    What sensors show: docs/conventions.md.
     """
 
     time_s: Floats
@@ -39,7 +45,18 @@ class Trace:
     dimensionless: bool = False
 
     def unit(self, sensor: str) -> str:
-        """Unit of a sensor's signal."""
+        """Unit of a sensor's signal.
+
+        Parameters
+        ----------
+        sensor : str
+            Its name, such as ``"bead_7"``.
+
+        Returns
+        -------
+        str
+            "N", "m", "m/s", or "1" without units.
+        """
         if self.dimensionless:
             return "1"
         return {"position": "m", "velocity": "m/s"}.get(sensor.split("_")[0], "N")
@@ -48,14 +65,33 @@ class Trace:
         return self.signals[sensor]
 
     def stacked(self, kind: str) -> tuple[np.ndarray[Any, Any], Floats]:
-        """Numbers of all sensors of a kind and their signals, shape (sensors, samples)."""
+        """Signals of all sensors of a kind as one array.
+
+        Parameters
+        ----------
+        kind : str
+            "bead", "contact", "position" or "velocity".
+
+        Returns
+        -------
+        numbers : ndarray of int, shape (sensors,)
+            Their beads or contacts, in order.
+        signals : ndarray, shape (sensors, samples)
+            In N, m or m/s.
+        """
         found = {int(name.rsplit("_", 1)[1]): name for name in self.signals if name.rsplit("_", 1)[0] == kind}
         numbers = np.array(sorted(found), dtype=int)
         rows = [self.signals[found[number]] for number in numbers]
         return numbers, np.array(rows, dtype=float).reshape(len(rows), self.time_s.size)
 
     def to_xarray(self) -> xr.Dataset:
-        """One variable a sensor over ``time_s``."""
+        """Signals as xarray has them.
+
+        Returns
+        -------
+        xarray.Dataset
+            One variable a sensor over ``time_s``, its unit in ``attrs["units"]``.
+        """
         made = dataset(
             {name: (("time_s",), signal) for name, signal in self.signals.items()},
             {"time_s": (("time_s",), self.time_s)},
@@ -67,10 +103,15 @@ class Trace:
         return made
 
     def to_pandas(self) -> pd.DataFrame:
-        """One column a sensor; the index is the time in s."""
-        made = frame({"time_s": self.time_s, **self.signals}, self.dimensionless, "time_s")
-        made.attrs["units"].update({name: self.unit(name) for name in self.signals})
-        return made
+        """Signals as pandas has them.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One column a sensor; the index is the time in s; units in ``attrs["units"]``.
+        """
+        units = {name: self.unit(name) for name in self.signals}
+        return frame({"time_s": self.time_s, **self.signals}, self.dimensionless, "time_s", units)
 
     def __repr__(self) -> str:
         rows = {name: f"{short(float(np.max(np.abs(signal))))} {self.unit(name)} at most" for name, signal in self.signals.items()}
@@ -84,12 +125,14 @@ class Shot:
 
     Attributes
     ----------
+    experiment : str
+        Its name.
     speed_m_s : float or None
         Speed of the striker in m/s.
     tof_incident_s, tof_reflected_s : float or None
         Times of flight in s: from the sensor bead to the wall, and back.
     accuracy_asked, accuracy_reached : float or None
-        Relative accuracy of times of flight; reached only if it was checked.
+        Relative error that times of flight may have; its bound reached, only if it was checked.
     pulse_speed_beads_per_s : float or None
         Beads a second between sensor bead and wall.
     passage : dict
@@ -102,12 +145,23 @@ class Shot:
         The budget at the end in J.
     velocities_m_s : ndarray, shape (bodies,)
         Velocities of all bodies at the end, the striker's first.
-    duration_s, solver, steps, force_passes, notes
-        How it was computed, and what a reader must know.
+    duration_s : float
+        How long the shot was followed, in s.
+    solver, tolerance, step_s, force_passes, steps
+        How it was computed: in words, error allowed a step, its length in s, counts.
+    notes : list of str
+        What a reader must know.
     warnings : tuple of Finding
         What is odd about the experiment at this speed.
     trace : Trace or None
         What was sampled.
+    dimensionless : bool
+        Whether K = m = 1 stands for SI.
+
+    References
+    ----------
+    How times of flight, peaks and the budget are defined: docs/conventions.md; how they
+    are computed: docs/numerics.md, with the pair of [DormandPrince1980].
     """
 
     experiment: str
@@ -134,17 +188,32 @@ class Shot:
     dimensionless: bool = False
 
     def to_xarray(self) -> xr.Dataset:
-        """What was sampled over ``time_s``, with the shot's numbers as attributes."""
+        """What was sampled, as xarray has it.
+
+        Returns
+        -------
+        xarray.Dataset
+            One variable a sensor over ``time_s`` with its unit in ``attrs["units"]``; the
+            shot's numbers, in SI, are attributes of the whole.
+        """
         empty = Trace(np.empty(0), {}, {}, self.dimensionless)
         made = (self.trace or empty).to_xarray()
         made.attrs.update({name: value for name, value in self._numbers().items() if value is not None})
         return made
 
     def to_pandas(self) -> pd.Series:
-        """The shot's numbers as a series."""
+        """The shot's numbers as pandas has them.
+
+        Returns
+        -------
+        pandas.Series
+            By name, NaN where there is none; units in ``attrs["units"]``.
+        """
         import pandas as pd
 
-        return pd.Series(self._numbers(), name=self.experiment)
+        made = pd.Series({name: number(value) for name, value in self._numbers().items()}, name=self.experiment)
+        made.attrs["units"] = {name: unit(name, self.dimensionless) for name in self._numbers()}
+        return made
 
     def _numbers(self) -> dict[str, Any]:
         return {
@@ -177,12 +246,30 @@ class Shot:
         return lines(f"Shot of {self.experiment}{speed}", rows)
 
 
-@dataclass(frozen=True)
-class PowerLaw:
+@dataclass(frozen=True, repr=False)
+class PowerLaw(Tabled):
     """``tof = prefactor_s * (speed in m/s)**exponent``, by least squares of logarithms.
 
-    Standard errors in ``*_error``; what the accuracies of the times of flight
-    alone leave open in ``*_accuracy``. None where two speeds tell no errors.
+    Attributes
+    ----------
+    prefactor_s, exponent : float
+        The time of flight at 1 m/s in s; −1/5 for Hertz contacts alone.
+    prefactor_error_s, exponent_error : float or None
+        Standard errors by the scatter; None where two speeds tell none.
+    prefactor_accuracy_s, exponent_accuracy : float or None
+        What the accuracies of the times of flight alone leave open.
+    covariance : list of list of float or None, shape (2, 2)
+        Of the logarithm of the prefactor and the exponent.
+    r_squared : float or None
+        Share of the scatter that the law explains.
+    residuals : list of float
+        Relative differences of the times from the law, speed by speed.
+    dimensionless : bool
+        Whether K = m = 1 stands for SI.
+
+    References
+    ----------
+    Scaling of Hertz chains: [Nesterenko1983]; the paper's curves: [Labbe2017].
     """
 
     prefactor_s: float
@@ -194,168 +281,54 @@ class PowerLaw:
     covariance: Any
     r_squared: float | None
     residuals: list[float] = field(default_factory=list[float])
+    dimensionless: bool = False
 
     def __call__(self, speed_m_s: Any) -> Any:
-        """Times of flight in s at speeds in m/s."""
+        """Times of flight by the law.
+
+        Parameters
+        ----------
+        speed_m_s : array_like
+            Speeds in m/s, of any shape.
+
+        Returns
+        -------
+        ndarray
+            Times of flight in s, of the same shape.
+        """
         return self.prefactor_s * np.asarray(speed_m_s, dtype=float) ** self.exponent
 
     @classmethod
-    def of(cls, found: Mapping[str, Any]) -> PowerLaw | None:
-        """From the extension's own; None where no law goes through."""
+    def of(cls, found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw | None:
+        """From the extension's own.
+
+        Parameters
+        ----------
+        found : mapping
+            As the program's JSON has it.
+        dimensionless : bool
+            Whether K = m = 1 stands for SI.
+
+        Returns
+        -------
+        PowerLaw or None
+            None where no law goes through.
+        """
         if "missing" in found:
             return None
         known: dict[str, Any] = {name: found.get(name) for name in cls.__dataclass_fields__}
-        return cls(**known)
+        return cls(**known | {"residuals": found.get("residuals") or [], "dimensionless": dimensionless})
 
+    def _columns(self) -> dict[str, list[float]]:
+        names = ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s", "exponent", "exponent_error", "exponent_accuracy", "r_squared")
+        return {name: [number(getattr(self, name))] for name in names}
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Sweep:
-    """Shots of one chain at several speeds. All arrays have shape (speeds,); NaN is missing.
-
-    Attributes
-    ----------
-    speed_m_s : ndarray
-        Speeds of the striker in m/s.
-    tof_incident_s, tof_reflected_s : ndarray
-        Times of flight in s.
-    accuracy_reached : ndarray
-        Bounds on their relative errors.
-    columns : dict of str to ndarray
-        Everything: times of flight, peaks in N, widths in s, pulse speed,
-        rebound in m/s, duration in s.
-    power_law_incident, power_law_reflected : PowerLaw or None
-        None where fewer than two speeds have a time of flight.
-    errors : dict of int to str
-        Why speeds, by index, have no shot.
-    warnings : dict of int to list of str
-        What is odd about the chain at speeds, by index.
-    """
-
-    experiment: str
-    speed_m_s: Floats
-    columns: dict[str, Floats]
-    power_law_incident: PowerLaw | None
-    power_law_reflected: PowerLaw | None
-    pilots: dict[str, Any] | None
-    errors: dict[int, str]
-    warnings: dict[int, list[str]]
-    dimensionless: bool = False
-
-    @property
-    def tof_incident_s(self) -> Floats:
-        """Incident times of flight in s."""
-        return self.columns["tof_incident_s"]
-
-    @property
-    def tof_reflected_s(self) -> Floats:
-        """Reflected times of flight in s."""
-        return self.columns["tof_reflected_s"]
-
-    @property
-    def accuracy_reached(self) -> Floats:
-        """Bounds on the relative errors of times of flight."""
-        return self.columns["accuracy_reached"]
-
-    def to_xarray(self) -> xr.Dataset:
-        """One variable a column over ``speed_m_s``."""
-        columns = {name: (("speed_m_s",), values) for name, values in self.columns.items()}
-        return dataset(columns, {"speed_m_s": (("speed_m_s",), self.speed_m_s)}, self.dimensionless, {"experiment": self.experiment})
-
-    def to_pandas(self) -> pd.DataFrame:
-        """One row a speed; the index is the speed."""
-        return frame({"speed_m_s": self.speed_m_s, **self.columns}, self.dimensionless, "speed_m_s")
+    def _units(self) -> dict[str, str]:
+        return {name: "1" if self.dimensionless else "s" for name in ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s")}
 
     def __repr__(self) -> str:
-        rows = {name: span(self.columns[name], name, self.dimensionless) for name in ("tof_incident_s", "tof_reflected_s", "accuracy_reached")}
-        for name, law in (("incident", self.power_law_incident), ("reflected", self.power_law_reflected)):
-            if law is not None:
-                rows[f"{name} law"] = f"{short(law.prefactor_s)} · v^{short(law.exponent)}"
-        if self.errors:
-            rows["without a shot"] = f"{len(self.errors)} speeds"
-        return lines(f"Sweep of {self.experiment} over {self.speed_m_s.size} speeds", rows)
+        def told(value: float, error: float | None) -> str:
+            return short(value) if error is None else f"({short(value)} ± {short(error, 2)})"
 
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Ensemble:
-    """Shots over arrays of speeds and of named numbers, broadcast against each other.
-
-    Attributes
-    ----------
-    shape : tuple of int
-        The common shape; every column has it.
-    speed_m_s : ndarray
-        Speeds of the striker in m/s.
-    parameters : dict of str to ndarray
-        Named numbers in SI.
-    columns : dict of str to ndarray
-        As in `Sweep`; NaN is missing.
-    errors : dict of tuple to str
-        Why there is no shot, by index.
-    """
-
-    experiment: str
-    shape: tuple[int, ...]
-    speed_m_s: Floats
-    parameters: dict[str, Floats]
-    columns: dict[str, Floats]
-    errors: dict[tuple[int, ...], str]
-    units: dict[str, str]
-    dimensionless: bool = False
-
-    @property
-    def tof_incident_s(self) -> Floats:
-        """Incident times of flight in s."""
-        return self.columns["tof_incident_s"]
-
-    @property
-    def tof_reflected_s(self) -> Floats:
-        """Reflected times of flight in s."""
-        return self.columns["tof_reflected_s"]
-
-    @property
-    def accuracy_reached(self) -> Floats:
-        """Bounds on the relative errors; NaN where shots were not judged."""
-        return self.columns["accuracy_reached"]
-
-    def __getitem__(self, column: str) -> Floats:
-        return self.columns[column]
-
-    def _inputs(self) -> dict[str, Floats]:
-        return {"speed_m_s": self.speed_m_s, **self.parameters}
-
-    def to_xarray(self) -> xr.Dataset:
-        """Every column over ``axis_0``, ``axis_1`` …; inputs that follow one axis are its coordinates."""
-        axes = tuple(f"axis_{at}" for at in range(len(self.shape)))
-        columns = {name: (axes, values) for name, values in self.columns.items()}
-        made = dataset(columns, {name: _coordinate(values, axes) for name, values in self._inputs().items()}, self.dimensionless, {"experiment": self.experiment})
-        for name, unit in self.units.items():
-            made[name].attrs["units"] = unit
-        return made
-
-    def to_pandas(self) -> pd.DataFrame:
-        """One row a shot, in the order of a C array."""
-        flat = {name: np.ravel(values) for name, values in (self._inputs() | self.columns).items()}
-        made = frame(flat, self.dimensionless)
-        made.attrs["units"].update(self.units)
-        return made
-
-    def __repr__(self) -> str:
-        rows = {name: span(values, name, self.dimensionless) for name, values in self._inputs().items()}
-        rows |= {name: span(self.columns[name], name, self.dimensionless) for name in ("tof_incident_s", "tof_reflected_s")}
-        if self.errors:
-            rows["without a shot"] = str(len(self.errors))
-        return lines(f"Ensemble of {self.experiment}, shape {self.shape}", rows)
-
-
-def _coordinate(values: Floats, axes: tuple[str, ...]) -> tuple[tuple[str, ...], Floats]:
-    """The axes along which values change, and the values along them."""
-    kept = [at for at in range(values.ndim) if values.shape[at] > 0 and not _same(values, at)]
-    at = tuple(slice(None) if axis in kept else 0 for axis in range(values.ndim))
-    if values.size == 0:
-        return axes, values
-    return tuple(axes[axis] for axis in kept), np.asarray(values[at])
-
-
-def _same(values: Floats, axis: int) -> bool:
-    first = np.take(values, [0], axis=axis)
-    return bool(np.array_equal(np.broadcast_to(first, values.shape), values, equal_nan=True))
+        unit = "" if self.dimensionless else " s"
+        return f"PowerLaw {told(self.prefactor_s, self.prefactor_error_s)}{unit} · v^{told(self.exponent, self.exponent_error)}"

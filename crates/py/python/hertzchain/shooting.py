@@ -12,17 +12,18 @@ from numpy.typing import ArrayLike
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._table import Floats
+from ._table import Floats, warned
+from .curves import Ensemble, Odd, Sweep
 from .errors import ExperimentWarning, Finding, OptionError
 from .force import ForceLaw
-from .results import Ensemble, PowerLaw, Shot, Sweep, Trace
+from .results import PowerLaw, Shot, Trace
 
 __all__ = ["ensemble", "shot", "sweep"]
 
 Sensor = str | tuple[str, int]
 
 MOST_SPEEDS = 100_000
-"""Most speeds in one sweep, each of whose shots is kept whole until the end."""
+"""Most speeds in one sweep, as on the command line."""
 
 MOST_SHOTS = 50_000_000
 """Most shots in one ensemble: their numbers alone take five gigabytes."""
@@ -41,6 +42,7 @@ def shot(
     trace: bool | Iterable[Sensor] = False,
     interval_s: float | None = None,
     forces: ForceLaw | Iterable[ForceLaw] = (),
+    progress: object = None,
 ) -> Shot:
     """Computes one shot: times of flight, peaks, rebound, energy.
 
@@ -53,8 +55,12 @@ def shot(
         experiment's own when absent.
     accuracy : float, optional
         Relative accuracy of times of flight, from 1e-13 to 1e-2.
-    solver, step, duration, pick
-        As the options of ``hertzchain shot``; numbers are in s.
+    solver : {"adaptive", "rk4", "verlet"}, optional
+        How the motion is computed; the experiment's own when absent.
+    step, duration : float or str, optional
+        Step of a solver that has one, and how long the shot is followed, in s.
+    pick : {"peak", "flank-10", "flank-50", "cross-correlation"}, optional
+        Where pulses are timed.
     check : bool
         Compute again ten times as tightly and tell the accuracy reached.
     trace : bool or iterable of sensors
@@ -65,6 +71,9 @@ def shot(
         trace has at most 10^8 numbers.
     forces : ForceLaw or iterable of ForceLaw
         Force laws of Python, in place of the experiment's or beside them.
+    progress : bool, bar or function, optional
+        True draws tqdm's bar; a bar's ``update``, or a function, is told how many
+        steps of the solver were taken since the last time.
 
     Returns
     -------
@@ -78,6 +87,11 @@ def shot(
     OptionError
         A number that a shot can't have.
 
+    Warns
+    -----
+    ExperimentWarning
+        What is odd about the experiment at this speed, such as a law out of its range.
+
     Notes
     -----
     The numbers are those of ``hertzchain shot --json``, bit for bit.
@@ -87,10 +101,19 @@ def shot(
     >>> import hertzchain as hc
     >>> round(1e6 * hc.shot(hc.preset("dry"), 0.5, accuracy=1e-8).tof_incident_s, 6)
     761.904024
+
+    References
+    ----------
+    The model of the paper: [Labbe2017]; contact laws: `hertzchain.laws`; the solver:
+    [DormandPrince1980], docs/numerics.md.
     """
     how = options.how(accuracy, solver, step, duration, pick, check)
     laws = [forces] if isinstance(forces, ForceLaw) else list(forces)
-    found = _native.shot(experiment, None if speed is None else options.text(speed), how, _watched(trace), _interval(interval_s), [law.native() for law in laws])
+    at = None if speed is None else options.text(speed)
+    watched, interval, native = _watched(trace), _interval(interval_s), [law.native() for law in laws]
+    watch = None if watched is None else (watched, interval)
+    with options.progress(progress, None, "step") as update:
+        found = _native.shot(experiment, at, how, watch, native, update)
     odd = tuple(Finding.of(raw) for raw in found.pop("warnings"))
     for warning in odd:
         _warnings.warn(warning.report, ExperimentWarning, stacklevel=2)
@@ -157,7 +180,7 @@ def sweep(
     speeds : array_like of shape (speeds,), or str
         Speeds in m/s, at most 100,000; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
     accuracy, solver, step, duration, pick, check
-        As for `shot`.
+        As for `shot`; errors of times of flight are below ``accuracy`` of them.
     rebound : bool
         Follow the striker until it is away for good; takes the slower loop.
     judges : {"each", "pilots"}
@@ -179,9 +202,19 @@ def sweep(
     ExperimentError, OptionError
         What no speed can do; a single speed that fails is in ``Sweep.errors``.
 
+    Warns
+    -----
+    ExperimentWarning
+        Once a call: what is odd at the first such speed, and at how many others; all of
+        it is in ``Sweep.warnings``.
+
     Notes
     -----
     The numbers are those of ``hertzchain sweep --json``, bit for bit.
+
+    References
+    ----------
+    Curves of times of flight: [Labbe2017]; judges and pilots: docs/numerics.md.
     """
     values = _native.speeds(speeds) if isinstance(speeds, str) else _numbers("speeds", speeds)
     if values.size > MOST_SPEEDS:
@@ -190,22 +223,20 @@ def sweep(
         raise OptionError(f"speeds of shape {values.shape}: expected one dimension; `ensemble` takes more")
     values = np.ascontiguousarray(np.atleast_1d(values))
     how = options.how(accuracy, solver, step, duration, pick, check)
-    update, bar = options.progress(progress, values.size, "shot")
-    try:
-        found = _native.sweep(experiment, values, _asked(how, rebound, judges, threads), update)  # type: ignore[arg-type]
-    finally:
-        _close(bar)
-    errors = dict(found["errors"])
+    with options.progress(progress, values.size, "shot") as update:
+        found = _native.sweep(experiment, values, _asked(how, rebound, judges, threads), update)
+    errors, odd = dict(found["errors"]), dict(found["warnings"])
     _all_failed(errors, values.size)
+    warned(next(iter(odd.values()), []), len(odd))
     return Sweep(
         experiment=found["experiment"],
         speed_m_s=found["speed_m_s"],
         columns=found["columns"],
-        power_law_incident=PowerLaw.of(found["power_law_incident"]),
-        power_law_reflected=PowerLaw.of(found["power_law_reflected"]),
+        power_law_incident=PowerLaw.of(found["power_law_incident"], experiment.is_dimensionless),
+        power_law_reflected=PowerLaw.of(found["power_law_reflected"], experiment.is_dimensionless),
         pilots=found["pilots"],
         errors=errors,
-        warnings=dict(found["warnings"]),
+        warnings=odd,
         dimensionless=experiment.is_dimensionless,
     )
 
@@ -255,33 +286,43 @@ def ensemble(
         ensemble of which nothing can be computed; single shots that fail are
         in ``Ensemble.errors``.
 
+    Warns
+    -----
+    ExperimentWarning
+        Once a call: what is odd about the first such shot, and of how many; it is in
+        ``Ensemble.odd``.
+
     Examples
     --------
     >>> import numpy as np, hertzchain as hc
     >>> found = hc.ensemble(hc.preset("dry"), np.array([[0.1], [0.5]]), {"damping_cubic.coefficient": [0.0, 77.0]})
     >>> found.tof_incident_s.shape
     (2, 2)
+
+    References
+    ----------
+    Many shots side by side in equal steps: docs/numerics.md.
     """
     speeds, values = broadcast(experiment, speed, parameters)
-    table = np.ascontiguousarray([np.ravel(value) for value in values.values()], dtype=float).reshape(len(values), speeds.size)
     how = options.how(accuracy, None, None, duration, pick, False)
-    update, bar = options.progress(progress, speeds.size, "shot")
     asked = _asked(how, rebound, judges, threads)
-    try:
-        found = _native.ensemble(experiment, np.ravel(speeds), list(values), table, asked, update)  # type: ignore[arg-type]
-    finally:
-        _close(bar)
+    with options.progress(progress, speeds.size, "shot") as update:
+        found = _native.ensemble(experiment, speeds, list(values), list(values.values()), asked, update)
     _all_failed(dict(found["errors"]), speeds.size)
     shape = speeds.shape
+    odd = Odd.of(found["odd"], shape)
+    if odd is not None:
+        warned(odd.lines, odd.shots)
     errors = {tuple(int(i) for i in np.unravel_index(at, shape)): why for at, why in found["errors"]}
     return Ensemble(
         experiment=experiment.name,
         shape=shape,
-        speed_m_s=np.array(speeds),
-        parameters={name: np.array(value) for name, value in values.items()},
+        speed_m_s=found["speed_m_s"].reshape(shape),
+        parameters={name: own.reshape(shape) for name, own in zip(values, found["values"], strict=True)},
         columns={name: column.reshape(shape) for name, column in found["columns"].items()},
         errors=errors,
         units=units_of(experiment, values),
+        odd=odd,
         dimensionless=experiment.is_dimensionless,
     )
 
@@ -309,11 +350,6 @@ def units_of(experiment: Experiment, names: Iterable[str]) -> dict[str, str]:
         return next((unit for path, unit in units.items() if path == name or path.endswith(f".{name}")), "1")
 
     return {name: of(name) for name in names}
-
-
-def _close(bar: Any) -> None:
-    if bar is not None:
-        bar.close()
 
 
 def _numbers(name: str, values: object) -> Floats:

@@ -3,7 +3,7 @@
 use super::{Inferred, best, inferred, joined, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
-use crate::inference::{self, user};
+use crate::inference::{self, user, wanted};
 use crate::measure::{files, list};
 use crate::table::cell;
 use hertzchain_experiment::{Amplifier as Numbers, Experiment};
@@ -41,8 +41,16 @@ pub struct Recorded {
 pub fn recorded(arguments: &Arguments) -> Result<Recorded, Failure> {
     let case = arguments.measured.case.as_deref();
     let experiment = inference::experiment(&arguments.modelled, case)?;
-    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
-    let (records, refused) = records(&experiment, arguments)?;
+    recorded_of(&experiment, arguments)
+}
+
+/// The same where the model's experiment is at hand, in its case and with what is set.
+///
+/// # Errors
+/// As [`recorded`].
+pub fn recorded_of(experiment: &Experiment, arguments: &Arguments) -> Result<Recorded, Failure> {
+    let model = inference::model(experiment, &arguments.modelled, &arguments.freed)?;
+    let (records, refused) = records(experiment, arguments)?;
     Ok(Recorded {
         model,
         records: spread(records, arguments.recorded.most_shots),
@@ -79,6 +87,7 @@ fn records(
     let (mut good, mut refused) = (Vec::new(), Vec::new());
     for file in files(&arguments.data, recorded.shots.as_deref())? {
         for record in read(&file, &reading) {
+            wanted()?;
             let record = match record {
                 Ok(record) => record,
                 Err(error) => {
@@ -241,4 +250,24 @@ pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
         }
     }
     text
+}
+
+/// Every mean of samples beside the fitted one.
+#[must_use]
+pub fn rows_json(shown: &[Shown<'_>]) -> Value {
+    let rows = shown.iter().flat_map(|shown| {
+        let [times, measured, fitted] = &shown.columns;
+        let means = times.iter().zip(measured).zip(fitted);
+        means.map(|((time_s, measured_v), fitted_v)| {
+            json!({
+                "source": shown.record.source,
+                "channel": shown.channel + 1,
+                "time_s": time_s,
+                "measured_v": measured_v,
+                "error_v": shown.record.sigma_v[shown.channel],
+                "fitted_v": fitted_v,
+            })
+        })
+    });
+    rows.collect()
 }
