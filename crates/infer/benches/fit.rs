@@ -1,7 +1,7 @@
 //! What a fit costs, and what builds on it: `bench/inference.md`.
 //!
-//! `cargo bench -p hertzchain-infer`; one thread, 25 speeds, both times of flight,
-//! η and B free and started a factor of three off.
+//! `cargo bench -p hertzchain-infer`; one thread (a million likelihoods: two), 25
+//! speeds, both times of flight, η and B free and started a factor of three off.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on should fail")]
 
 #[path = "../tests/common/mod.rs"]
@@ -12,7 +12,8 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Covariance, CurveProblem, Fit, Fitting, Problem, Profiling, Surrogate, fit, profile,
+    Chain, Covariance, CurveProblem, Fit, Fitting, Problem, Profiling, Sampling, Surrogate, fit,
+    profile,
 };
 
 fn main() {
@@ -87,4 +88,25 @@ fn likelihoods_of_the_surrogate(bencher: Bencher<'_, '_>) {
     let (best, covariance) = fitted(&dry);
     let found = Surrogate::new(&dry, &best, &covariance).unwrap();
     likelihoods(bencher, &found, &best, &covariance.sd);
+}
+
+/// Steps of 64 walkers that make a million.
+const STEPS: u64 = 15_625;
+
+/// A posterior's million, from the best fit to the last walker.
+#[divan::bench(sample_count = 1)]
+fn a_million_likelihoods_by_two_threads(bencher: Bencher<'_, '_>) {
+    let dry = dry();
+    let (best, covariance) = fitted(&dry);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    let pool = pool.unwrap();
+    bencher.bench_local(|| {
+        pool.install(|| {
+            let found = Surrogate::new(&dry, &best, &covariance).unwrap();
+            let how = Sampling::default();
+            let mut chain = Chain::start(&found, &best, &covariance, &how).unwrap();
+            chain.advance(&found, STEPS).unwrap();
+            assert_eq!(chain.walkers() as u64 * chain.steps(), 1_000_000);
+        });
+    });
 }

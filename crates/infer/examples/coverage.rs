@@ -22,6 +22,7 @@ use hertzchain_infer::{
     SamplingError, Surrogate, fit, profile,
 };
 use rayon::prelude::*;
+use std::cmp::Ordering;
 use std::error::Error;
 use std::ops::Range;
 
@@ -142,8 +143,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Which levels of an interval hold the true value, for both parameters.
-type Held = [[bool; 2]; 2];
+/// Where the true value is beside the intervals of both levels, for both parameters:
+/// below, within (`Equal`) or above.
+type Held = [[Ordering; 2]; 2];
 
 /// What one data set says.
 struct Said {
@@ -174,7 +176,7 @@ fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn
         case.name, case.free[0], case.free[1], surrogate.error
     );
     println!(
-        "| method | data sets | {0} 68 % | {0} 95 % | {1} 68 % | {1} 95 % |",
+        "| method | data sets | {0} 68 % | {0} 95 % | below, above | {1} 68 % | {1} 95 % | below, above |",
         case.free[0], case.free[1]
     );
     for (at, method) in ["covariance", "profile", "posterior"].iter().enumerate() {
@@ -218,17 +220,21 @@ fn truth(case: &Case) -> Result<Truth, Box<dyn Error>> {
     Ok(truth)
 }
 
-/// Shares in percent with their binomial errors.
+/// Shares in percent with their binomial errors; beside the wider intervals, how often
+/// the truth was below them and above.
 fn shares(held: &[Held]) -> String {
     let of = held.len().max(1) as f64;
-    let share = |at: usize, level: usize| {
-        let share = held.iter().filter(|held| held[at][level]).count() as f64 / of;
+    let share = |at: usize, level: usize, place: Ordering| {
+        let share = held.iter().filter(|held| held[at][level] == place).count() as f64 / of;
         let error = (share * (1.0 - share) / of).sqrt();
         format!("{:.1} ± {:.1}", 100.0 * share, 100.0 * error)
     };
-    [(0, 0), (0, 1), (1, 0), (1, 1)]
-        .map(|(at, level)| share(at, level))
-        .join(" | ")
+    let parameter = |at: usize| {
+        let [narrow, wide] = [0, 1].map(|level| share(at, level, Ordering::Equal));
+        let [below, above] = [Ordering::Less, Ordering::Greater].map(|place| share(at, 1, place));
+        format!("{narrow} | {wide} | {below}, {above}")
+    };
+    format!("{} | {}", parameter(0), parameter(1))
 }
 
 fn said(
@@ -242,8 +248,12 @@ fn said(
     let held = |interval: &dyn Fn(usize, usize) -> [f64; 2]| -> Held {
         [0, 1].map(|at| {
             [0, 1].map(|level| {
-                let [lower, upper] = interval(at, level);
-                lower <= case.exact[at] && case.exact[at] <= upper
+                let ([lower, upper], exact) = (interval(at, level), case.exact[at]);
+                match (exact < lower, exact > upper) {
+                    (true, _) => Ordering::Less,
+                    (_, true) => Ordering::Greater,
+                    _ => Ordering::Equal,
+                }
             })
         })
     };

@@ -173,6 +173,9 @@ fn check(models: &[Compared<'_>]) -> Result<(), CompareError> {
 const UNDECIDED: f64 = 2.0;
 const NO_SUPPORT: f64 = 10.0;
 
+/// Odds beyond are not told: no error is so exactly normal.
+const MOST_ODDS: f64 = 1e9;
+
 fn sentence(models: &[Compared<'_>], criteria: &[Criteria], order: &[usize]) -> String {
     let (best, second) = (order[0], order[1]);
     let (first, next) = (models[best].name, models[second].name);
@@ -187,7 +190,11 @@ fn sentence(models: &[Compared<'_>], criteria: &[Criteria], order: &[usize]) -> 
             "The data favour {first}: {next}, the next, is {odds:.0} times less supported (AICc higher by {above:.1})"
         ),
         above if above.is_finite() => format!(
-            "The data support {first} alone: {next}, the next, is rejected (AICc higher by {above:.1}, odds of 1 to {odds:.1e})"
+            "The data support {first} alone: {next}, the next, is rejected (AICc higher by {above:.1}, {})",
+            match odds < MOST_ODDS {
+                true => format!("odds of 1 to {odds:.1e}"),
+                false => format!("odds below 1 to {MOST_ODDS:.0e}"),
+            }
         ),
         _ => format!("The data support {first}; {next} has too many parameters for them"),
     };

@@ -17,7 +17,7 @@ use verdict::LEAST_PROBABILITY;
 pub use verdict::{Match, OwnNumber, Verdict};
 
 use crate::curve::{CurveError, CurveProblem, Model};
-use crate::data::Data;
+use crate::data::{Data, Observable};
 use crate::free::{FreeError, FreeNumber, FreeNumbers};
 use crate::{Covariance, Fit, FitError, Fitting, Goodness, ModelError, Parameter, Problem, fit};
 use hertzchain_experiment::{Experiment, Mistakes};
@@ -138,31 +138,38 @@ impl Gauge {
     }
 
     /// What speaks against believing the verdict, and what to do: a dry curve that is
-    /// not its model's, or a pushed row that is nothing known while its push is the
-    /// file's.
+    /// not its model's, or a pushed row of nothing known whose load is taken from the
+    /// file, or judged by its returns too.
     #[must_use]
     pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
         let dry = self.dry_goodness().chi_square;
         let dry = dry.filter(|found| found.probability < LEAST_PROBABILITY);
-        let pushed = self.own == 0 && self.wet.experiment().get(PUSH).is_ok();
+        let pushed = self.wet.experiment().get(PUSH).is_ok();
+        let loads = pushed && (self.own == 0 || self.data.has(Observable::Reflected));
         let unknown = verdict.allowed().next().is_none();
-        let doubt = match (dry, pushed && unknown) {
-            (None, false) => return None,
-            (None, true) => String::new(),
-            (Some(dry), _) => format!(
-                "The dry curve does not follow its model (as far by chance: {:.0e}), so the wet one is \
-                 judged by a chain that is not the measured one. ",
-                dry.probability
-            ),
-        };
-        Some(match pushed {
-            true => format!(
-                "{doubt}A row that was tapped or shot before holds loads that are not its file's, since \
-                 friction froze them: let each chain have its own, with incident times alone (--own {PUSH} \
-                 --use incident), or lay it with less friction."
-            ),
-            false => format!("{doubt}Look at it first: hertzchain fit."),
-        })
+        let load = "A row that was tapped or shot before holds loads that are not its file's, since \
+                    friction froze them, and its split returns depend on each of them";
+        let remedy = format!("--own {PUSH} --use incident");
+        let mut doubts = Vec::new();
+        if dry.is_some() {
+            doubts.push(
+                "The dry curve does not follow its model, so the wet one is judged by a chain that is \
+                 not the measured one."
+                    .to_owned(),
+            );
+        }
+        match (loads && (unknown || dry.is_some()), dry.is_some() && !pushed) {
+            (true, _) => doubts.push(format!(
+                "{load}: let each chain have its own load, with incident times alone ({remedy}), or \
+                 lay it with less friction."
+            )),
+            (_, true) => doubts.push(format!(
+                "{load}. If this one was, take a model with a push (such as --preset paper \
+                 --dry-preset paper) and let each chain have its own load ({remedy})."
+            )),
+            _ => {}
+        }
+        (!doubts.is_empty()).then(|| doubts.join(" "))
     }
 
     /// How many of the dry fit's parameters hold for both chains: the first.

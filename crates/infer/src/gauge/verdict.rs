@@ -50,6 +50,9 @@ const TOLERANCE: f64 = 0.01;
 /// start at their dry values.
 const ITERATIONS: usize = 20;
 
+/// Probabilities below are not told: no error is so exactly normal.
+const NEVER: f64 = 1e-9;
+
 /// Below this probability an oil is rejected.
 pub(super) const LEAST_PROBABILITY: f64 = 0.01;
 
@@ -78,8 +81,13 @@ impl Verdict {
             ([], None) => "None of the known oils could be computed.".to_owned(),
             ([], Some(nearest)) => format!(
                 "None of these: the nearest, {}, is off by {:.1} standard errors in the mean, which chance \
-                 gives in {:.0e} of repetitions.",
-                nearest.oil, nearest.distance, nearest.chi_square.probability
+                 gives in {} of repetitions.",
+                nearest.oil,
+                nearest.distance,
+                match nearest.chi_square.probability {
+                    probability if probability < NEVER => format!("less than {NEVER:.0e}"),
+                    probability => format!("{probability:.0e}"),
+                }
             ),
             (several, _) => format!("The data do not tell {} apart.", several.join(" and ")),
         }

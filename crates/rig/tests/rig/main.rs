@@ -13,3 +13,4 @@ mod poisoned;
 mod record;
 mod series;
 mod small;
+mod wave;

@@ -35,7 +35,16 @@ pub fn text(fitted: &Fitted) -> String {
 
 /// Correlations and how well the data are described.
 pub fn described(fitted: &Inferred, problem: &dyn Problem) -> String {
-    correlations(fitted) + &goodness(&fitted.goodness, problem)
+    correlations(fitted) + &goodness(&fitted.goodness, problem) + &derivatives(fitted)
+}
+
+/// How far derivatives by two step sizes agree.
+fn derivatives(fitted: &Inferred) -> String {
+    let worst = fitted.fit.jacobian.worst_disagreement();
+    format!(
+        "Derivatives by two step sizes agree within {}\n",
+        percent(worst)
+    )
 }
 
 /// What is doubtful about the minimum.
