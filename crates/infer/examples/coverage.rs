@@ -6,7 +6,7 @@
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet 501    # other data sets: seeds from 501
 //! ```
 //!
-//! Curves are computed a hundred times as accurately as a fit's, once by
+//! Curves are right to 1e-7, ten times as right as the surrogate's, once by
 //! Runge–Kutta of order 4 with a fixed step, and measured at the paper's noise:
 //! 20 shots a speed, speeds ±0.003 m/s; that of `bent` at so much more noise that the
 //! three kinds of intervals differ. Fits use a surrogate of the model, whose error
