@@ -113,7 +113,7 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
     assert found.to_pandas().attrs["units"]["measured_v"] == "V" and "whole pulses of 2 records" in repr(found)
     files = sorted((tmp_path / "records").glob("*.h5"))
     assert hc.fit(files, row, case="dry", free="steel.eta,sensor_gain", most_shots=2).details == {**told, "free": told["free"]}
-    with pytest.raises(hc.OptionError, match="no record is left"):
+    with pytest.raises(hc.OptionError, match="has no case `another`"):
         hc.fit(files[:1], row, case="another", free="steel.eta")
 
 

@@ -23,6 +23,9 @@ RETRIES = 3
 LOOK_S = 5.0
 """Time between looks at how many workers there are; they come and go."""
 
+AGAIN = ("lost", "pending")
+"""Of a shard whose worker died with what it had to tell: it is computed again."""
+
 GONE = "the cluster is gone: what is done lies in the folder, and the same call goes on with it"
 
 Shard = Callable[..., tuple[int, "bool | str"]]
@@ -83,6 +86,9 @@ def _there(shard: Shard, arguments: Arguments, of: int, client: Client) -> Itera
     with _connected():
         running = as_completed([hand_out(number) for number in islice(waiting, room.now())])
         for future in running:
+            if future.status in AGAIN:
+                running.add(future)
+                continue
             number = numbers.pop(future.key)
             yield _outcome(number, future)
             future.release()
