@@ -63,7 +63,7 @@ pub(crate) fn of_times(plan: &Plan) -> f64 {
 /// beads mostly reach an accuracy, and whether openings must be found: measured,
 /// `docs/numerics.md`. Each shot tells by two longer steps whether it has.
 const EQUAL_STEPS: [(f64, f64, bool); 5] = [
-    (1e-3, 0.16, false),
+    (1e-3, 0.13, false),
     (1e-4, 0.1, false),
     (1e-5, 0.07, true),
     (1e-6, 0.036, true),
