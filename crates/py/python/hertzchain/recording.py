@@ -371,11 +371,28 @@ def _files(records: Path_ | Iterable[Path_] | NDArray[Any], folder: Path) -> lis
     if isinstance(records, np.ndarray):
         if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
             raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
-        np.save(folder / "array.npy", np.ascontiguousarray(records))
-        return [str(folder / "array.npy")]
+        return [_saved(records, folder / "array.npy")]
     if isinstance(records, (str, os.PathLike)):
         return [os.fspath(records)]
     return [os.fspath(record) for record in records]
+
+
+PIECE = 1 << 20
+"""Samples that are written in a go: signals are heard between two."""
+
+
+def _saved(records: NDArray[Any], path: Path) -> str:
+    """An array of any layout as a file of NumPy."""
+    header = {"descr": np.lib.format.dtype_to_descr(records.dtype), "fortran_order": False, "shape": records.shape}
+    table = records.reshape(1, -1) if records.ndim == 1 else records
+    rows, columns = table.shape
+    together = max(1, PIECE // columns)
+    with open(path, "wb") as file:
+        np.lib.format.write_array_header_1_0(file, header)
+        for first in range(0, rows, together):
+            for left in range(0, columns, PIECE):
+                file.write(table[first : first + together, left : left + PIECE].tobytes())
+    return str(path)
 
 
 def _numbers(cells: list[str]) -> NDArray[Any] | list[str]:
