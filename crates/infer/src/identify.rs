@@ -1,8 +1,8 @@
 //! Which combinations of parameters the data determine, and which not.
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
-use crate::linear::{combine, svd};
-use crate::{Fit, Parameter};
+use crate::linear::{Svd, combine, norm, svd};
+use crate::{Fit, Jacobian, Parameter};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its
 /// scale, and what they mean. Priors do not enter: it is the data that are asked.
@@ -46,21 +46,11 @@ impl Identifiability {
     /// [`Problem::residual_label`](crate::Problem::residual_label).
     #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit, label: impl Fn(usize) -> String) -> Self {
-        let jacobian = &fit.jacobian;
-        let columns: Vec<Vec<f64>> = (jacobian.columns.iter().zip(parameters))
-            .map(|(column, parameter)| {
-                let data = column.iter().take(jacobian.data_rows);
-                data.map(|x| x * parameter.scale).collect()
-            })
-            .collect();
-        let found = svd(&columns);
-        let errors = (columns.iter().zip(&jacobian.disagreement))
-            .map(|(column, d)| crate::linear::norm(column) * (ROUNDING + EXTRAPOLATED * d));
-        let floor = errors.map(|e| e * e).sum::<f64>().sqrt();
-        let weak = |value: &f64| value * UNDETERMINED <= 1.0 || *value <= floor;
+        let scaled = Scaled::of(parameters, &fit.jacobian);
+        let (found, floor) = scaled.taken_apart();
         let pairs = found.values.iter().zip(&found.right).rev();
         let confused = pairs
-            .filter(|(value, _)| weak(value))
+            .filter(|(value, _)| is_weak(**value, floor))
             .map(|(value, direction)| {
                 let error = if *value <= floor {
                     f64::INFINITY
@@ -82,6 +72,97 @@ impl Identifiability {
     #[must_use]
     pub fn determined(&self) -> usize {
         self.singular_values.len() - self.confused.len()
+    }
+
+    /// Whether a parameter's value means nothing: a combination that the data leave
+    /// open moves it, and within a standard error (what priors tell counted in) it
+    /// may be off by its whole scale.
+    #[must_use]
+    pub fn leaves_open(&self, parameter: usize, of: &Parameter, sd: f64) -> bool {
+        let weak = self.singular_values.iter().zip(&self.directions);
+        let mut weak = weak.filter(|(value, _)| is_weak(**value, self.floor));
+        let moves = weak.any(|(_, direction)| direction[parameter].abs() > MOVED);
+        sd.is_infinite() || moves && sd >= UNDETERMINED * of.scale
+    }
+}
+
+/// Component of a unit direction that moves a parameter.
+const MOVED: f64 = 1e-4;
+
+/// Whether a singular value leaves its combination open.
+fn is_weak(value: f64, floor: f64) -> bool {
+    value * UNDETERMINED <= 1.0 || value <= floor
+}
+
+/// A Jacobian of data in units of the parameters' scales, and how wrong its
+/// columns may be.
+#[derive(Clone, Debug)]
+pub(crate) struct Scaled {
+    columns: Vec<Vec<f64>>,
+    errors: Vec<f64>,
+}
+
+/// What rows of a Jacobian determine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Determined {
+    /// How many combinations.
+    pub count: usize,
+    /// Standard error of the one that is known worst, in units of the scales;
+    /// infinite if nothing is known of it.
+    pub worst: f64,
+    /// Standard errors of the parameters, in units of their scales.
+    pub sd: Vec<f64>,
+}
+
+impl Scaled {
+    pub(crate) fn of(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
+        let column = |(column, of): (&Vec<f64>, &Parameter)| -> Vec<f64> {
+            let data = column.iter().take(jacobian.data_rows);
+            data.map(|x| x * of.scale).collect()
+        };
+        let pairs = jacobian.columns.iter().zip(parameters);
+        let columns: Vec<Vec<f64>> = pairs.map(column).collect();
+        let errors = (columns.iter().zip(&jacobian.disagreement))
+            .map(|(column, d)| norm(column) * (ROUNDING + EXTRAPOLATED * d))
+            .collect();
+        Self { columns, errors }
+    }
+
+    /// Together with the rows of another.
+    pub(crate) fn and(&self, other: &Self) -> Self {
+        let columns = self.columns.iter().zip(&other.columns);
+        let errors = self.errors.iter().zip(&other.errors);
+        Self {
+            columns: columns.map(|(a, b)| [&a[..], b].concat()).collect(),
+            errors: errors.map(|(a, b)| a.hypot(*b)).collect(),
+        }
+    }
+
+    /// Singular values, and up to where they cannot be told from 0.
+    fn taken_apart(&self) -> (Svd, f64) {
+        (svd(&self.columns), norm(&self.errors))
+    }
+
+    pub(crate) fn determined(&self) -> Determined {
+        let (found, floor) = self.taken_apart();
+        let known = |value: f64| match value <= floor {
+            true => f64::INFINITY,
+            false => value.recip(),
+        };
+        let pairs = || found.values.iter().zip(&found.right);
+        let part = |value: f64, share: f64| match share.abs() > MOVED {
+            true => (share * known(value)).powi(2),
+            false => 0.0,
+        };
+        let variance = |k: usize| pairs().map(|(value, v)| part(*value, v[k])).sum::<f64>();
+        let weak = found.values.iter().filter(|value| is_weak(**value, floor));
+        Determined {
+            count: found.values.len() - weak.count(),
+            worst: found.values.last().map_or(0.0, |least| known(*least)),
+            sd: (0..self.columns.len())
+                .map(|k| variance(k).sqrt())
+                .collect(),
+        }
     }
 }
 

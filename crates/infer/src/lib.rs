@@ -29,10 +29,13 @@ pub use compare::{
 };
 pub use covariance::Covariance;
 pub use curve::{
-    CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Model, Part, Predicted, Speeds,
-    Supply, Surrogate, SurrogateError, Way, WayError, usual_ways,
+    Advice, CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Model, Part, Predicted,
+    Prospect, Speeds, Supply, Surrogate, SurrogateError, Way, WayError, usual_ways,
 };
-pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection, wrong_speed};
+pub use data::{
+    Data, DataError, DataRow, Defaults, FEWEST_SHOTS, Observable, Place, Selection, widening,
+    wrong_speed,
+};
 pub use design::{Candidate, Design, DesignError, Expected, design};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES};
 pub use goodness::{Goodness, Runs, runs};

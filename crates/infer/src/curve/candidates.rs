@@ -57,6 +57,16 @@ impl ExpectedErrors {
     }
 }
 
+impl ExpectedErrors {
+    /// Of an observable.
+    pub(super) fn of(&self, observable: Observable) -> f64 {
+        match observable.is_time() {
+            true => self.time_s,
+            false => self.ratio,
+        }
+    }
+}
+
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
@@ -114,15 +124,20 @@ pub fn usual_ways(experiment: &Experiment) -> Result<Vec<Way>, WayError> {
             ways.push(way(&name, &moved, &[Incident, Reflected]));
         }
     }
-    if experiment.reading().preload == PreloadReading::None {
-        let pushed = experiment.with_reading(&Reading {
-            preload: PreloadReading::Constant,
-            ..experiment.reading()
-        })?;
+    if let Some(pushed) = pushed(experiment)? {
         let name = "incident, reflected, pushed with 0.24 N";
         ways.push(way(name, &pushed, &[Incident, Reflected]));
     }
     Ok(ways)
+}
+
+/// The chain with a push of 0.24 N on bead 1, if it has none.
+pub(super) fn pushed(experiment: &Experiment) -> Result<Option<Experiment>, Mistakes> {
+    let reading = experiment.reading();
+    let none = reading.preload == PreloadReading::None;
+    let preload = PreloadReading::Constant;
+    let pushed = none.then(|| experiment.with_reading(&Reading { preload, ..reading }));
+    pushed.transpose()
 }
 
 impl CurveProblem {
@@ -204,7 +219,7 @@ fn of_way(
 }
 
 /// Data as they would be at the fit, without noise.
-fn expected(
+pub(super) fn expected(
     model: &Model,
     fit: &Fit,
     way: &Way,
@@ -219,11 +234,7 @@ fn expected(
         .unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
     let row = |(at, speed): (usize, &f64)| {
         let value = |of: Observable| {
-            let sigma = if of.is_time() {
-                errors.time_s
-            } else {
-                errors.ratio
-            };
+            let sigma = errors.of(of);
             let wanted = way.observables.contains(&of);
             let value = curve.get(at)?[of.index()].filter(|_| wanted)?;
             Some(Estimate { value, sigma })

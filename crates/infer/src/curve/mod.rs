@@ -11,6 +11,7 @@ mod stencil;
 mod surrogate;
 mod whiten;
 
+pub use advice::{Advice, Prospect};
 pub use band::FittedCurve;
 pub use candidates::{ExpectedErrors, Way, WayError, usual_ways};
 pub use joint::{Joint, Part, Supply};

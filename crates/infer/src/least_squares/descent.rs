@@ -1,7 +1,7 @@
 //! One way down to a minimum, as questions and answers.
 
 use super::merit::{Linear, Merit, Valued};
-use super::slopes::{Stencil, slopes};
+use super::slopes::{Slopes, Stencil, slopes};
 use crate::linear::{Svd, dot, norm, svd};
 use crate::{ModelError, Parameter, Residuals};
 
@@ -24,6 +24,9 @@ pub(crate) struct Descent<'a> {
     iterations: usize,
     /// Iterations in a row that hardly gained anything.
     idle: usize,
+    /// Where it started, and whether it must see there that every parameter counts.
+    start: Vec<f64>,
+    wary: bool,
 }
 
 /// When a descent ends.
@@ -59,6 +62,9 @@ pub enum Ending {
     },
     /// The model has no residuals here or beside here.
     ModelFails(ModelError),
+    /// A parameter, by its place, that changes no residual at the start, or is on
+    /// its way to nowhere.
+    ChangesNothing(usize),
 }
 
 impl Ending {
@@ -89,6 +95,9 @@ impl std::fmt::Display for Ending {
                 2.0 * expected_fall
             ),
             Self::ModelFails(error) => write!(f, "not converged: the model fails: {error}"),
+            Self::ChangesNothing(at) => {
+                write!(f, "not converged: parameter {} changes nothing", at + 1)
+            }
         }
     }
 }
@@ -128,6 +137,11 @@ const LARGEST_DAMPING: f64 = 1e10;
 const LEAST_DAMPING: f64 = 1e-12;
 /// A fall of χ²/2 that no conclusion depends on.
 const SMALL_FALL: f64 = 1e-3;
+/// Change of all residuals together, in σ, by a parameter's whole size, below which
+/// it counts for nothing.
+pub(super) const NOTICED: f64 = 0.01;
+/// Distance from the start, in units of the scale, from which it is nowhere.
+const NOWHERE: f64 = 1e3;
 /// Iterations that gain less than a thousandth of what was expected, after
 /// which the model's noise is taken to be reached.
 const IDLE: usize = 3;
@@ -141,6 +155,7 @@ impl<'a> Descent<'a> {
             merit,
             free,
             limits,
+            start: point.clone(),
             point,
             at: None,
             steps,
@@ -148,6 +163,7 @@ impl<'a> Descent<'a> {
             stage: Stage::Done(Ending::Minimum),
             iterations: 0,
             idle: 0,
+            wary: false,
         };
         descent.stage = Stage::Start(descent.stencils());
         descent
@@ -157,6 +173,12 @@ impl<'a> Descent<'a> {
     pub fn with_steps(mut self, steps: &[f64]) -> Self {
         self.steps = steps.to_vec();
         self.stage = Stage::Start(self.stencils());
+        self
+    }
+
+    /// The same, ended at once if a parameter changes nothing where it starts.
+    pub fn wary(mut self) -> Self {
+        self.wary = true;
         self
     }
 
@@ -221,6 +243,9 @@ impl<'a> Descent<'a> {
             Ok(slopes) => slopes,
             Err(error) => return Stage::Done(Ending::ModelFails(error)),
         };
+        if let Some(parameter) = self.without_effect(&slopes) {
+            return Stage::Done(Ending::ChangesNothing(parameter));
+        }
         let linear = self.merit.linear(at, &slopes);
         self.choose_steps(&linear);
         let trials = self.trials(linear);
@@ -236,6 +261,19 @@ impl<'a> Descent<'a> {
         }
         self.iterations += 1;
         Stage::Trials(Box::new(trials))
+    }
+
+    /// A parameter by whose whole size no residual changes, at the start or far from it.
+    fn without_effect(&self, slopes: &Slopes) -> Option<usize> {
+        let data = self.merit.problem.residual_count();
+        let without = |(k, column): (&usize, &Vec<f64>)| {
+            let (value, scale) = (self.point[*k], self.parameters()[*k].scale);
+            let nowhere = (value - self.start[*k]).abs() > NOWHERE * scale;
+            let looked_at = nowhere || self.wary && self.iterations == 0;
+            let effect = norm(&column[..data]) * value.abs().max(scale);
+            (looked_at && effect < NOTICED).then_some(*k)
+        };
+        self.free.iter().zip(&slopes.columns).find_map(without)
     }
 
     fn choose_steps(&mut self, linear: &Linear) {

@@ -34,6 +34,7 @@ def fit(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     robust: bool = False,
     starts: int = 1,
@@ -70,7 +71,10 @@ def fit(
     against : mapping of str to str, optional
         Other models of the same data: presets or files, and what is free in them.
     speed_error, tof_error, ratio_error : float, optional
-        Standard errors in m/s, s and 1 where the table has none.
+        Standard errors in m/s, s and 1 where the table has none; ``speed_error=0`` says that
+        speeds are exact.
+    error_shots : int, optional
+        Shots a row from whose scatter the standard errors come: widens them for that.
     use : iterable of {"incident", "reflected", "wall-ratio", "returning-ratio"}
         Which observables of a table are fitted.
     accuracy : float
@@ -115,7 +119,7 @@ def fit(
     rivals = {model: given if isinstance(given, str) else ",".join(given) for model, given in (against or {}).items()}
     told = words(
         case=case, use=use, method=method, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed,
-        speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, robust=robust,
+        speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, robust=robust,
         starts=starts, steps=steps, direct=direct, seed=seed, threads=threads,
     )  # fmt: skip
     told += options.listed("free", free)
@@ -162,6 +166,7 @@ def design(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,
@@ -171,7 +176,7 @@ def design(
     Parameters
     ----------
     data, model, free, case, use, start, bounds, prior, scale, fixed, speed_error, tof_error, \
-ratio_error, accuracy, threads, progress
+ratio_error, error_shots, accuracy, threads, progress
         As for `fit` of a table: numbers in SI.
     target : str or iterable of str, optional
         Parameters to tighten, as the fit names them; all when absent.
@@ -198,7 +203,7 @@ ratio_error, accuracy, threads, progress
     listed = speeds if isinstance(speeds, str) or speeds is None else ",".join(map(options.text, speeds))
     told = words(
         case=case, use=use, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed, speed_error=speed_error,
-        tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, threads=threads,
+        tof_error=tof_error, ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, threads=threads,
     )  # fmt: skip
     told += [*options.listed("free", free), *options.listed("target", target), *options.words(speeds=listed, picks=picks)]
     with options.progress(progress, None, "curve") as update:
@@ -220,6 +225,7 @@ def gauge(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,
@@ -239,7 +245,7 @@ def gauge(
         holds in a tapped row (``near_end.force``).
     oils : path, optional
         Table (CSV) of further oils.
-    wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads, progress
+    wet_case, dry_case, use, speed_error, tof_error, ratio_error, error_shots, accuracy, threads, progress
         As for `fit`; cases of each table of its own.
 
     Returns
@@ -264,7 +270,7 @@ def gauge(
     told = [
         *options.words(
             wet_case=wet_case, dry_case=dry_case, speed_error=speed_error, tof_error=tof_error,
-            ratio_error=ratio_error, accuracy=accuracy, threads=threads,
+            ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, threads=threads,
         ),
         *options.listed("use", use), *options.listed("dry-free", dry_free),
         *options.listed("own", own),
