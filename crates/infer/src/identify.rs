@@ -5,18 +5,21 @@ use crate::linear::{Svd, combine, norm, svd};
 use crate::{Fit, Jacobian, Parameter};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its
-/// scale, and what they mean. Priors do not enter: it is the data that are asked.
+/// size, and what they mean: its scale, or its value at the best fit where that is
+/// larger, as it is after a start far too low. Priors do not enter: it is the data that are asked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
-    /// Largest first: a combination as long as one scale changes all residuals
+    /// Largest first: a combination as long as one size changes all residuals
     /// together by so many σ.
     pub singular_values: Vec<f64>,
     /// Singular values up to here cannot be told from 0 by the derivatives.
     pub floor: f64,
-    /// Unit directions, in units of the scales, one for each singular value.
+    /// Unit directions, in units of the sizes, one for each singular value.
     pub directions: Vec<Vec<f64>>,
     /// Combinations that the data do not determine, worst first.
     pub confused: Vec<Confusion>,
+    /// The parameters' sizes, in whose units the directions are.
+    pub sizes: Vec<f64>,
 }
 
 /// A combination of parameters that the data cannot tell from none.
@@ -27,14 +30,14 @@ pub struct Confusion {
     pub change: Vec<f64>,
     /// Change of each residual of the data thereby, in σ.
     pub effect: Vec<f64>,
-    /// Standard error of the combination, in units of the scales; infinite if
+    /// Standard error of the combination, in units of the sizes; infinite if
     /// the derivatives cannot tell its effect from none at all.
     pub standard_error: f64,
     /// All this in a sentence.
     pub words: String,
 }
 
-/// Standard error, in units of scales, from which a combination counts as
+/// Standard error, in units of sizes, from which a combination counts as
 /// undetermined: its size is then not even known to a factor of about two, and a
 /// linear analysis means nothing any more.
 pub const UNDETERMINED: f64 = 1.0;
@@ -46,6 +49,7 @@ impl Identifiability {
     /// [`Problem::residual_label`](crate::Problem::residual_label).
     #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit, label: impl Fn(usize) -> String) -> Self {
+        let parameters = &sized(parameters, &fit.point);
         let scaled = Scaled::of(parameters, &fit.jacobian);
         let (found, floor) = scaled.taken_apart();
         let pairs = found.values.iter().zip(&found.right).rev();
@@ -65,6 +69,7 @@ impl Identifiability {
             floor,
             directions: found.right,
             confused,
+            sizes: parameters.iter().map(|p| p.scale).collect(),
         }
     }
 
@@ -76,14 +81,24 @@ impl Identifiability {
 
     /// Whether a parameter's value means nothing: a combination that the data leave
     /// open moves it, and within a standard error (what priors tell counted in) it
-    /// may be off by its whole scale.
+    /// may be off by its whole size.
     #[must_use]
-    pub fn leaves_open(&self, parameter: usize, of: &Parameter, sd: f64) -> bool {
+    pub fn leaves_open(&self, parameter: usize, sd: f64) -> bool {
         let weak = self.singular_values.iter().zip(&self.directions);
         let mut weak = weak.filter(|(value, _)| is_weak(**value, self.floor));
         let moves = weak.any(|(_, direction)| direction[parameter].abs() > MOVED);
-        sd.is_infinite() || moves && sd >= UNDETERMINED * of.scale
+        sd.is_infinite() || moves && sd >= UNDETERMINED * self.sizes[parameter]
     }
+}
+
+/// Parameters whose scales are their sizes at a point.
+pub(crate) fn sized(parameters: &[Parameter], point: &[f64]) -> Vec<Parameter> {
+    let pairs = parameters.iter().zip(point);
+    let size = |(of, value): (&Parameter, &f64)| Parameter {
+        scale: of.scale.max(value.abs()),
+        ..of.clone()
+    };
+    pairs.map(size).collect()
 }
 
 /// Component of a unit direction that moves a parameter.
@@ -94,7 +109,7 @@ fn is_weak(value: f64, floor: f64) -> bool {
     value * UNDETERMINED <= 1.0 || value <= floor
 }
 
-/// A Jacobian of data in units of the parameters' scales, and how wrong its
+/// A Jacobian of data in units of the parameters' sizes, and how wrong its
 /// columns may be.
 #[derive(Clone, Debug)]
 pub(crate) struct Scaled {
@@ -107,10 +122,10 @@ pub(crate) struct Scaled {
 pub(crate) struct Determined {
     /// How many combinations.
     pub count: usize,
-    /// Standard error of the one that is known worst, in units of the scales;
+    /// Standard error of the one that is known worst, in units of the sizes;
     /// infinite if nothing is known of it.
     pub worst: f64,
-    /// Standard errors of the parameters, in units of their scales.
+    /// Standard errors of the parameters, in units of their sizes.
     pub sd: Vec<f64>,
 }
 
@@ -189,7 +204,7 @@ fn confusion(
     }
 }
 
-/// What percents of a parameter are of: its value, or its scale where that is 0.
+/// What percents of a parameter are of: its value, or its size where that is 0.
 fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
     match fit.point[k].abs() {
         0.0 => parameters[k].scale,

@@ -158,6 +158,24 @@ fn what_would_separate_confused_numbers_is_foretold_with_their_errors() {
     assert!(!words.contains("no further data"), "{words}");
 }
 
+/// What counts is the value that was found, not the start's thousandth of it.
+#[test]
+fn a_start_far_too_low_leaves_nothing_open() {
+    let dry = preset("dry").unwrap();
+    let data = Truth::of(&dry, &speeds_m_s(6)).measured(7);
+    let model = model(&dry, &["eta", "B"]);
+    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    (parameters[0].start, parameters[0].scale) = (32.0, 32.0);
+    let problem = hertzchain_infer::CurveProblem::new(model, data, parameters).unwrap();
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let label = |at: usize| problem.residual_label(at);
+    let found = Identifiability::new(problem.parameters(), &best, label);
+    let sd = Covariance::new(problem.parameters(), &best).sd;
+    assert!(sd[0] > 32.0, "{sd:?}");
+    assert_eq!(found.determined(), 2, "{:?}", found.singular_values);
+    assert!(!found.leaves_open(0, sd[0]));
+}
+
 #[test]
 fn one_speed_and_one_time_tell_one_number() {
     let viscoelastic = preset("hertz-viscoelastic").unwrap();

@@ -6,7 +6,7 @@ use super::model::Model;
 use super::problem::CurveProblem;
 use crate::data::{Data, Observable};
 use crate::free::Form;
-use crate::identify::{Determined, Scaled};
+use crate::identify::{Determined, Scaled, sized};
 use crate::least_squares::{Merit, jacobian};
 use crate::{Fit, Loss, ModelError, Parameter, Prior, Problem};
 use hertzchain_signal::Estimate;
@@ -35,7 +35,7 @@ pub struct Prospect {
     /// How many combinations of the parameters are determined.
     pub determined: usize,
     /// Standard error of the combination that is known worst, in units of the
-    /// parameters' scales; infinite if nothing is known of it.
+    /// parameters' sizes; infinite if nothing is known of it.
     pub worst: f64,
     /// Standard errors of the parameters in their units; infinite if undetermined.
     pub sd: Vec<f64>,
@@ -114,7 +114,16 @@ impl CurveProblem {
     /// whose curves cannot be computed are left out.
     #[must_use]
     pub fn would_separate(&self, fit: &Fit) -> Advice {
-        let own = Scaled::of(self.parameters(), &fit.jacobian);
+        let sized = sized(self.parameters(), &fit.point);
+        let own = Scaled::of(&sized, &fit.jacobian);
+        let prospect = |name: &str, found: Determined| Prospect {
+            measure: name.to_owned(),
+            determined: found.count,
+            worst: found.worst,
+            sd: (found.sd.iter().zip(&sized))
+                .map(|(sd, of)| sd * of.scale)
+                .collect(),
+        };
         let errors = ExpectedErrors::like(self.data());
         let beside = self.beside(fit, &errors);
         let apart = self.apart(fit, &errors);
@@ -125,7 +134,7 @@ impl CurveProblem {
                 .map(|(name, rows)| (name.clone(), own.and(rows))),
         );
         let mut prospects: Vec<Prospect> = (judged.iter())
-            .map(|(name, rows)| self.prospect(name, rows.determined()))
+            .map(|(name, rows)| prospect(name, rows.determined()))
             .collect();
         prospects.sort_by(|a, b| {
             let count = b.determined.cmp(&a.determined);
@@ -138,23 +147,13 @@ impl CurveProblem {
             .fold(full.clone(), |sum, (_, rows)| sum.and(rows));
         let named: Vec<&Prospect> = prospects.iter().collect();
         let name = format!("all of this: {}", names(&named));
-        let together = (!named.is_empty()).then(|| self.prospect(&name, all.determined()));
+        let together = (!named.is_empty()).then(|| prospect(&name, all.determined()));
         Advice {
             combinations: self.parameters().len(),
-            now: self.prospect("nothing more", own.determined()),
+            now: prospect("nothing more", own.determined()),
             prospects,
             together,
             instead: self.instead(),
-        }
-    }
-
-    fn prospect(&self, name: &str, found: Determined) -> Prospect {
-        let sd = found.sd.iter().zip(self.parameters());
-        Prospect {
-            measure: name.to_owned(),
-            determined: found.count,
-            worst: found.worst,
-            sd: sd.map(|(sd, of)| sd * of.scale).collect(),
         }
     }
 
@@ -248,8 +247,9 @@ impl CurveProblem {
 
     /// The Jacobian of data that might be measured.
     fn rows(&self, model: Model, data: Data, fit: &Fit) -> Result<Scaled, ModelError> {
-        let flat = |of: &Parameter| of.clone().with_prior(Prior::Flat);
-        let parameters: Vec<Parameter> = self.parameters().iter().map(flat).collect();
+        let flat = |of: Parameter| of.with_prior(Prior::Flat);
+        let sized = sized(self.parameters(), &fit.point).into_iter();
+        let parameters: Vec<Parameter> = sized.map(flat).collect();
         let problem = Self::part(model, data).with_parameters(parameters);
         let merit = Merit::new(&problem, Loss::Squares);
         let found = problem
@@ -257,7 +257,7 @@ impl CurveProblem {
             .remove(0);
         let at = merit.value(&fit.point, &found)?;
         let here = (fit.point.as_slice(), &at);
-        let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps)?;
+        let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
         Ok(Scaled::of(problem.parameters(), &jacobian))
     }
 

@@ -27,6 +27,10 @@ pub(crate) struct Descent<'a> {
     /// Where it started, and whether it must see there that every parameter counts.
     start: Vec<f64>,
     wary: bool,
+    /// Whether the last step went as the linear model said: then fewer are tried.
+    sure: bool,
+    /// Neighbours of the point, and the steps to them.
+    beside: Option<Beside>,
 }
 
 /// When a descent ends.
@@ -119,7 +123,7 @@ struct Trials {
     loose: Vec<usize>,
     scales: Vec<f64>,
     expected_fall: f64,
-    dampings: [f64; 4],
+    dampings: Vec<f64>,
     points: Vec<Vec<f64>>,
 }
 
@@ -164,6 +168,8 @@ impl<'a> Descent<'a> {
             iterations: 0,
             idle: 0,
             wary: false,
+            sure: false,
+            beside: None,
         };
         descent.stage = Stage::Start(descent.stencils());
         descent
@@ -247,6 +253,12 @@ impl<'a> Descent<'a> {
             return Stage::Done(Ending::ChangesNothing(parameter));
         }
         let linear = self.merit.linear(at, &slopes);
+        // The first steps are not yet suited to the residuals.
+        let suited = self.iterations > 0;
+        self.beside = suited.then(|| Beside {
+            steps: self.steps.clone(),
+            found: found.to_vec(),
+        });
         self.choose_steps(&linear);
         let trials = self.trials(linear);
         if trials.expected_fall < self.limits.tolerance {
@@ -305,7 +317,7 @@ impl<'a> Descent<'a> {
             loose,
             scales,
             expected_fall: 0.0,
-            dampings: [0.0; 4],
+            dampings: Vec::new(),
             points: Vec::new(),
         };
         trials.expected_fall = trials.fall();
@@ -315,7 +327,11 @@ impl<'a> Descent<'a> {
 
     /// Ends of steps for dampings around a middle one.
     fn spread(&self, trials: &mut Trials, damping: f64) {
-        trials.dampings = [0.1, 1.0, 10.0, 100.0].map(|factor| factor * damping);
+        let factors: &[f64] = match self.sure {
+            true => &[0.1, 100.0],
+            false => &[0.1, 1.0, 10.0, 100.0],
+        };
+        trials.dampings = factors.iter().map(|factor| factor * damping).collect();
         trials.points = (trials.dampings.iter())
             .map(|damping| self.clipped(trials, &trials.step(*damping)))
             .collect();
@@ -342,13 +358,16 @@ impl<'a> Descent<'a> {
                 let gained = before - valued.cost;
                 let idle = gained < 1e-3 * trials.expected_fall.min(1.0);
                 self.idle = if idle { self.idle + 1 } else { 0 };
+                self.sure = gained > 0.5 * trials.expected_fall;
                 self.damping = (0.3 * trials.dampings[i]).max(LEAST_DAMPING);
                 self.point.clone_from(&trials.points[i]);
+                self.beside = None;
                 self.at = Some(valued);
                 Stage::Slopes(self.stencils())
             }
-            _ if trials.dampings[3] < LARGEST_DAMPING => {
-                self.damping = 1e3 * trials.dampings[3];
+            _ if trials.most() < LARGEST_DAMPING => {
+                self.damping = 1e3 * trials.most();
+                self.sure = false;
                 self.spread(&mut trials, self.damping);
                 Stage::Trials(trials)
             }
@@ -366,6 +385,7 @@ impl<'a> Descent<'a> {
             point: self.point,
             at: self.at,
             steps: self.steps,
+            beside: self.beside,
             iterations: self.iterations,
             ending,
         }
@@ -387,8 +407,17 @@ pub(crate) struct Reached {
     /// Residuals there; `None` if the model failed at the first point.
     pub at: Option<Valued>,
     pub steps: Vec<f64>,
+    /// What is known of its neighbours.
+    pub beside: Option<Beside>,
     pub iterations: usize,
     pub ending: Ending,
+}
+
+/// Residuals at the neighbours of a point, two for each free parameter.
+#[derive(Clone, Debug)]
+pub(crate) struct Beside {
+    pub steps: Vec<f64>,
+    pub found: Vec<Result<Residuals, ModelError>>,
 }
 
 impl Reached {
@@ -398,6 +427,11 @@ impl Reached {
 }
 
 impl Trials {
+    /// The largest damping.
+    fn most(&self) -> f64 {
+        self.dampings.last().copied().unwrap_or(LARGEST_DAMPING)
+    }
+
     /// Components of the scaled gradient along the right singular vectors.
     fn along(&self) -> Vec<f64> {
         let gradient: Vec<f64> = (self.loose.iter().zip(&self.scales))

@@ -221,11 +221,15 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
         return Err(FitError::NothingFree);
     };
     let here = (best.point.as_slice(), at);
-    let (jacobian, slopes) =
-        jacobian(merit, here, &best.steps).map_err(|source| FitError::BesideOptimum {
-            point: best.point.clone(),
-            source,
-        })?;
+    let (steps, known) = match &best.beside {
+        Some(beside) => (&beside.steps, &beside.found[..]),
+        None => (&best.steps, &[][..]),
+    };
+    let derived = jacobian(merit, here, steps, known);
+    let (jacobian, slopes) = derived.map_err(|source| FitError::BesideOptimum {
+        point: best.point.clone(),
+        source,
+    })?;
     changes_something(problem.parameters(), &best.point, &jacobian)?;
     let gradient = merit.linear(at, &slopes).gradient;
     Ok(Fit {
@@ -234,7 +238,7 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
         residuals: at.rows[..problem.residual_count()].to_vec(),
         ln_sigmas: at.ln_sigmas.iter().sum(),
         binding: binding(problem.parameters(), &best.point, &gradient),
-        evaluations: 4 * best.point.len(),
+        evaluations: 4 * best.point.len() - known.len(),
         jacobian,
         ending: best.ending.clone(),
         starts: Vec::new(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from ._posing import Data, Method, What, modelled, recordings, table, words
+from .errors import ExperimentWarning
 from .inferred import Designed, Fitted, Gauged, Parameter
 
 __all__ = ["Data", "design", "fit", "gauge"]
@@ -95,6 +97,11 @@ def fit(
         True draws tqdm's bar; a bar's ``update``, or a function, is told how many curves of
         the model were tried since the last time (of recordings: signals of single shots).
 
+    Warns
+    -----
+    ExperimentWarning
+        Speeds without errors, which are taken as exactly known.
+
     Returns
     -------
     Fitted
@@ -136,6 +143,8 @@ def fit(
 
 def fitted(found: dict[str, Any]) -> Fitted:
     """A fit from what the library tells of it."""
+    if (assumed := found.get("assumed")) is not None:
+        warnings.warn(assumed, ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     columns = {key: [row[key] for row in rows] for key in (rows[0] if rows else {})}
     return Fitted(

@@ -55,8 +55,8 @@ impl Inferred {
     /// the parameter open, however finite a linear analysis may be.
     #[must_use]
     pub fn standard_error(&self, at: usize) -> f64 {
-        let (of, sd) = (&self.parameters[at], self.covariance.sd[at]);
-        match self.identifiability.leaves_open(at, of, sd) {
+        let sd = self.covariance.sd[at];
+        match self.identifiability.leaves_open(at, sd) {
             true => f64::INFINITY,
             false => sd,
         }

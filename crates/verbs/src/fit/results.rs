@@ -31,7 +31,7 @@ fn prospects(advice: &Advice) -> Value {
         json!({
             "measure": prospect.measure,
             "determined": prospect.determined,
-            "worst_standard_error_in_scales": finite(prospect.worst),
+            "worst_relative_standard_error": finite(prospect.worst),
             "standard_errors": prospect.sd.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
         })
     };
