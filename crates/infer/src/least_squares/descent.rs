@@ -146,6 +146,9 @@ const SMALL_FALL: f64 = 1e-3;
 pub(super) const NOTICED: f64 = 0.01;
 /// Distance from the start, in units of the scale, from which it is nowhere.
 const NOWHERE: f64 = 1e3;
+/// An expected fall that is hardly more than a model's noise: where a step does not
+/// gain at least a tenth of it, none will. It is 0.0014 standard errors.
+const QUIET_FALL: f64 = 1e-6;
 /// Iterations that gain less than a thousandth of what was expected, after
 /// which the model's noise is taken to be reached.
 const IDLE: usize = 3;
@@ -358,6 +361,9 @@ impl<'a> Descent<'a> {
                 let gained = before - valued.cost;
                 let idle = gained < 1e-3 * trials.expected_fall.min(1.0);
                 self.idle = if idle { self.idle + 1 } else { 0 };
+                if trials.expected_fall < QUIET_FALL && gained < 0.1 * trials.expected_fall {
+                    self.idle = IDLE;
+                }
                 self.sure = gained > 0.5 * trials.expected_fall;
                 self.damping = (0.3 * trials.dampings[i]).max(LEAST_DAMPING);
                 self.point.clone_from(&trials.points[i]);
@@ -365,6 +371,7 @@ impl<'a> Descent<'a> {
                 self.at = Some(valued);
                 Stage::Slopes(self.stencils())
             }
+            _ if trials.expected_fall < QUIET_FALL => Stage::Done(resting(trials.expected_fall)),
             _ if trials.most() < LARGEST_DAMPING => {
                 self.damping = 1e3 * trials.most();
                 self.sure = false;
