@@ -19,8 +19,8 @@ mod common;
 use common::{Noise, TRUTH, Truth, model, problem, speeds_between, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Chain, Covariance, Data, Fit, Fitting, Observable, Problem, Profiling, Requirements, Sampling,
-    SamplingError, Surrogate, fit, profile,
+    Chain, Covariance, Data, Fit, Fitting, Observable, Predicted, Problem, Profiling, Requirements,
+    Sampling, SamplingError, Surrogate, fit, profile,
 };
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -235,7 +235,13 @@ fn truth(case: &Case) -> Result<Truth, Box<dyn Error>> {
     println!("{}: true curve right to {reached:.1e}", case.name);
     let mut truth = Truth::of(&experiment, &speeds_m_s);
     if case.by_rk4 {
+        let exact = truth.curve.clone();
         truth.shot_by_rk4(&experiment, 1e-7);
+        let times = |row: &Predicted| row.iter().take(2).copied().flatten().collect::<Vec<_>>();
+        let pairs = exact.iter().zip(&truth.curve);
+        let off = pairs.flat_map(|(a, b)| times(a).into_iter().zip(times(b)));
+        let off = off.map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+        println!("{}: off that by {off:.1e}", case.name);
     }
     Ok(truth)
 }
