@@ -10,6 +10,7 @@ use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Incident and reflected, in this order, here and below.
@@ -123,9 +124,13 @@ fn mean(speed_m_s: f64, (found, moved): (Vec<Estimate>, Vec<[Moved; 2]>)) -> Opt
 }
 
 /// Runs a campaign file once a seed, each into a folder of its own.
-pub fn run(text: &str, seeds: u64, under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+pub fn run(
+    text: &str,
+    seeds: RangeInclusive<u64>,
+    under: &Path,
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let experiment = Experiment::from_text("campaign.toml", text)?;
-    (1..=seeds)
+    seeds
         .map(|seed| {
             let folder = under.join(seed.to_string());
             let plan = Plan::new(&experiment, Some(seed))?;
