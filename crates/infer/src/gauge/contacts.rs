@@ -285,7 +285,8 @@ impl Gauge {
         let missing = !self.tells_both() && !self.data.has(Observable::Reflected);
         missing.then_some(
             "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
-             the returning to the passing peak (--use incident,returning-ratio)",
+             the returning to the passing peak (--use incident,returning-ratio); or state that K and A are \
+             power laws of speed, which a whole curve of incident times can tell (--form power)",
         )
     }
 }
@@ -294,13 +295,13 @@ impl Gauge {
 const ITERATIONS: usize = 30;
 
 /// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
-const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
+pub(super) const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
 
 /// Difference of cost within which two solutions are equally good.
-const AS_GOOD: f64 = 1.0;
+pub(super) const AS_GOOD: f64 = 1.0;
 
 /// Difference in ln A below which two solutions are one.
-const SAME: f64 = 0.02;
+pub(super) const SAME: f64 = 0.02;
 
 /// Fall of chi-square/2 below which a row is solved: a thousandth of a standard error.
 const TOLERANCE: f64 = 1e-6;
