@@ -20,6 +20,10 @@ use hertzchain_signal::{ChiSquare, Estimate, chi_square};
 /// Numbers of both laws: ln K₀ (K₀ in N/m^{3/2}), k, ln A₀ (A₀ in s), a.
 pub const LAWS: usize = 4;
 
+/// Largest standard error of ln K and ln A at which errors of laws are still an ellipse: A
+/// enters times of flight with more than its first power.
+const MOST_LN_SD: f64 = 0.1;
+
 /// What each of them is called.
 const CALLED: [&str; LAWS] = ["K at 1 m/s", "exponent of K", "A at 1 m/s", "exponent of A"];
 
@@ -32,6 +36,8 @@ pub struct PowerForm {
     pub covariance: [[f64; LAWS]; LAWS],
     /// How well both curves follow them.
     pub chi_square: Option<ChiSquare>,
+    /// Largest standard error of ln K and ln A at the speeds of the data.
+    pub largest_ln_sd: f64,
     /// Other laws that fit as well.
     pub others: Vec<[f64; LAWS]>,
     /// Combinations that the data leave open, in words.
@@ -79,29 +85,41 @@ impl PowerForm {
         [0, 1, 2, 3].map(|at| self.covariance[at][at].sqrt())
     }
 
+    /// Whether both curves follow the laws, and determine them well: only then do four numbers
+    /// and their covariance say all that the curves do.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.follows() && self.is_determined()
+    }
+
+    fn is_determined(&self) -> bool {
+        let clear = self.undetermined.is_empty() && self.others.is_empty();
+        clear && self.largest_ln_sd <= MOST_LN_SD
+    }
+
+    fn follows(&self) -> bool {
+        let chi_square = self.chi_square;
+        chi_square.is_none_or(|found| found.probability >= LEAST_PROBABILITY)
+    }
+
     /// What speaks against taking K and A for power laws.
     #[must_use]
     pub fn doubts(&self) -> Option<String> {
-        let poor = self
-            .chi_square
-            .is_some_and(|found| found.probability < LEAST_PROBABILITY);
         let mut doubts = Vec::new();
-        if poor {
+        if !self.follows() {
             doubts.push(
                 "The curves do not follow power laws of K and A: these are averages over the speeds measured, and \
-                 say little beyond them. Each oil is held against such averages of its own.",
+                 say little beyond them.",
             );
         }
-        if !self.undetermined.is_empty() {
+        if !self.is_determined() {
             doubts.push(
-                "The data leave combinations of both laws open, whose errors mean little: add speeds over a wider \
-                 range, or reflected times of flight.",
+                "The data leave both laws in a valley, along which their errors mean little: add reflected times of \
+                 flight, ratios of peaks, or speeds that are known better.",
             );
         }
-        if !self.others.is_empty() {
-            doubts.push(
-                "Other laws fit as well: reflected times of flight, or ratios of peaks, tell them apart.",
-            );
+        if !self.is_sound() {
+            doubts.push("So oils are held against whole curves, not against these laws.");
         }
         (!doubts.is_empty()).then(|| doubts.join(" "))
     }
@@ -244,18 +262,28 @@ impl Gauge {
             value: fit.point[at],
             standard_error: covariance.sd[at],
         });
-        PowerForm {
+        let mut form = PowerForm {
             values: in_logs(&fit.point[first..]),
             covariance: of_logs(&covariance, &fit.point, first),
+            largest_ln_sd: f64::INFINITY,
             chi_square: Goodness::new(parameters, &fit).chi_square,
             others,
             undetermined: open.map(|confusion| confusion.words).collect(),
             own: own.collect(),
             fit,
-        }
+        };
+        let speeds = self.data.speeds_m_s().into_iter();
+        let errors = speeds.flat_map(|speed| form.at(speed).ln_sd);
+        // What is not determined at all is no number, which `max` would pass over.
+        form.largest_ln_sd = errors.fold(0.0, |most: f64, sd| match sd.is_finite() {
+            true => most.max(sd),
+            false => f64::INFINITY,
+        });
+        form
     }
 
-    /// Holds the laws against those that each oil would give.
+    /// Holds the laws against those that each oil would give; whole curves, as
+    /// [`Gauge::verdict`] does, where the laws are not [sound](PowerForm::is_sound).
     ///
     /// An oil's K and A need not be power laws. So its curve is computed at the speeds of
     /// the data, the dry contacts' and the chain's own numbers as fitted, and laws are
@@ -266,6 +294,9 @@ impl Gauge {
     /// # Errors
     /// Names that the wet model does not know; an oil that fails is told in the verdict.
     pub fn verdict_of_laws(&self, form: &PowerForm, oils: &[Oil]) -> Result<Verdict, GaugeError> {
+        if !form.is_sound() {
+            return self.verdict(oils);
+        }
         let (by_speed, by_laws) = (self.wet_by_speed()?, self.wet_by_laws()?);
         let mut verdict = Verdict {
             matches: Vec::new(),

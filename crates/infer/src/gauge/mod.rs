@@ -8,6 +8,7 @@ mod contacts;
 mod dry;
 mod form;
 mod laws;
+mod neighbours;
 mod oils;
 mod verdict;
 

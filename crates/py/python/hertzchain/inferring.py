@@ -254,7 +254,7 @@ def gauge(
         holds in a tapped row (``near_end.force``).
     form : {"each", "power"}
         How K and A depend on speed: each speed for itself, or as power laws fitted to the
-        whole curve, which incident times alone can tell.
+        whole curve, which incident times tell if speeds are known well.
     oils : path, optional
         Table (CSV) of further oils.
     wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads, progress

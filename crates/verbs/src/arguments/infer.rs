@@ -324,7 +324,7 @@ pub enum WetForm {
     /// In any way: each speed for itself
     #[default]
     Each,
-    /// As power laws of speed, fitted to the whole curve; incident times can do
+    /// As power laws of speed, fitted to the whole curve; incident times do if speeds are known well
     Power,
 }
 

@@ -26,7 +26,7 @@ pub struct Gauged {
     pub laws: Option<GaugeLaws>,
     /// Power laws that the whole curve asks for, if they are asked for.
     pub form: Option<PowerForm>,
-    /// Which oil: by its whole curve, or by the laws if these are asked for.
+    /// Which oil: by its whole curve, or by the laws if these are asked for and sound.
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,

@@ -102,6 +102,7 @@ fn form_json(form: &PowerForm, gauge: &Gauge) -> Value {
             "value": c.value, "freedom": c.freedom, "probability": c.probability,
         })),
         "contacts": gauge.wet().speeds_m_s().iter().map(speed).collect::<Value>(),
+        "oils_held_against_it": form.is_sound(),
         "others": form.others.iter().map(other).collect::<Value>(),
         "not_determined": form.undetermined,
     })

@@ -26,9 +26,10 @@ pub fn text(gauged: &Gauged) -> String {
     }
     text += &held_numbers(gauged);
     text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
-    let known = match gauged.form {
-        None => "Known oils",
-        Some(_) => "Known oils, by the power laws that each would give",
+    let by_laws = gauged.form.as_ref().is_some_and(PowerForm::is_sound);
+    let known = match by_laws {
+        false => "Known oils",
+        true => "Known oils, by the power laws that each would give",
     };
     text += &format!("\n{}\n{}", heading(known), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
