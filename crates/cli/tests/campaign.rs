@@ -244,6 +244,28 @@ fn measure_reads_separate_channels_as_it_reads_the_summed_one() {
     }
 }
 
+/// Told by the campaign, also of files that are there already, and by `measure` of each shot.
+#[test]
+fn shots_that_never_pass_the_level_are_told() {
+    let scratch = Scratch::new("level");
+    let level = "[campaign.recorder]\ntrigger = \"level\"\nlevel = \"9 V\"";
+    let high = small().replace("[campaign.recorder]", level);
+    fs::write(scratch.0.join("small.toml"), high).unwrap();
+    for _ in 0..2 {
+        let output = scratch.run("high", &[]);
+        assert!(output.status.success());
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains("32 shots never passed"), "{told}");
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_hertzchain"))
+        .current_dir(&scratch.0)
+        .args(["measure", "high", "--json"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(told.matches("no trigger").count(), 32, "{told}");
+}
+
 #[test]
 fn another_seed_needs_another_folder() {
     let scratch = Scratch::new("seed");

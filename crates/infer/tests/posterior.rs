@@ -11,6 +11,8 @@ use hertzchain_infer::{
     Residuals, Sampling, SamplingError, autocorrelation_time, fit, split_r_hat,
 };
 use hertzchain_signal::coverage;
+use hertzchain_study::Stop;
+use std::thread::scope;
 
 fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {
     let found = fit(problem, &Fitting::default()).unwrap();
@@ -239,6 +241,21 @@ fn chains_at_different_places_are_found_out() {
     // Not forgotten within the chains.
     assert!(!autocorrelation_time(&apart).resolved);
     assert!(split_r_hat(&[vec![1.0, 2.0]]).is_nan());
+}
+
+#[test]
+fn whoever_is_asked_to_stop_waits_for_no_autocorrelation_time() {
+    let chains = [normals(1, 2000), normals(2, 2000)];
+    assert!(autocorrelation_time(&chains).resolved);
+    let stop = Stop::default();
+    stop.ask();
+    let stopped = || {
+        stop.clone().adopt();
+        autocorrelation_time(&chains)
+    };
+    let found = scope(|scope| scope.spawn(stopped).join()).unwrap();
+    // Not one lag was added to the first.
+    assert!(!found.resolved && found.time == 1.0);
 }
 
 #[test]

@@ -28,6 +28,8 @@ pub struct Shot {
     pub flight: Result<Flight, SignalError>,
     /// What is doubtful.
     pub doubts: Vec<Doubt>,
+    /// Whether its recorder waited for a trigger in vain.
+    pub untriggered: bool,
     /// Whether its record seems to hold more shots than this one.
     pub holds_several: bool,
 }
@@ -62,6 +64,7 @@ impl Shot {
             interval_s: record.interval_s,
             flight,
             doubts,
+            untriggered: record.triggered == Some(false),
             holds_several: false,
         }
     }
@@ -103,8 +106,12 @@ impl Shot {
     pub fn remarks(&self) -> Vec<String> {
         let several = "several shots: cut the recording with --level or --shot-samples";
         let several = self.holds_several.then(|| several.to_owned());
+        let untriggered =
+            "no trigger: its level was never passed, and the record may not hold the shot";
+        let untriggered = self.untriggered.then(|| untriggered.to_owned());
         let doubts = self.doubts.iter().map(ToString::to_string);
-        several.into_iter().chain(doubts).collect()
+        let of_record = several.into_iter().chain(untriggered);
+        of_record.chain(doubts).collect()
     }
 
     /// What is doubtful and what is missing, as one text.

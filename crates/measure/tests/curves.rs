@@ -56,6 +56,8 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
                 shot,
                 programmed_speed_m_s: speed_m_s,
                 measured_speed_m_s: speed_m_s + 0.002 * (shot as f64 - 2.0),
+                triggered: true,
+                contacts: &[],
                 samples: &samples(incident, height, shot),
                 truth: &[],
             })
@@ -299,6 +301,8 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
             shot: 0,
             programmed_speed_m_s: 0.5,
             measured_speed_m_s: 0.5,
+            triggered: true,
+            contacts: &[],
             samples: &counts,
             truth: &[],
         })

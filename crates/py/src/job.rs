@@ -3,10 +3,11 @@
 use hertzchain_study::Stop;
 use hertzchain_verbs::failure::Failure;
 use pyo3::prelude::*;
+use std::fmt::Display;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread::{Builder, scope};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread::{Builder, Result as Joined, scope};
 use std::time::Duration;
 
 use crate::failure::Failed;
@@ -79,6 +80,28 @@ impl<'py> Job<'py> {
         py: Python<'py>,
         work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
     ) -> PyResult<T> {
+        self.followed(py, |stop, threads, look| watched(stop, threads, work, look))
+    }
+
+    /// The same for work that leaves nothing behind but its result and has pieces that
+    /// take long and look at no wish to stop: once there is one, nobody waits for the
+    /// piece under way. Its thread ends with it.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_apart<T: Send + 'static>(
+        self,
+        py: Python<'py>,
+        work: impl FnOnce(&Stop) -> Result<T, Failure> + Send + 'static,
+    ) -> PyResult<T> {
+        self.followed(py, |stop, threads, look| apart(stop, threads, work, look))
+    }
+
+    fn followed<T: Send>(
+        self,
+        py: Python<'py>,
+        compute: impl FnOnce(&Stop, Threads, Look<'_>) -> PyResult<Result<T, Failure>> + Send,
+    ) -> PyResult<T> {
         let teller = self.progress.map(Bound::unbind);
         let (stop, threads, counted) = (self.stop, self.threads, self.counted);
         let told = AtomicU64::new(0);
@@ -91,24 +114,22 @@ impl<'py> Job<'py> {
             })
         };
         let look = || Python::attach(|py| py.check_signals()).and_then(|()| tell());
-        let (outcome, raised) = py.detach(|| watched(&stop, threads, || work(&stop), look));
-        match raised {
-            Some(error) => Err(error),
-            None => {
-                tell()?;
-                Ok(outcome.map_err(Failed::from)?)
-            }
-        }
+        let outcome = py.detach(|| compute(&stop, threads, &look))?;
+        tell()?;
+        Ok(outcome.map_err(Failed::from)?)
     }
 }
+
+/// Asks Python for signals and tells it of progress.
+type Look<'a> = &'a (dyn Fn() -> PyResult<()> + Sync);
 
 /// Works in another thread while this one looks after Python.
 fn watched<T: Send>(
     stop: &Stop,
     threads: Threads,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
-    look: impl Fn() -> PyResult<()>,
-) -> (Result<T, Failure>, Option<PyErr>) {
+    work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
+    look: Look<'_>,
+) -> PyResult<Result<T, Failure>> {
     let (done, waiting) = channel::<()>();
     scope(|scope| {
         let worker = Builder::new().stack_size(STACK_BYTES);
@@ -118,38 +139,66 @@ fn watched<T: Send>(
         });
         let worker = match worker {
             Ok(worker) => worker,
-            Err(error) => return (Err(Failure::Ours(format!("threads: {error}"))), None),
+            Err(error) => return Ok(Err(no_threads(&error))),
         };
-        let mut raised = None;
-        while waiting.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
-            if raised.is_none()
-                && let Err(error) = look()
-            {
-                stop.ask();
-                raised = Some(error);
-            }
-        }
-        match worker.join() {
-            Ok(outcome) => (outcome, raised),
-            Err(panic) => resume_unwind(panic),
-        }
+        let looked = look_after(&waiting, look).inspect_err(|_| stop.ask());
+        let outcome = joined(worker.join());
+        looked.map(|()| outcome)
     })
+}
+
+/// The same in a thread that goes its own way once Python wants no more.
+fn apart<T: Send + 'static>(
+    stop: &Stop,
+    threads: Threads,
+    work: impl FnOnce(&Stop) -> Result<T, Failure> + Send + 'static,
+    look: Look<'_>,
+) -> PyResult<Result<T, Failure>> {
+    let (done, waiting) = channel::<()>();
+    let own = stop.clone();
+    let worker = Builder::new().stack_size(STACK_BYTES);
+    let worker = worker.spawn(move || {
+        let _told_when_dropped = done;
+        computed(&own, threads, work)
+    });
+    let worker = match worker {
+        Ok(worker) => worker,
+        Err(error) => return Ok(Err(no_threads(&error))),
+    };
+    look_after(&waiting, look).inspect_err(|_| stop.ask())?;
+    Ok(joined(worker.join()))
+}
+
+/// Looks after Python until a worker is done or Python wants no more.
+fn look_after(worker: &Receiver<()>, look: Look<'_>) -> PyResult<()> {
+    while worker.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+        look()?;
+    }
+    Ok(())
+}
+
+/// A worker's panic goes on in this thread.
+fn joined<T>(outcome: Joined<T>) -> T {
+    outcome.unwrap_or_else(|panic| resume_unwind(panic))
+}
+
+fn no_threads(error: &dyn Display) -> Failure {
+    Failure::Ours(format!("threads: {error}"))
 }
 
 fn computed<T: Send>(
     stop: &Stop,
     threads: Threads,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
+    work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
     match threads {
         Threads::One => {
             stop.clone().adopt();
-            work()
+            work(stop)
         }
         Threads::Many(count) => {
-            let pool = stop.pool(count);
-            let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
-            pool.install(work)
+            let pool = stop.pool(count).map_err(|error| no_threads(&error))?;
+            pool.install(|| work(stop))
         }
     }
 }

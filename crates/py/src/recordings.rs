@@ -83,7 +83,8 @@ pub fn measure<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Measure = parsed("measure", &options).map_err(Failed::from)?;
-    let (found, tables) = Job::pooled(progress, threads).run(py, |stop| {
+    // A single recording may have millions of samples.
+    let (found, tables) = Job::pooled(progress, threads).run_apart(py, move |stop| {
         let files = measuring::files(&arguments.records, arguments.shots.as_deref())?;
         let how = measuring::options(&arguments)?;
         let measured = hertzchain_measure::measure(&files, &how, &Counted(stop));

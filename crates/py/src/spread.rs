@@ -11,8 +11,10 @@ use hertzchain_verbs::arguments::infer::Fit;
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
 use hertzchain_verbs::fit as fitting;
+use pyo3::exceptions::PyConnectionError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use std::sync::OnceLock;
 
 /// How long a look at what is computed elsewhere waits for it, in seconds.
 const WAIT_S: f64 = 0.02;
@@ -113,6 +115,8 @@ struct Elsewhere {
     /// seconds, and then gives outcomes, batch by batch, or none yet.
     compute: Py<PyAny>,
     stop: Stop,
+    /// What was raised when nobody could be asked any more.
+    gone: OnceLock<PyErr>,
 }
 
 impl Elsewhere {
@@ -120,7 +124,11 @@ impl Elsewhere {
     fn outcomes(&self, batches: &[Batch]) -> Result<Vec<Outcomes>, String> {
         self.waited(batches).map_err(|error| {
             self.stop.ask();
-            error.to_string()
+            let why = error.to_string();
+            if Python::attach(|py| error.is_instance_of::<PyConnectionError>(py)) {
+                self.gone.get_or_init(|| error);
+            }
+            why
         })
     }
 
@@ -160,10 +168,14 @@ pub fn fit_spread<'py>(
     let arguments = &likelihood.arguments;
     let job = Job::pooled(progress, arguments.modelled.threads.unwrap_or(0));
     let stop = job.stop.clone();
-    let elsewhere = compute.map(|compute| Elsewhere { compute, stop });
+    let elsewhere = compute.map(|compute| Elsewhere {
+        compute,
+        stop,
+        gone: OnceLock::new(),
+    });
     let found = job.run(py, |_| {
         let problem = &likelihood.inner;
-        let Some(elsewhere) = elsewhere else {
+        let Some(elsewhere) = &elsewhere else {
             return fitted(problem, problem, arguments);
         };
         let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
@@ -173,8 +185,12 @@ pub fn fit_spread<'py>(
             Some(why) => Err(Failure::User(why.to_owned())),
             None => found,
         }
-    })?;
-    found.told(py)
+    });
+    // A cluster that is gone is no mistake of the user's: raised as it came.
+    match (found, elsewhere.and_then(|it| it.gone.into_inner())) {
+        (Err(_), Some(gone)) => Err(gone),
+        (found, _) => found?.told(py),
+    }
 }
 
 /// A fit, whose walkers are left in the output folder.

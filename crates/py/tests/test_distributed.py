@@ -305,6 +305,24 @@ def test_a_posterior_whose_workers_are_killed_has_the_same_bits(posterior, tmp_p
 
 
 @pytest.mark.long
+def test_a_posterior_goes_on_after_its_scheduler_was_killed(posterior, tmp_path):
+    data, how, here = posterior
+    folder = tmp_path / "fit"
+    distributed.fit(data, folder=folder, **{**how, "steps": 20})
+    saved = (folder / "chain.json").read_bytes()
+    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+        with pytest.raises(ConnectionError, match="the same call goes on"):
+            distributed.fit(data, folder=folder, client=client, progress=lambda _: scheduler.kill(), **how)
+        # Nobody is there from the beginning.
+        with pytest.raises(ConnectionError, match="the same call goes on"):
+            distributed.fit(data, folder=folder, client=client, **how)
+    assert (folder / "chain.json").read_bytes() == saved
+    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+        again = distributed.fit(data, folder=folder, client=client, **how)
+    assert again.details["posterior"] == here.details["posterior"]
+
+
+@pytest.mark.long
 def test_a_poisoned_point_of_a_batch_is_told_and_changes_no_other(posterior, client, tmp_path):
     data, how, here = posterior
     best = [parameter.value for parameter in here.parameters.values()]

@@ -32,5 +32,5 @@ pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
 pub use record::{Channel, Record, Samples};
-pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, verify};
+pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
 pub use table::Table;

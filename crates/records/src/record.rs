@@ -28,6 +28,8 @@ pub struct Record {
     pub case: Option<String>,
     /// Samples before the trigger, if the file says.
     pub pretrigger: Option<usize>,
+    /// Whether the trigger fired, if the file says; if not, the recorder gave up waiting.
+    pub triggered: Option<bool>,
     /// Number of its first sample in a recording of which it is a piece, from 0.
     pub first_sample: u64,
     /// What was taken for granted while it was read, as it is told to people.
@@ -54,6 +56,7 @@ impl Record {
             speed_error_m_s: None,
             case: None,
             pretrigger: None,
+            triggered: None,
             first_sample: 0,
             notes: Vec::new(),
         }

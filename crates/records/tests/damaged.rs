@@ -210,6 +210,8 @@ fn written() -> Vec<u8> {
             shot,
             programmed_speed_m_s: 1.0,
             measured_speed_m_s: 1.0,
+            triggered: true,
+            contacts: &[],
             samples: &samples,
             truth: &[("speed_m_s", 1.0)],
         };

@@ -3,7 +3,7 @@
 use crate::common::{folder, python};
 use hertzchain_records::{
     Channels, ReadOptions, Record, RecordError, Samples, SeriesInfo, SeriesWriter, ShotRow, read,
-    truth,
+    truth, untriggered,
 };
 use std::fs;
 use std::path::Path;
@@ -38,6 +38,8 @@ fn write(path: &Path, shots: u64, count: usize) -> Result<(), RecordError> {
             shot,
             programmed_speed_m_s: 0.5,
             measured_speed_m_s: 0.5 + 1e-3 * shot as f64,
+            triggered: shot != 1,
+            contacts: &[("overlap_before_m", &[1e-6 * shot as f64, -1e-6])],
             samples: &samples(shot, count),
             truth: &[("tof_incident_s", 6e-4), ("speed_m_s", 0.4999)],
         })?;
@@ -63,6 +65,7 @@ fn a_series_reads_back_as_it_was_written() {
         assert_eq!(record.speed_error_m_s, Some(0.003));
         assert_eq!(record.case.as_deref(), Some("dry"));
         assert_eq!(record.pretrigger, Some(100));
+        assert_eq!(record.triggered, Some(shot != 1));
         let expected = Samples::Counts {
             counts: samples(shot as u64, 1000),
             volts_per_count: 10.0 / 32_768.0,
@@ -70,6 +73,18 @@ fn a_series_reads_back_as_it_was_written() {
         };
         assert_eq!(record.channels[0].samples, expected);
     }
+    assert_eq!(untriggered(&path).unwrap(), 1);
+}
+
+#[test]
+fn true_values_of_contacts_come_shot_after_shot() {
+    let path = folder("contacts").join("series.h5");
+    write(&path, 3, 100).unwrap();
+    let told = truth(&path).unwrap();
+    let names: Vec<&str> = told.iter().map(|(name, _)| &**name).collect();
+    assert!(!names.contains(&"contact"), "{names:?}");
+    let overlaps = told.iter().find(|(name, _)| name == "overlap_before_m");
+    assert_eq!(overlaps.unwrap().1, [0.0, -1e-6, 1e-6, -1e-6, 2e-6, -1e-6]);
 }
 
 #[test]
@@ -103,6 +118,8 @@ fn a_series_has_its_name_only_when_it_is_complete() {
         shot: 0,
         programmed_speed_m_s: 1.0,
         measured_speed_m_s: 1.0,
+        triggered: true,
+        contacts: &[],
         samples: &[1; 50],
         truth: &[],
     };
@@ -125,6 +142,8 @@ fn writers_of_one_series_at_a_time_do_not_meet() {
                 shot,
                 programmed_speed_m_s: 0.5,
                 measured_speed_m_s: 0.5,
+                triggered: true,
+                contacts: &[],
                 samples,
                 truth: &[],
             };
@@ -146,6 +165,8 @@ fn shots_that_do_not_fit_their_series_are_refused() {
         shot: 3,
         programmed_speed_m_s: 1.0,
         measured_speed_m_s: 1.0,
+        triggered: true,
+        contacts: &[],
         samples,
         truth,
     };
@@ -188,6 +209,8 @@ fn records_are_the_same_whatever_the_truth_says() {
             shot: 0,
             programmed_speed_m_s: 1.0,
             measured_speed_m_s: 1.0,
+            triggered: true,
+            contacts: &[],
             samples: &samples(0, 50),
             truth: &[("tof_incident_s", value)],
         };
@@ -225,17 +248,27 @@ with h5py.File("series.h5") as file:
     assert file["measured_speed"].attrs["units"] == "m s-1"
     assert file["truth/tof_incident_s"].attrs["units"] == "s"
     counts = samples[1]
+    with h5py.File("untold.h5", "w") as other:
+        for name in ("samples", "shot", "programmed_speed", "measured_speed"):
+            file.copy(name, other)
+        for name in ("format", "case"):
+            other.attrs[name] = file.attrs[name]
     print(int(counts.astype("int64").sum()))
 with xarray.open_dataset("series.h5", engine="h5netcdf") as data:
     assert data.samples.dims == ("shot", "sample"), data
     assert data.measured_speed.dims == ("shot",), data
     assert abs(float(data.samples[1, 5]) - (counts[5] * 10 / 32768 + 0.25)) < 1e-6
     assert "tof_incident_s" not in data
+    assert data.triggered.dims == ("shot",) and list(data.triggered) == [1, 0, 1], data
 with xarray.open_dataset("series.h5", engine="h5netcdf", group="truth") as data:
     assert data.tof_incident_s.dims == ("shot",), data
+    assert data.overlap_before_m.dims == ("shot", "contact"), data
+    assert list(data.contact) == [1, 2] and list(data.overlap_before_m[2]) == [2e-6, -1e-6], data
 "#,
     );
     let Some(printed) = printed else { return };
+    // A file that tells nothing of triggers is read all the same.
+    assert_eq!(all(&folder.join("untold.h5"))[2].triggered, None);
     let sum: i64 = samples(1, 1000).iter().map(|count| i64::from(*count)).sum();
     assert_eq!(printed.trim(), sum.to_string());
 }

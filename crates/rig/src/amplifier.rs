@@ -46,11 +46,6 @@ impl Amplifier {
         }
     }
 
-    /// Sets the forces in N at the first sample: a step from none, if any.
-    pub fn begin(&mut self, sensor_n: f64, wall_n: f64) {
-        self.input_v = self.voltage(sensor_n, wall_n);
-    }
-
     /// The voltage at the next sample, at which the forces in N are these.
     #[inline]
     pub fn next(&mut self, sensor_n: f64, wall_n: f64) -> f64 {

@@ -4,6 +4,7 @@ use crate::error::RigError;
 use crate::keep::{Folder, fingerprint};
 use crate::plan::{Plan, Series};
 use crate::recording;
+use hertzchain_records::untriggered;
 use hertzchain_study::Shard;
 use rayon::prelude::*;
 use std::path::Path;
@@ -31,6 +32,8 @@ pub struct Done {
     pub bytes: u64,
     /// Series that can't be computed, each with the reason; they have no file.
     pub failed: Vec<String>,
+    /// Series of this part with shots whose trigger never fired, and how many of them.
+    pub untriggered: Vec<(String, usize)>,
 }
 
 /// Runs the series of a part that a folder does not have yet, and calls
@@ -79,11 +82,20 @@ pub fn campaign(
     let failed: Vec<Option<String>> = series.collect::<Result<_, RigError>>()?;
     let failed: Vec<String> = failed.into_iter().flatten().collect();
     let size = |series: &&Series| folder.file(series).metadata().map_or(0, |data| data.len());
+    let finished = part.iter().copied().filter(|series| folder.has(series));
+    let untriggered: Result<Vec<(String, usize)>, RigError> = finished
+        .map(|series| {
+            let missed = untriggered(&folder.file(series)).map_err(RigError::NotOurs)?;
+            Ok((series.name.clone(), missed))
+        })
+        .filter(|told| !matches!(told, Ok((_, 0))))
+        .collect();
     Ok(Done {
         kept: done.len(),
         run: due.len() - failed.len(),
         shots: fired.load(Ordering::Relaxed),
         bytes: part.iter().map(size).sum(),
         failed,
+        untriggered: untriggered?,
     })
 }

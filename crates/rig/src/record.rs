@@ -11,7 +11,8 @@ use hertzchain_experiment::{Amplifier as AmplifierNumbers, Channels, Recorder, T
 const DENSER: usize = 4;
 
 /// A level that is not passed within this time in s after the striker's touch
-/// triggers nothing: the record then starts as if it had been then.
+/// triggers nothing: the recorder gives up waiting, the record starts as if the touch
+/// had been the trigger, and says so.
 const TRIGGER_WITHIN_S: f64 = 0.02;
 
 /// When the samples of a shot are taken.
@@ -32,6 +33,8 @@ pub struct Record {
     pub samples: Vec<i16>,
     /// Time in s from the first sample to the striker's touch.
     pub touch_s: f64,
+    /// Whether the trigger fired: false if its level was never passed.
+    pub triggered: bool,
 }
 
 impl Window {
@@ -82,12 +85,13 @@ impl Window {
             volts
         };
         let channels: Vec<Vec<f64>> = shares(recorder.channels).iter().map(volts).collect();
-        let first = match (recorder.trigger, channels.first()) {
+        let passed = match (recorder.trigger, channels.first()) {
             (Trigger::Level(level_v), Some(volts)) => {
                 self.passed(volts, level_v - recorder.offset_v)
             }
-            _ => 0,
+            _ => Some(0),
         };
+        let first = passed.unwrap_or(0);
         let converter = Converter::new(recorder);
         let stored = channels
             .iter()
@@ -95,6 +99,7 @@ impl Window {
         Record {
             samples: stored.map(|v| converter.reading(*v)).collect(),
             touch_s: -(self.start_s + first as f64 * self.interval_s),
+            triggered: passed.is_some(),
         }
     }
 
@@ -119,17 +124,17 @@ impl Window {
         volts
     }
 
-    /// The first sample of a record that a level triggers.
-    fn passed(&self, volts: &[f64], level_v: f64) -> usize {
+    /// The first sample of a record that a level triggers; `None` if it never does.
+    fn passed(&self, volts: &[f64], level_v: f64) -> Option<usize> {
         let after = volts.iter().skip(self.before).take(self.spare);
         let mut below = false;
         for (first, v) in after.enumerate() {
             if below && *v >= level_v {
-                return first;
+                return Some(first);
             }
             below = *v < level_v;
         }
-        0
+        None
     }
 }
 

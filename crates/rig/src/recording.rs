@@ -28,8 +28,10 @@ pub(crate) fn write(
             shot: u64::from(fired.number),
             programmed_speed_m_s: fired.programmed_m_s,
             measured_speed_m_s: fired.measured_m_s,
+            triggered: fired.record.triggered,
             samples: &fired.record.samples,
             truth: &truth(&fired),
+            contacts: &[("overlap_before_m", &fired.shot.overlaps_before_m)],
         })?;
         seen();
         Ok(())

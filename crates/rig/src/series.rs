@@ -103,7 +103,14 @@ impl Run<'_> {
 
     fn taps(&mut self, number: u32, chance: &mut Chance) -> Result<(), RigError> {
         let actuator = &self.campaign.actuator;
-        let told_m_s = programmed(actuator, self.campaign.tap_speed_m_s).unwrap_or_default();
+        let told_m_s = programmed(actuator, self.campaign.tap_speed_m_s).map_err(|why| {
+            let what = format!(
+                "taps before shot {} of series {}",
+                number + 1,
+                self.series.name
+            );
+            RigError::Speed { what, why }
+        })?;
         for tap in 0..self.campaign.taps {
             if stopped() {
                 return Err(RigError::Stopped);

@@ -31,10 +31,17 @@ pub struct Shot {
     /// Velocity in m/s with which the striker went for good; negative is away
     /// from the chain, NaN if it stayed at it.
     pub rebound_m_s: f64,
+    /// Positions and velocities before the shot, the striker wherever it had been left.
+    pub before: State,
+    /// And after it.
+    pub after: State,
     /// Gaps in m of contacts 1..=N before the shot.
     pub gaps_before_m: Vec<f64>,
     /// And after it.
     pub gaps_after_m: Vec<f64>,
+    /// Overlaps in m of contacts 1..=N before the shot, negative across a gap: the loads
+    /// that friction held, by the contacts' law at the shot's speed.
+    pub overlaps_before_m: Vec<f64>,
     /// When the chain was at rest again, in s after the first touch.
     pub rest_s: f64,
 }
@@ -49,9 +56,11 @@ pub fn shoot(
     speed_m_s: f64,
     tape: &mut Tape,
 ) -> Result<Shot, ShotError> {
-    let gaps_before_m = bench.gaps_m();
+    let (before, gaps_before_m) = (bench.state().clone(), bench.gaps_m());
     let (system, shot) = bench.aim(speed_m_s)?;
     let wall = shot.beads();
+    let overlaps_before_m = (1..=wall).map(|contact| before.overlap_m(&system, contact));
+    let overlaps_before_m = overlaps_before_m.collect();
     let mut passages = Passages::new(sensor_bead, wall, true);
     let outcome = {
         let sensors = [Sensor::Bead(sensor_bead), Sensor::Contact(wall)];
@@ -63,13 +72,22 @@ pub fn shoot(
         run(&shot, &method, limits, &mut [&mut passages, &mut taping])?
     };
     let rest = slow(bench, (&system, &shot), &outcome, sensor_bead, tape)?;
-    Ok(told(
-        &passages,
+    let [incident, wall, reflected] = peaks(&passages);
+    Ok(Shot {
+        incident_s: wall.0 - incident.0,
+        reflected_s: reflected.0 - wall.0,
+        peaks_s: [incident.0, wall.0, reflected.0],
+        peaks_n: [incident.1, wall.1, reflected.1],
+        rebound_m_s: rest
+            .withdrawn
+            .map_or(f64::NAN, |striker| striker.velocity_m_s),
+        before,
+        after: bench.state().clone(),
         gaps_before_m,
-        bench.gaps_m(),
-        &rest,
-        outcome.time_s,
-    ))
+        gaps_after_m: bench.gaps_m(),
+        overlaps_before_m,
+        rest_s: outcome.time_s + rest.time_s,
+    })
 }
 
 /// The slow phase after a wave, on the same tape.
@@ -91,32 +109,15 @@ fn slow(
     bench.rest_after(system, State::after(shot, outcome), &mut note)
 }
 
-fn told(
-    passages: &Passages,
-    gaps_before_m: Vec<f64>,
-    gaps_after_m: Vec<f64>,
-    rest: &Rest,
-    wave_s: f64,
-) -> Shot {
+/// Times in s and heights in N of the incident, the wall's and the reflected peak.
+fn peaks(passages: &Passages) -> [(f64, f64); 3] {
     let nothing = (f64::NAN, f64::NAN);
-    let [incident, wall, reflected] = match passages.peaks() {
+    match passages.peaks() {
         Ok((incident, wall, reflected)) => [
             (incident.time_s, incident.value),
             (wall.time_s, wall.value),
             reflected.map_or(nothing, |peak| (peak.time_s, peak.value)),
         ],
         Err(_) => [nothing; 3],
-    };
-    Shot {
-        incident_s: wall.0 - incident.0,
-        reflected_s: reflected.0 - wall.0,
-        peaks_s: [incident.0, wall.0, reflected.0],
-        peaks_n: [incident.1, wall.1, reflected.1],
-        rebound_m_s: rest
-            .withdrawn
-            .map_or(f64::NAN, |striker| striker.velocity_m_s),
-        gaps_before_m,
-        gaps_after_m,
-        rest_s: wave_s + rest.time_s,
     }
 }

@@ -20,7 +20,7 @@ use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
 use hertzchain_experiment::preset;
 use hertzchain_study::reproduce::CASES;
-use hertzchain_study::{Flight, InstructionSet, Plan, Shot, shoot, shoot_all};
+use hertzchain_study::{Flight, InstructionSet, JUDGES, Plan, Shot, shoot, shoot_all};
 use std::error::Error;
 
 const SPEEDS_M_S: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
@@ -214,10 +214,6 @@ const TRIED: [(f64, Precision, bool, [f64; 6]); 5] = [
         [0.02, 0.018, 0.016, 0.014, 0.013, 0.012],
     ),
 ];
-
-/// Judges of a sweep: how many times longer their steps are, and what a change
-/// counts.
-const JUDGES: [(f64, f64); 2] = [(1.3, 3.0), (1.69, 1.5)];
 
 fn judges() -> Result<()> {
     println!("| asked | precision | openings | step | pass | largest error over asked |");

@@ -6,6 +6,7 @@
 //! ```text
 //! throughput dry 8192                               # at as many speeds
 //! throughput dry 8192 damping_cubic.coefficient     # each with this number of its own
+//! throughput dry 4096 damping_cubic.coefficient 64  # 64 speeds by 64 such numbers
 //! ```
 
 use hertzchain_experiment::{Experiment, preset};
@@ -23,15 +24,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let name = arguments.next().unwrap_or_else(|| "dry".to_owned());
     let count: usize = arguments.next().map_or(Ok(4096), |text| text.parse())?;
     let dry = preset(&name)?;
-    let speed = |at: usize| 0.1 * 12.0_f64.powf(at as f64 / (count.max(2) - 1) as f64);
     let number = arguments.next();
+    let columns: Option<usize> = arguments.next().map(|text| text.parse()).transpose()?;
+    let speeds = count / columns.unwrap_or(1);
+    let speed = |at: usize| {
+        let row = at / columns.unwrap_or(1);
+        0.1 * 12.0_f64.powf(row as f64 / (speeds.max(2) - 1) as f64)
+    };
     let rows: Vec<usize> = (0..count).collect();
     let own = |at: usize| -> Result<Experiment, String> {
         let Some(name) = &number else {
             return Ok(dry.clone());
         };
         let usual = dry.get(name).map_err(|error| error.to_string())?;
-        let value = usual * (1.0 + 0.1 * at as f64 / count as f64);
+        let (place, of) = columns.map_or((at, count), |columns| (at % columns, columns));
+        let value = usual * (1.0 + 0.1 * place as f64 / of as f64);
         let changed = dry.set(&[(name.as_str(), value)]);
         changed.map_err(|error| error.to_string())
     };

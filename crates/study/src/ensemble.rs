@@ -147,14 +147,12 @@ pub(crate) fn suits(plan: &Plan) -> bool {
         && accuracy::equal_steps(plan).is_some()
 }
 
-/// Steps by which a shot is judged, over its own. Two: one alone agrees by
-/// chance with what is wrong in one row of a hundred.
-const LONGER: [f64; 2] = [1.3, 1.69];
-
-/// The accuracy reached is what the longer steps change, times these: an error
-/// of order 1, which closings leave now and then, is three times the change by
-/// the first and once and a half that by the second.
-const OF_CHANGE: [f64; 2] = [3.0, 1.5];
+/// Steps by which a shot is judged, over its own, and what the change that they
+/// make counts. Two: one alone agrees by chance with what is wrong in one row of
+/// a hundred. The accuracy reached is the larger of both: an error of order 1,
+/// which closings leave now and then, is three times the change by the first
+/// and once and a half that by the second.
+pub const JUDGES: [(f64, f64); 2] = [(1.3, 3.0), (1.69, 1.5)];
 
 /// Shots of plans that go together, or of one that goes alone: what was fired,
 /// and the rest by the wave loop.
@@ -183,7 +181,7 @@ fn judged(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     };
     let loaded = load(plans);
     let shots = fire(plans, &loaded, set, &own).into_iter();
-    let [near, far] = LONGER.map(|longer| fire(plans, &loaded, set, &own.longer(longer)));
+    let [near, far] = JUDGES.map(|(longer, _)| fire(plans, &loaded, set, &own.longer(longer)));
     let judges = near.into_iter().zip(far);
     shots
         .zip(judges)
@@ -202,8 +200,8 @@ pub(crate) fn load(plans: &[&Plan]) -> Vec<Option<System>> {
 
 /// A shot with the accuracy it reached, if that is what was asked.
 fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
-    let changes = judges.map(|judge| shot.change(judge));
-    let reached = (OF_CHANGE[0] * changes[0]).max(OF_CHANGE[1] * changes[1]);
+    let [near, far] = [0, 1].map(|at| JUDGES[at].1 * shot.change(judges[at]));
+    let reached = near.max(far);
     shot.accuracy_reached = Some(reached);
     (reached <= shot.accuracy_asked).then_some(shot)
 }

@@ -39,7 +39,7 @@ mod sweep;
 mod tuned;
 
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use ensemble::{shoot_all, shoot_tuned, shoot_unjudged};
+pub use ensemble::{JUDGES, shoot_all, shoot_tuned, shoot_unjudged};
 pub use error::StudyError;
 pub use fingerprint::{Fingerprint, Inputs, NoFingerprint};
 pub use flight::Flight;

@@ -35,13 +35,11 @@ pub(super) struct Scaled<N, const W: usize> {
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
     /// For lanes of some steps in s, each by so much [ahead of](super::weights::ahead_of) the exact motion.
     pub fn new(weights: &Weights, step_s: &[f64; W], ahead: &[f64; W]) -> Self {
+        let velocity = ahead.map(|ahead| weights.velocity(ahead));
         let scaled = |of: &dyn Fn(usize) -> f64| std::array::from_fn(|lane| N::of(of(lane)));
         Self {
             drift: scaled(&|lane| step_s[lane] * weights.drift),
-            velocity: std::array::from_fn(|k| {
-                let [weight, surprise] = [weights.velocity[k], weights.surprise[k]];
-                scaled(&|lane| step_s[lane] * (weight + ahead[lane] * surprise))
-            }),
+            velocity: std::array::from_fn(|k| scaled(&|lane| step_s[lane] * velocity[lane][k])),
             position: weights
                 .position
                 .map(|weight| scaled(&|lane| step_s[lane] * step_s[lane] * weight)),

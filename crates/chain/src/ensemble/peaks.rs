@@ -147,8 +147,12 @@ fn derivatives(polynomial: &[f64; POINTS], at: f64) -> (f64, f64, f64) {
 
 /// Where the slope passes 0 from above, by Newton's method in a bracket.
 fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
-    // Of the parabola about the middle.
-    let mut at = (-0.5 * polynomial[1] / polynomial[2]).clamp(low, high);
+    // That of the parabola about the middle, which may have none, or none here.
+    let vertex = -0.5 * polynomial[1] / polynomial[2];
+    let mut at = match vertex > low && vertex < high {
+        true => vertex,
+        false => 0.0_f64.clamp(low, high),
+    };
     for _ in 0..50 {
         let (_, slope, curvature) = derivatives(polynomial, at);
         if slope > 0.0 {

@@ -36,12 +36,36 @@ fn judge(done: &Done) -> Result<(), Failure> {
     for why in &done.failed {
         eprintln!("warning: {why}");
     }
+    if let Some(warning) = untriggered(done) {
+        eprintln!("warning: {warning}");
+    }
     match done.failed.len() {
         0 => Ok(()),
         n => Err(Failure::User(format!(
             "{n} series can't be computed; the others are finished"
         ))),
     }
+}
+
+/// Most series that a warning names.
+const NAMED: usize = 3;
+
+/// Shots that were recorded without a trigger.
+fn untriggered(done: &Done) -> Option<String> {
+    let series = &done.untriggered;
+    let shots: usize = series.iter().map(|(_, shots)| shots).sum();
+    let mut names: Vec<&str> = series.iter().map(|(name, _)| &**name).take(NAMED).collect();
+    if series.len() > NAMED {
+        names.push("others");
+    }
+    (shots > 0).then(|| {
+        format!(
+            "{shots} shots never passed the trigger's level and were recorded from the touch on, which \
+             their files tell in `triggered`: {}; lower `level` in [campaign.recorder], or trigger = \
+             \"photogate\"",
+            names.join(", ")
+        )
+    })
 }
 
 /// The user's mistakes are told as such; a full disk is nobody's.

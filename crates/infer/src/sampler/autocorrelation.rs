@@ -1,5 +1,7 @@
 //! How many steps a chain takes to forget.
 
+use hertzchain_study::stopped;
+
 /// Integrated autocorrelation time of several chains together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Autocorrelation {
@@ -16,7 +18,8 @@ const WINDOW: f64 = 5.0;
 
 /// τ by Sokal's automatic window, from autocovariances about the mean of all
 /// chains and averaged over these: walkers at different places lengthen it,
-/// as they should. Chains must have equal lengths. 1 for constant chains.
+/// as they should. Chains must have equal lengths. 1 for constant chains. Whoever
+/// is asked to stop leaves it unresolved.
 #[must_use]
 pub fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
     let length = chains.iter().map(Vec::len).min().unwrap_or(0);
@@ -42,7 +45,8 @@ pub fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
         return still;
     }
     let mut time = 1.0;
-    for lag in 1..length / 2 {
+    // Of long chains every lag takes a millisecond, and there may be thousands.
+    for lag in (1..length / 2).take_while(|_| !stopped()) {
         time += 2.0 * covariance(lag) / variance;
         if lag as f64 >= WINDOW * time {
             let resolved = true;

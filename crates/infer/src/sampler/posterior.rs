@@ -2,6 +2,7 @@
 
 use super::converged::mean;
 use super::{Chain, Diagnosis, Requirements, Unconverged};
+use hertzchain_study::stopped;
 
 /// A posterior distribution, from a chain that has converged.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,9 +54,12 @@ fn by_step(chains: &[Vec<f64>]) -> Vec<f64> {
     (0..length).flat_map(step).collect()
 }
 
+/// In order, unless whoever asked wants no more: a million samples take their time.
 fn ascending(samples: &[f64]) -> Vec<f64> {
     let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    if !stopped() {
+        sorted.sort_unstable_by(f64::total_cmp);
+    }
     sorted
 }
 

@@ -97,14 +97,14 @@ def _there(shard: Shard, arguments: Arguments, of: int, client: Client) -> Itera
 
 
 @contextmanager
-def _connected() -> Iterator[None]:
+def _connected(*also: type[OSError]) -> Iterator[None]:
     """A scheduler may die between any two words with it."""
     from dask.distributed import CancelledError
     from distributed.comm import CommClosedError
 
     try:
         yield
-    except (CommClosedError, CancelledError) as error:
+    except (CommClosedError, CancelledError, *also) as error:
         raise ConnectionError(GONE) from error
 
 
@@ -139,7 +139,9 @@ class _Room:
 
 def threads(client: Client) -> int:
     """Threads of all workers."""
-    known: Any = client.nthreads()
+    # No worker's own error can come of this one, so whatever is wrong with the way there is it.
+    with _connected(OSError):
+        known: Any = client.nthreads()
     return sum(known.values())
 
 

@@ -344,8 +344,9 @@ def fit(
     Raises
     ------
     OptionError, ExperimentError
-        As for `hertzchain.fit`; batches that no worker could compute, a scheduler that is
-        lost: the same call goes on with the walkers that were saved.
+        As for `hertzchain.fit`; batches that no worker could compute.
+    ConnectionError
+        The scheduler is lost: the same call goes on with the walkers that were saved.
 
     References
     ----------

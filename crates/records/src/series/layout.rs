@@ -17,8 +17,13 @@ pub(super) const SAMPLE: &str = "sample";
 pub(super) const PROGRAMMED: &str = "programmed_speed";
 /// Speeds that the photogate measured, in m/s.
 pub(super) const MEASURED: &str = "measured_speed";
+/// Whether the trigger fired: 1, or 0 where the recorder gave up waiting for it.
+pub(super) const TRIGGERED: &str = "triggered";
 /// Group of what only a simulation knows. The reader never opens it.
 pub(super) const TRUTH: &str = "truth";
+
+/// In it, the numbers of contacts: the second axis of what is told of each.
+pub(super) const CONTACT: &str = "contact";
 
 /// Attributes of the samples: the library reads numbers of datasets only.
 pub(super) const INTERVAL: &str = "sampling_interval_s";

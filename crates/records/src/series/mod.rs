@@ -7,6 +7,7 @@ mod verify;
 mod write;
 
 pub(crate) use layout::SEPARATE;
+pub use read::untriggered;
 pub(crate) use read::{attribute_number, column, is_ours, open};
 pub use truth::truth;
 pub use verify::verify;

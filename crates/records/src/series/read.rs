@@ -52,6 +52,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
         numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
         speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
         programmed: column(open, layout::PROGRAMMED, shots).map_err(foreign)?,
+        triggered: triggered(open, shots).map_err(foreign)?,
         channels,
         wanted,
         length,
@@ -71,6 +72,7 @@ struct Shelf {
     numbers: Vec<i64>,
     speeds: Vec<f64>,
     programmed: Vec<f64>,
+    triggered: Vec<i64>,
     channels: Vec<(&'static str, H5Dataset)>,
     /// Which of them, in which order.
     wanted: Vec<usize>,
@@ -96,6 +98,7 @@ impl Shelf {
             programmed_speed_m_s: self.programmed.get(row).copied(),
             speed_m_s: speed.filter(|speed| speed.is_finite()),
             speed_error_m_s: self.speed_error_m_s,
+            triggered: self.triggered.get(row).map(|fired| *fired != 0),
             case: self.case.clone(),
             pretrigger: Some(self.pretrigger),
             ..Record::new(source, &self.file, self.interval_s, channels)
@@ -127,6 +130,29 @@ pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, 
         layout::SUMMED
     };
     names.iter().copied().map(named).collect()
+}
+
+/// How many shots of a series have no trigger: the recorder gave up waiting for their level.
+///
+/// # Errors
+/// Files that are not series of ours.
+pub fn untriggered(file: &Path) -> Result<usize, RecordError> {
+    let count = || -> Result<usize, Hdf5Error> {
+        let open = H5File::open(file)?;
+        let shots = open.dataset(layout::SHOT)?.shape().iter().product();
+        let fired = triggered(&open, shots)?;
+        Ok(fired.into_iter().filter(|fired| *fired == 0).count())
+    };
+    count().map_err(|error| RecordError::malformed(file, "a series", damaged(&error)))
+}
+
+/// Whether the trigger fired at each shot; of a file that does not say, nothing.
+pub(super) fn triggered(open: &H5File, shots: usize) -> Result<Vec<i64>, Hdf5Error> {
+    let there = open.root_group().dataset_names()?;
+    match there.iter().any(|name| name == layout::TRIGGERED) {
+        true => column(open, layout::TRIGGERED, shots),
+        false => Ok(Vec::new()),
+    }
 }
 
 pub(crate) fn column<T: rust_hdf5::H5Type>(

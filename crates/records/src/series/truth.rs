@@ -6,7 +6,8 @@ use crate::error::RecordError;
 use rust_hdf5::{H5File, Hdf5Error};
 use std::path::Path;
 
-/// The columns of true values of a series, by name.
+/// The columns of true values of a series, by name; what is told of every contact, shot after
+/// shot.
 ///
 /// Records that [`read`](crate::read) gives do not have them.
 ///
@@ -23,5 +24,6 @@ fn columns(file: &Path) -> Result<Vec<(String, Vec<f64>)>, Hdf5Error> {
         let path = format!("{}/{name}", layout::TRUTH);
         Ok((name, open.dataset(&path)?.read_raw::<f64>()?))
     };
-    names.into_iter().map(column).collect()
+    let told = names.into_iter().filter(|name| name != layout::CONTACT);
+    told.map(column).collect()
 }

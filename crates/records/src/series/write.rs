@@ -3,7 +3,7 @@
 use super::layout;
 use crate::beside;
 use crate::error::{RecordError, name};
-use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
+use rust_hdf5::{H5Dataset, H5File, H5Group, Hdf5Error};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -73,11 +73,15 @@ pub struct ShotRow<'a> {
     pub programmed_speed_m_s: f64,
     /// Speed that the photogate measured, in m/s.
     pub measured_speed_m_s: f64,
+    /// Whether the trigger fired; if not, where its record begins is the recorder's choice.
+    pub triggered: bool,
     /// Readings of the converter, channel after channel.
     pub samples: &'a [i16],
     /// What only a simulation knows; the same names, whose endings are the units,
     /// for every shot of a series.
     pub truth: &'a [(&'static str, f64)],
+    /// The same of every contact, from contact 1 on.
+    pub contacts: &'a [(&'static str, &'a [f64])],
 }
 
 /// Writes the shots of one series into one HDF5 file.
@@ -107,7 +111,9 @@ struct Table {
     shots: Vec<i64>,
     programmed: Vec<f64>,
     measured: Vec<f64>,
+    triggered: Vec<i64>,
     truth: Vec<(&'static str, Vec<f64>)>,
+    contacts: Vec<(&'static str, Vec<f64>)>,
 }
 
 impl std::fmt::Debug for SeriesWriter {
@@ -212,6 +218,15 @@ impl SeriesWriter {
         if !self.table.shots.is_empty() && !known.eq(row.truth.iter().map(|value| value.0)) {
             return Err(misfit("other true values than before".to_owned()));
         }
+        let across = |values: &(&'static str, &[f64])| (values.0, values.1.len());
+        let shots = self.table.shots.len();
+        let known = self.table.contacts.iter();
+        let known = known.map(|table| (table.0, table.1.len() / shots.max(1)));
+        if shots > 0 && !known.eq(row.contacts.iter().map(across)) {
+            return Err(misfit(
+                "other true values of contacts than before".to_owned(),
+            ));
+        }
         Ok(())
     }
 
@@ -237,29 +252,27 @@ impl Drop for SeriesWriter {
 impl Table {
     fn push(&mut self, row: &ShotRow<'_>) {
         if self.shots.is_empty() {
-            self.truth = row
-                .truth
-                .iter()
-                .map(|value| (value.0, Vec::new()))
-                .collect();
+            let truth = row.truth.iter().map(|value| (value.0, Vec::new()));
+            self.truth = truth.collect();
+            let contacts = row.contacts.iter().map(|values| (values.0, Vec::new()));
+            self.contacts = contacts.collect();
         }
         self.shots.push(i64::try_from(row.shot).unwrap_or(i64::MAX));
         self.programmed.push(row.programmed_speed_m_s);
         self.measured.push(row.measured_speed_m_s);
+        self.triggered.push(i64::from(row.triggered));
         for (column, value) in self.truth.iter_mut().zip(row.truth) {
             column.1.push(value.1);
+        }
+        for (table, values) in self.contacts.iter_mut().zip(row.contacts) {
+            table.1.extend_from_slice(values.1);
         }
     }
 
     fn write(&self, open: &Open) -> Result<(), Hdf5Error> {
         let Open { file, channels } = open;
-        let count = self.shots.len();
-        let shots = file
-            .new_dataset::<i64>()
-            .shape([count])
-            .create(layout::SHOT)?;
-        shots.write_raw(&self.shots)?;
-        describe(&shots, "number of the shot", "1")?;
+        let root = file.root_group();
+        let shots = column(&root, layout::SHOT, "number of the shot", "1", &self.shots)?;
         shots.set_scale(Some(layout::SHOT))?;
         let length = channels.first().and_then(|c| c.shape().get(1).copied());
         let axis = sample_axis(file, length.unwrap_or(1))?;
@@ -267,7 +280,6 @@ impl Table {
             channel.attach_scale(0, &shots)?;
             channel.attach_scale(1, &axis)?;
         }
-        let root = file.root_group();
         for (name, what, values) in [
             (
                 layout::PROGRAMMED,
@@ -278,10 +290,38 @@ impl Table {
         ] {
             column(&root, name, what, "m s-1", values)?.attach_scale(0, &shots)?;
         }
+        let fired = "1 if the trigger fired, 0 if its level was never passed";
+        column(&root, layout::TRIGGERED, fired, "1", &self.triggered)?.attach_scale(0, &shots)?;
         let truth = file.create_group(layout::TRUTH)?;
         truth.set_attr_string("comment", "known to the simulation, not to the rig")?;
         for (name, values) in &self.truth {
             column(&truth, name, "true value", unit(name), values)?.attach_scale(0, &shots)?;
+        }
+        self.write_contacts(&truth, &shots)
+    }
+
+    /// Tables of shots and contacts.
+    fn write_contacts(&self, truth: &H5Group, shots: &H5Dataset) -> Result<(), Hdf5Error> {
+        let Some((_, first)) = self.contacts.first() else {
+            return Ok(());
+        };
+        let across = first.len() / self.shots.len().max(1);
+        let numbers: Vec<i64> = (1..).take(across).collect();
+        let axis = column(
+            truth,
+            layout::CONTACT,
+            "number of the contact",
+            "1",
+            &numbers,
+        )?;
+        axis.set_scale(Some(layout::CONTACT))?;
+        for (name, values) in &self.contacts {
+            let shape = [self.shots.len(), across];
+            let table = truth.new_dataset::<f64>().shape(shape).create(name)?;
+            table.write_raw(values)?;
+            describe(&table, "true value of every contact", unit(name))?;
+            table.attach_scale(0, shots)?;
+            table.attach_scale(1, &axis)?;
         }
         Ok(())
     }
@@ -301,15 +341,15 @@ fn sample_axis(file: &H5File, count: usize) -> Result<H5Dataset, Hdf5Error> {
 }
 
 /// A column of numbers with its unit.
-fn column(
-    group: &rust_hdf5::H5Group,
+fn column<T: rust_hdf5::H5Type>(
+    group: &H5Group,
     name: &str,
     what: &str,
     unit: &str,
-    values: &[f64],
+    values: &[T],
 ) -> Result<H5Dataset, Hdf5Error> {
     let column = group
-        .new_dataset::<f64>()
+        .new_dataset::<T>()
         .shape([values.len()])
         .create(name)?;
     column.write_raw(values)?;

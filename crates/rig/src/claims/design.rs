@@ -85,13 +85,15 @@ impl Factor {
     }
 }
 
-/// One rig: a value in SI for each of [`FACTORS`].
+/// One rig: a value in SI for each of [`FACTORS`], and what is on its contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
     /// In words.
     pub name: String,
     /// The values.
     pub values: [f64; 4],
+    /// Number of the case of the experiment, from 0.
+    pub case: usize,
 }
 
 impl Rig {
@@ -101,6 +103,17 @@ impl Rig {
         Self {
             name: "as the preset".to_owned(),
             values: FACTORS.map(|factor| factor.usual()),
+            case: 0,
+        }
+    }
+
+    /// As the paper's preset, with another of its cases.
+    #[must_use]
+    pub fn with_case(case: usize, name: &str) -> Self {
+        Self {
+            name: format!("as the preset, {name}"),
+            case,
+            ..Self::usual()
         }
     }
 
@@ -126,6 +139,7 @@ impl Rig {
         Self {
             name: names.join(", "),
             values,
+            case: 0,
         }
     }
 }
@@ -133,8 +147,7 @@ impl Rig {
 /// Rigs, and what each of them does.
 #[derive(Clone, Debug)]
 pub struct Design {
-    /// What all rigs have in common: a chain with a push and a `[campaign]`, of
-    /// which the first case is taken.
+    /// What all rigs have in common: a chain with a push and a `[campaign]`.
     pub experiment: Experiment,
     /// The rigs.
     pub rigs: Vec<Rig>,
@@ -149,7 +162,8 @@ pub struct Design {
 impl Design {
     /// Rigs about that of an experiment, the preset `paper`: itself, one factor at
     /// a time, no push at all, and eight corners (those with an even number of high
-    /// levels, so that no effect of one factor is mixed with that of two).
+    /// levels, so that no effect of one factor is mixed with that of two); all with the
+    /// first case, which is dry, and itself with each of the others.
     #[must_use]
     pub fn about(experiment: Experiment) -> Self {
         let mut rigs = vec![Rig::usual()];
@@ -163,6 +177,8 @@ impl Design {
         rigs.push(Rig::but(PUSH, 0.0));
         let corners = (0..16u32).filter(|bits| bits.count_ones() % 2 == 0);
         rigs.extend(corners.map(|bits| Rig::corner([0, 1, 2, 3].map(|at| bits >> at & 1 == 1))));
+        let cases = experiment.cases().into_iter().enumerate().skip(1);
+        rigs.extend(cases.map(|(case, name)| Rig::with_case(case, name)));
         Self {
             experiment,
             rigs,

@@ -29,17 +29,20 @@ pub struct Observed {
 /// All that claims are judged on.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
-    /// The rigs in the design's order.
+    /// The dry rigs in the design's order: what claims are judged on.
     pub rigs: Vec<Observed>,
+    /// The others, each of which is judged alone.
+    pub wet: Vec<Observed>,
 }
 
 impl Evidence {
-    /// What was seen on one of the rigs alone.
-    #[must_use]
-    pub fn only(&self, rig: usize) -> Self {
-        Self {
-            rigs: self.rigs.get(rig).cloned().into_iter().collect(),
-        }
+    /// What was seen on each of the rigs alone.
+    pub fn alone(&self) -> impl Iterator<Item = Self> + '_ {
+        let all = self.rigs.iter().chain(&self.wet);
+        all.map(|observed| Self {
+            rigs: vec![observed.clone()],
+            wet: Vec::new(),
+        })
     }
 }
 

@@ -30,7 +30,7 @@ pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, Rig
     let plans = plans?;
     let speeds = |(rig, plans): (usize, &Plans)| {
         let own = plans[0].series.iter().enumerate();
-        own.filter(|(_, series)| series.case == 0)
+        own.filter(|(_, series)| series.case == design.rigs[rig].case)
             .map(move |(at, _)| (rig, at))
             .collect::<Vec<_>>()
     };
@@ -56,7 +56,8 @@ pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, Rig
     for (rig, at) in seen? {
         rigs[rig].speeds.push(at);
     }
-    Ok(Evidence { rigs })
+    let (rigs, wet) = rigs.into_iter().partition(|seen| seen.rig.case == 0);
+    Ok(Evidence { rigs, wet })
 }
 
 /// Both series of a speed.

@@ -11,10 +11,10 @@ use hertzchain_study::claims::{
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// The claims, judged on all rigs of a design and on each alone.
+/// The claims, judged on all dry rigs of a design and on each rig alone.
 #[derive(Clone, Debug)]
 pub struct RigClaims {
-    /// On all rigs together.
+    /// On all dry rigs together.
     pub judged: Vec<Judged>,
     /// On each alone.
     pub rigs: Vec<(Rig, Vec<Judged>)>,
@@ -29,13 +29,14 @@ impl RigClaims {
     /// When the claims' data file is damaged, which a test rules out.
     pub fn judge(design: &Design, evidence: &Evidence) -> Result<Self, ClaimError> {
         let judges = claims()?;
-        let alone = |(at, observed): (usize, &Observed)| {
-            let judged = judge_all(&judges, &evidence.only(at));
-            (observed.rig.clone(), judged)
-        };
+        let alone = evidence.alone().flat_map(|alone| {
+            let judged = judge_all(&judges, &alone);
+            let rig = alone.rigs.into_iter().next();
+            rig.map(|observed| (observed.rig, judged))
+        });
         Ok(Self {
             judged: judge_all(&judges, evidence),
-            rigs: evidence.rigs.iter().enumerate().map(alone).collect(),
+            rigs: alone.collect(),
             about: about(design, evidence),
         })
     }
@@ -86,7 +87,7 @@ fn about(design: &Design, evidence: &Evidence) -> String {
     let end = |at: Option<&AtSpeed>| at.map_or(f64::NAN, |at| at.speed_m_s);
     format!(
         "Computed on {} virtual rigs: {}, then others in what the paper does not tell, friction with the track, push on \
-         bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
+         bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. Chains are dry; {} more, as the preset with oil, are judged one by one and count in no verdict on all. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
          without taps and once with {} taps before every shot; {} shots of a series count, after {} that do not. All \
          shots of a series have exactly the same speed, so that spreads are the chain's own; times of flight are \
          those of the true peaks, without noise.\n\n\
@@ -96,6 +97,7 @@ fn about(design: &Design, evidence: &Evidence) -> String {
          A claim on spreads is one comparison a rig, any other one a series.",
         evidence.rigs.len(),
         evidence.rigs.first().map_or("", |rig| &rig.rig.name),
+        evidence.wet.len(),
         speeds.len(),
         end(speeds.first()),
         end(speeds.last()),
@@ -116,7 +118,7 @@ const HEADER: &str = "rig,friction,push_n,gap_scatter_m,radius_spread,taps,speed
 #[must_use]
 pub fn series_csv(evidence: &Evidence) -> String {
     let mut csv = format!("{HEADER}\n");
-    for Observed { rig, speeds } in &evidence.rigs {
+    for Observed { rig, speeds } in evidence.rigs.iter().chain(&evidence.wet) {
         for at in speeds {
             for (taps, shots) in [("without", &at.loose), ("with", &at.tapped)] {
                 let values = rig.values.map(|value| value.to_string()).join(",");

@@ -1,6 +1,7 @@
 //! Verdicts on the rig follow from numbers.
 
 use crate::small::{TEXT, experiment};
+use hertzchain_chain::settle::State;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_rig::Shot;
 use hertzchain_rig::claims::{
@@ -33,6 +34,9 @@ fn shots(speed_m_s: f64, spread: [f64; 2], of: impl Fn(f64, &mut Shot)) -> Vec<S
             peaks_s: [0.0; 3],
             peaks_n: [0.0; 3],
             rebound_m_s: f64::NAN,
+            before: nowhere(),
+            after: nowhere(),
+            overlaps_before_m: Vec::new(),
             gaps_before_m: vec![0.0; 40],
             gaps_after_m: vec![0.0; 40],
             rest_s: 0.02,
@@ -41,6 +45,14 @@ fn shots(speed_m_s: f64, spread: [f64; 2], of: impl Fn(f64, &mut Shot)) -> Vec<S
         shot
     };
     UNIT.iter().map(shot).collect()
+}
+
+/// Claims look at gaps, not at where bodies are.
+fn nowhere() -> State {
+    State {
+        displacement_m: Vec::new(),
+        velocity_m_s: Vec::new(),
+    }
 }
 
 /// A rig that shows all that the paper says.
@@ -63,6 +75,7 @@ fn agreeing() -> Evidence {
             rig: Rig::usual(),
             speeds: speeds.map(at_speed).to_vec(),
         }],
+        wet: Vec::new(),
     }
 }
 
@@ -257,10 +270,10 @@ fn the_design_tries_every_level_of_every_factor_about_the_preset() {
     assert_eq!(names.len(), design.rigs.len());
 }
 
-/// Two rigs with twelve beads, three speeds, three shots.
+/// Two dry rigs and a wet one with twelve beads, three speeds, three shots.
 fn small() -> Design {
     Design {
-        rigs: vec![Rig::usual(), Rig::but(0, 0.2)],
+        rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::with_case(1, "wet")],
         speeds: 3,
         shots: 2,
         first: 1,
@@ -276,8 +289,9 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
     let evidence = observe(&design, &Silent).unwrap();
     let csv = series_csv(&evidence);
     assert_eq!(csv, series_csv(&one.unwrap()));
-    // Two rigs, three speeds, with taps and without, and the header.
-    assert_eq!(csv.lines().count(), 13);
+    // Three rigs, three speeds, with taps and without, and the header.
+    assert_eq!(csv.lines().count(), 19);
+    assert_eq!((evidence.rigs.len(), evidence.wet.len()), (2, 1));
     let claims = RigClaims::judge(&design, &evidence).unwrap();
     let page = claims.markdown();
     for judged in &claims.judged {
@@ -286,8 +300,21 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
         assert!(judged.finding.value.is_finite(), "{}", judged.claim.id);
     }
     assert!(page.contains("| as the preset |") && page.contains("| friction 0.2 |"));
+    assert!(page.contains("| as the preset, wet |"));
+    // Oil changes times, and counts in no verdict on all.
+    let [dry, wet] =
+        [&evidence.rigs[0], &evidence.wet[0]].map(|seen| seen.speeds[2].tapped[0].incident_s);
+    assert!((wet / dry - 1.0).abs() > 1e-3, "{dry} {wet}");
+    let only_dry = Evidence {
+        wet: Vec::new(),
+        ..evidence.clone()
+    };
+    let again = RigClaims::judge(&design, &only_dry).unwrap();
+    for (one, two) in claims.judged.iter().zip(&again.judged) {
+        assert_eq!(one.finding.value.to_bits(), two.finding.value.to_bits());
+    }
     let rigs = claims.json()["rigs"].as_array().unwrap().len();
-    assert_eq!(rigs, 2);
+    assert_eq!(rigs, 3);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Series that can't be computed, and parts that are put together.
 
 use crate::small::plan;
-use hertzchain_rig::{RigError, Shard, campaign, merge, told_plan};
+use hertzchain_rig::{RigError, Shard, campaign, merge, run, told_plan};
 use std::fs;
 
 #[test]
@@ -41,4 +41,17 @@ fn a_poisoned_series_is_told_and_stops_no_other() {
     let merged = merge(&told, &[&out], &out).unwrap();
     assert_eq!((merged.series, merged.copied), (sound.series.len(), 0));
     fs::remove_dir_all(&out).unwrap();
+}
+
+/// What a plan refuses is not replaced by something else if it comes by another way.
+#[test]
+fn taps_that_the_actuator_cannot_do_are_refused_and_not_left_out() {
+    let mut poisoned = plan(&[]);
+    let fast = [("campaign.tap_speed", 3.0)];
+    poisoned.cases[0].experiment = poisoned.cases[0].experiment.set(&fast).unwrap();
+    let refused = run(&poisoned, &poisoned.series[0], &mut |_| Ok(())).unwrap_err();
+    assert!(
+        matches!(refused, RigError::Speed { ref what, .. } if what.starts_with("taps before shot 1")),
+        "{refused}"
+    );
 }

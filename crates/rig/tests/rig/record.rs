@@ -50,6 +50,7 @@ fn peak_s(record: &Record) -> f64 {
 #[test]
 fn the_photogate_starts_a_record_before_the_touch() {
     let record = record(Trigger::Photogate, -2e-3, &amplifier());
+    assert!(record.triggered);
     assert_eq!(record.samples.len(), 10_000);
     // 1 ms before the trigger, the trigger 2 ms before the touch; the sampling
     // clock has any phase.
@@ -67,6 +68,7 @@ fn a_level_starts_a_record_where_the_signal_passes_it() {
     // 1 V of 10 mV/N × 100 N is half-way up at 0.55 ms.
     let record = record(Trigger::Level(0.5), -2e-3, &amplifier());
     assert_eq!(record.samples.len(), 10_000);
+    assert!(record.triggered);
     let half = (0.5 / 10.0 * 32768.0) as i16;
     assert!(record.samples[999] < half && record.samples[1000] >= half);
     // To a sample and the delay of the low-pass.
@@ -78,8 +80,9 @@ fn a_level_starts_a_record_where_the_signal_passes_it() {
 }
 
 #[test]
-fn a_level_that_is_never_passed_starts_a_record_at_the_touch() {
+fn a_level_that_is_never_passed_starts_a_record_at_the_touch_and_says_so() {
     let record = record(Trigger::Level(5.0), -2e-3, &amplifier());
+    assert!(!record.triggered);
     assert_eq!(record.samples.len(), 10_000);
     assert!((record.touch_s - 1e-3).abs() <= 1e-6);
 }

@@ -1,7 +1,11 @@
 //! Series: motion carried from impact to impact.
 
 use crate::small::{SAME_SPEED, plan, shots};
-use hertzchain_rig::{Fired, Plan};
+use hertzchain_chain::observe::Passages;
+use hertzchain_chain::settle::State;
+use hertzchain_chain::wave::{self, DormandPrince, Limits};
+use hertzchain_experiment::Experiment;
+use hertzchain_rig::{Bench, Chance, Fired, Plan, Purpose, Window, programmed, shoot};
 
 /// Incident times of flight in s.
 fn incident_s(shots: &[Fired]) -> Vec<f64> {
@@ -66,12 +70,61 @@ fn a_shot_leaves_what_the_next_one_finds() {
         ("taps = 2", "taps = 0"),
     ]);
     let shots = shots(&loose, 2);
+    let experiment = &loose.case(&loose.series[2]).experiment;
     for pair in shots.windows(2) {
+        let (left, found) = (&pair[0].shot, &pair[1].shot);
+        // Positions and velocities, to the bit.
+        assert_eq!(left.after, found.before);
         // Another material law of the same chain: rest overlaps are 0 without load.
-        assert_eq!(pair[0].shot.gaps_after_m, pair[1].shot.gaps_before_m);
+        assert_eq!(left.gaps_after_m, found.gaps_before_m);
+        // Nothing is left of the motion: the next shot waits for rest.
+        assert!(left.after.rests(), "{:?}", left.after.velocity_m_s);
+        assert_eq!(
+            wave_from(experiment, &found.before, &pair[1]),
+            found.incident_s
+        );
     }
     let after = &shots[0].shot.gaps_after_m;
     assert!(after.iter().any(|gap_m| *gap_m > 1e-6), "{after:?}");
+}
+
+/// Incident time of flight in s of the wave that a shot makes in a chain left as it is here.
+fn wave_from(experiment: &Experiment, state: &State, fired: &Fired) -> f64 {
+    let (system, _) = experiment.system(Some(fired.speed_m_s)).unwrap();
+    let mut state = state.clone();
+    state.strike(&system, fired.speed_m_s);
+    let shot = system.from_state(&state).unwrap();
+    let mut passages = Passages::new(experiment.sensor_bead(), shot.beads(), true);
+    // As the rig's own wave, for the same bits.
+    let method = DormandPrince { tolerance: 1e-8 };
+    wave::run(&shot, &method, Limits::until(0.02), &mut [&mut passages]).unwrap();
+    let (incident, wall, _) = passages.peaks().unwrap();
+    wall.time_s - incident.time_s
+}
+
+/// Taps and all: one bench, on which nobody puts anything straight between impacts.
+#[test]
+fn a_series_is_taps_and_shots_on_one_bench() {
+    let plan = plan(&[SAME_SPEED]);
+    for at in [1, 5] {
+        let series = &plan.series[at];
+        let experiment = &plan.case(series).experiment;
+        let campaign = experiment.campaign();
+        let tap_m_s = programmed(&campaign.actuator, campaign.tap_speed_m_s).unwrap();
+        let mut laying = Chance::new(plan.seed, series.number, Purpose::Laying);
+        let mut bench = Bench::lay(experiment, &mut laying).unwrap();
+        for fired in shots(&plan, at) {
+            for _ in 0..campaign.taps {
+                bench.tap(tap_m_s).unwrap();
+            }
+            assert_eq!(*bench.state(), fired.shot.before);
+            let recorder = &campaign.recorder;
+            let mut tape = Window::new(recorder, 0.0, &mut laying).tape();
+            let sensor = experiment.sensor_bead();
+            shoot(&mut bench, sensor, fired.speed_m_s, &mut tape).unwrap();
+            assert_eq!(*bench.state(), fired.shot.after);
+        }
+    }
 }
 
 /// The actuator's and the gate's chance does not depend on taps.
@@ -122,6 +175,15 @@ fn a_level_in_the_file_starts_records_where_the_channel_passes_it() {
             assert!(record.touch_s < 1e-3 - 20e-6, "{}", record.touch_s);
         }
     }
+}
+
+/// Its name is told by the file, the campaign's report and the doubts of a measurement.
+#[test]
+fn a_level_that_no_shot_passes_is_told_shot_by_shot() {
+    let plan = recorder("trigger = \"level\"\nlevel = \"9 V\"");
+    assert!(shots(&plan, 0).iter().all(|fired| !fired.record.triggered));
+    let plan = recorder("trigger = \"level\"\nlevel = \"50 mV\"");
+    assert!(shots(&plan, 0).iter().all(|fired| fired.record.triggered));
 }
 
 #[test]

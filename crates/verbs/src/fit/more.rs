@@ -9,7 +9,9 @@ use hertzchain_infer::{
     Sampling, Surrogate, Unconverged, profile,
 };
 use hertzchain_study::reproduce::write_atomically;
+use hertzchain_study::{StudyError, stopped};
 use std::fs;
+use std::io::{self, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -162,7 +164,29 @@ impl<'a> Saving<'a> {
 /// A chain as it lies in the output folder.
 ///
 /// # Errors
-/// Numbers that are none, of which JSON knows nothing.
+/// Numbers that are none, of which JSON knows nothing; a wish to stop.
 pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
-    serde_json::to_vec(chain).map_err(|error| Failure::Ours(error.to_string()))
+    let mut text = Wanted::default();
+    let written = serde_json::to_writer(&mut text, chain);
+    written.map_err(|error| Failure::Ours(error.to_string()))?;
+    Ok(text.0)
+}
+
+/// Text that nobody writes on once it is no longer wanted: of long chains it has
+/// a hundred megabytes.
+#[derive(Default)]
+struct Wanted(Vec<u8>);
+
+impl Write for Wanted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if stopped() {
+            return Err(io::Error::other(StudyError::Stopped));
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

@@ -33,7 +33,7 @@ pub fn run(folder: &Path, bar: &Bar) -> Result<Found, Failure> {
     }
     Ok(Found {
         summary: format!(
-            "\nOn {} virtual rigs:\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
+            "\nOn {} dry virtual rigs:\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
             evidence.rigs.len(),
             verdicts(&claims.judged),
             folder.join("rig-claims.md").display(),
