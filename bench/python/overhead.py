@@ -18,13 +18,13 @@ import numpy as np
 
 import hertzchain as hc
 
-SHOTS = 8192
+SHOTS = 4096
 PAIRS = 20
 NUMBER = "damping_cubic.coefficient"
 """Which varies in the second comparison and the third."""
 
 COLUMNS = 64
-"""Values of it in the third, along which 128 speeds are broadcast."""
+"""Values of it in the third, along which 64 speeds are broadcast."""
 
 COMPARED = {
     "speeds alone": [],

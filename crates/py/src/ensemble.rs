@@ -169,31 +169,36 @@ impl Fired {
         let count = rows.speeds_m_s.len();
         for first in (0..count).step_by(TOGETHER) {
             let part: Vec<usize> = (first..count.min(first + TOGETHER)).collect();
-            let planned = rows.planned(&part);
-            let sound = planned.iter().flatten();
-            let plans: Vec<Plan> = sound.map(|(plan, _)| plan.clone()).collect();
+            let (mut plans, mut told) = (Vec::new(), Vec::new());
+            for planned in rows.planned(&part) {
+                told.push(planned.map(|(plan, warnings)| {
+                    plans.push(plan);
+                    warnings
+                }));
+            }
             let shots = shooting.shots(&plans, set, rows.how.check, stop);
             if stopped() {
                 return Err(Failure::User(StudyError::Stopped.to_string()));
             }
             let mut shots = shots.into_iter();
-            for (row, planned) in part.into_iter().zip(planned) {
-                fired.take(row, planned, &mut shots, stop);
+            for (row, told) in part.into_iter().zip(told) {
+                fired.take(row, told, &mut shots, stop);
             }
         }
         Ok(fired)
     }
 
-    /// One row more; its shot is the next if it has a plan.
+    /// One row more, with what is odd about its plan or why it has none; its shot is
+    /// the next if it has one.
     fn take(
         &mut self,
         row: usize,
-        planned: Planned,
+        told: Result<Vec<String>, String>,
         shots: &mut impl Iterator<Item = Result<Shot, StudyError>>,
         stop: &Stop,
     ) {
-        let shot = match planned {
-            Ok((_, warnings)) => {
+        let shot = match told {
+            Ok(warnings) => {
                 Odd::add(&mut self.odd, row, &warnings);
                 let shot = shots.next().unwrap_or(Err(StudyError::Stopped));
                 shot.map_err(|why| why.to_string())

@@ -6,7 +6,7 @@
 //! ```text
 //! throughput dry 8192                               # at as many speeds
 //! throughput dry 8192 damping_cubic.coefficient     # each with this number of its own
-//! throughput dry 8192 damping_cubic.coefficient 64  # 128 speeds by 64 such numbers
+//! throughput dry 4096 damping_cubic.coefficient 64  # 64 speeds by 64 such numbers
 //! ```
 
 use hertzchain_experiment::{Experiment, preset};

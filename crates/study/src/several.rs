@@ -70,8 +70,13 @@ impl Several<'_> {
             false => (self.plan)(*place),
         };
         let planned: Vec<Planned> = places.par_iter().map(wanted).collect();
-        let sound = planned.iter().filter_map(|plan| plan.as_ref().ok());
-        let plans: Vec<Plan> = sound.map(|(plan, _)| plan.clone()).collect();
+        let (mut plans, mut odd) = (Vec::new(), Vec::new());
+        for planned in planned {
+            odd.push(planned.map(|(plan, warnings)| {
+                plans.push(plan);
+                warnings
+            }));
+        }
         let Settings {
             set,
             checked,
@@ -83,13 +88,13 @@ impl Several<'_> {
             None => shoot_all(&plans, set, checked, progress),
         };
         let mut shots = shots.into_iter();
-        let told = |planned: Planned| match planned {
+        let told = |odd: Result<Vec<Warning>, PointError>| match odd {
             Err(error) => Some((Err(error), Vec::new())),
-            Ok((_, warnings)) => {
+            Ok(warnings) => {
                 let shot = shots.next()?.map_err(PointError::from);
                 Some((shot, warnings.iter().map(Warning::one_line).collect()))
             }
         };
-        planned.into_iter().filter_map(told).collect()
+        odd.into_iter().filter_map(told).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! What would tell confused parameters apart, by the rows that it would add to the
 //! Jacobian.
 
-use super::candidates::{ExpectedErrors, Way, expected, pushed};
+use super::candidates::{ExpectedErrors, Kind, Way, expected, pushed};
 use super::model::Model;
 use super::problem::CurveProblem;
 use crate::data::{Data, Observable};
@@ -221,7 +221,7 @@ impl CurveProblem {
             ends[0],
             ends[1]
         );
-        let pushed = pushed(experiment).ok().flatten();
+        let pushed = pushed(experiment);
         let mut ways = Vec::new();
         if any_speed {
             ways.push((spread, experiment.clone(), wider));
@@ -235,6 +235,8 @@ impl CurveProblem {
             let model = model.with_accuracy(self.model().accuracy);
             let has = |of: &Observable| self.data().has(*of);
             let way = Way {
+                kind: Kind::Incident,
+                cost: 1.0,
                 name: name.clone(),
                 experiment,
                 observables: Observable::ALL.into_iter().filter(has).collect(),
