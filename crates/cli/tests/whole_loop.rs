@@ -49,7 +49,7 @@ const COMPACT: [(&str, &str); 6] = [
 /// Recordings of a campaign, one a seed, as they are measured.
 fn judged(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec<Judged>> {
     let under = std::env::temp_dir().join(format!("hertzchain-{name}-{}", std::process::id()));
-    let folders = run(text, seeds, &under).unwrap();
+    let folders = run(text, 1..=seeds, &under).unwrap();
     let each = |options: &Options| -> Vec<Judged> {
         let folders = folders.iter();
         folders

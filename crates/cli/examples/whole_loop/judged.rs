@@ -13,6 +13,7 @@ use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Incident and reflected, in this order, here and below.
@@ -145,9 +146,13 @@ fn mean(speed_m_s: f64, (found, moved): (Vec<Estimate>, Vec<[Moved; 2]>)) -> Opt
 }
 
 /// Runs a campaign file once a seed, each into a folder of its own.
-pub fn run(text: &str, seeds: u64, under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+pub fn run(
+    text: &str,
+    seeds: RangeInclusive<u64>,
+    under: &Path,
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let experiment = Experiment::from_text("campaign.toml", text)?;
-    (1..=seeds)
+    seeds
         .map(|seed| {
             let folder = under.join(seed.to_string());
             let plan = Plan::new(&experiment, Some(seed))?;
