@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-fn run(arguments: &[&str]) -> Output {
+pub fn run(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
     program.args(arguments).output().unwrap()
 }
 
-fn refused(arguments: &[&str]) -> String {
+pub fn refused(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
@@ -19,27 +19,27 @@ fn refused(arguments: &[&str]) -> String {
     message
 }
 
-fn json(arguments: &[&str]) -> Value {
+pub fn json(arguments: &[&str]) -> Value {
     let output = run(arguments);
     let told = String::from_utf8_lossy(&output.stderr);
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
 }
 
-fn folder(test: &str) -> PathBuf {
+pub fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("inference-{test}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn file(folder: &Path, name: &str, text: &str) -> String {
+pub fn file(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     fs::write(&path, text).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
 /// Six speeds of a preset's curve, as `sweep` writes them, as a path.
-fn curve(folder: &Path, preset: &str) -> String {
+pub fn curve(folder: &Path, preset: &str) -> String {
     let out = folder.join(preset);
     let out = out.to_str().unwrap();
     let swept = run(&[
@@ -57,7 +57,7 @@ fn curve(folder: &Path, preset: &str) -> String {
 
 const ERRORS: [&str; 4] = ["--tof-error", "2e-7", "--speed-error", "5e-4"];
 
-fn with_errors<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+pub fn with_errors<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     arguments.iter().copied().chain(ERRORS).collect()
 }
 
@@ -332,7 +332,7 @@ fn a_bound_that_binds_is_no_error_bar() {
 
 /// The small rig, its chains laid compact and pushed by nothing, so that they are
 /// the model's.
-fn compact() -> String {
+pub fn compact() -> String {
     let small = include_str!("../../rig/tests/small.toml");
     let changes = [
         ("force = \"0.24 N\"", "force = \"0 N\""),

@@ -8,6 +8,7 @@ mod curve;
 mod data;
 mod free;
 mod gauge;
+mod gauge_form;
 mod linear;
 mod mistakes;
 mod nonlinear;

@@ -23,14 +23,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
     let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
-    let all = design::json(&problem, &designed);
+    let mut all = design::json(&problem, &designed);
+    all["options"] = arguments.words().into();
     match arguments.json {
         true => print::print_json(&all)?,
         false => print::print(&text(&problem, &designed))?,
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.write("design.csv", design::csv(&problem, &designed).as_bytes())?;
+        folder.tables(&design::tables(&problem, &designed))?;
         eprint!("Written:\n{}", folder.list());
         Ok(())
     })
@@ -51,12 +52,18 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let mut head = vec!["measure next".to_owned()];
     head.extend(names.iter().map(|name| format!("{name} ±")));
     head.push("information (nats)".to_owned());
+    let priced = candidates.iter().any(|candidate| candidate.cost != 1.0);
+    if priced {
+        head.extend(["cost", "information over cost"].map(str::to_owned));
+    }
     let row = |expected: &Expected| {
         let name = candidates[expected.candidate].name.clone();
         let after = expected.after.iter().map(|sd| sd_text(*sd));
         std::iter::once(name)
             .chain(after)
             .chain([digits(expected.gain, 3)])
+            .chain(priced.then(|| digits(candidates[expected.candidate].cost, 3)))
+            .chain(priced.then(|| digits(expected.gain_per_cost, 3)))
             .collect::<Vec<_>>()
     };
     let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();

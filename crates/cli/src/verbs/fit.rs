@@ -34,9 +34,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {
-    folder.write("fit.csv", fit::rows_csv(fitted).as_bytes())?;
     folder.figure("fit", &pictures::fit(fitted))?;
-    write_inferred(&mut folder, &fitted.inferred, all)?;
+    let tables = fit::tables(fitted);
+    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }
@@ -45,16 +45,14 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
 fn write_inferred(
     folder: &mut Folder,
     fitted: &Inferred,
-    all: &serde_json::Value,
+    (all, tables): (&serde_json::Value, &[fit::Table]),
 ) -> Result<(), Failure> {
     folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
-    folder.write("parameters.csv", fit::parameters_csv(fitted).as_bytes())?;
+    folder.tables(tables)?;
     folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
     match &fitted.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            let table = fit::profiles_csv(fitted, profiles);
-            folder.write("profiles.csv", table.as_bytes())?;
             folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
         }
         More::Sampled(sampled) => {

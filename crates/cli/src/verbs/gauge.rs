@@ -39,8 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         own: &arguments.own,
         accuracy: arguments.accuracy,
     };
-    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils))?;
-    let all = gauge::json(&gauged);
+    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
+    let mut all = gauge::json(&gauged);
+    all["options"] = arguments.words().into();
     match arguments.json {
         true => print::print_json(&all)?,
         false => print::print(&report::text(&gauged))?,
@@ -50,8 +51,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
-    folder.write("contacts.csv", gauge::contacts_csv(gauged).as_bytes())?;
-    if gauged.rows.iter().any(|row| row.told.is_ok()) {
+    folder.tables(&gauge::tables(gauged))?;
+    if gauged.form.is_some() || gauged.rows.iter().any(|row| row.told.is_ok()) {
         folder.figure("contacts", &pictures::contacts(gauged))?;
     }
     eprint!("Written:\n{}", folder.list());

@@ -74,11 +74,16 @@ const ASIDE: f64 = 0.01;
 
 impl Truth {
     pub fn of(experiment: &Experiment, speeds_m_s: &[f64]) -> Self {
-        let exact = model(experiment, &[]).with_accuracy(1e-7);
+        Self::at(&model(experiment, &[]), &[], speeds_m_s)
+    }
+
+    /// A model's curve at a point.
+    pub fn at(model: &Model, point: &[f64], speeds_m_s: &[f64]) -> Self {
+        let exact = model.clone().with_accuracy(1e-7);
         let at = |factor: f64| {
             let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
             exact
-                .curves(&[Vec::new()], &Speeds::of_rows(&speeds))
+                .curves(&[point.to_vec()], &Speeds::of_rows(&speeds))
                 .remove(0)
                 .unwrap()
         };

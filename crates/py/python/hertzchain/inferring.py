@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -151,6 +151,9 @@ def design(
     free: str | Iterable[str],
     target: str | Iterable[str] | None = None,
     speeds: str | Iterable[float] | None = None,
+    preloads: Iterable[float | str] = ("0.24N",),
+    sensors: Iterable[int] | None = None,
+    costs: Mapping[str, float] | None = None,
     picks: int = 5,
     case: str | None = None,
     use: Iterable[What] = ("incident", "reflected"),
@@ -177,6 +180,14 @@ ratio_error, accuracy, threads, progress
         Parameters to tighten, as the fit names them; all when absent.
     speeds : str or iterable of float, optional
         Speeds that could be measured, in m/s.
+    preloads : iterable of float or str
+        Pushes on bead 1 that could be tried, in N or with a unit.
+    sensors : iterable of int, optional
+        Beads that could hold the sensor; an eighth, a half and three quarters down the chain
+        when absent.
+    costs : mapping of str to float, optional
+        What a speed costs when it is measured in a way: ``incident``, ``reflected``, ``ratio``,
+        ``sensor`` or ``preload``, each 1 when absent. Ways are ranked by information over cost.
     picks : int
         Length of the proposed series.
 
@@ -201,6 +212,9 @@ ratio_error, accuracy, threads, progress
         tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, threads=threads,
     )  # fmt: skip
     told += [*options.listed("free", free), *options.listed("target", target), *options.words(speeds=listed, picks=picks)]
+    told += options.listed("preloads", [options.text(force) for force in preloads] or ["none"])
+    told += options.listed("sensors", None if sensors is None else map(str, sensors))
+    told += options.listed("costs", [f"{way}={options.text(value)}" for way, value in (costs or {}).items()] or None)
     with options.progress(progress, None, "curve") as update:
         return Designed(**_native.design((name, text), modelled(model), [*told, "--", name], update))
 
@@ -215,6 +229,7 @@ def gauge(
     dry_model: Experiment | str = "dry",
     dry_free: str | Iterable[str] = ("aisi316.eta", "dry.B"),
     own: str | Iterable[str] = (),
+    form: Literal["each", "power"] = "each",
     oils: str | os.PathLike[str] | None = None,
     use: Iterable[What] = ("incident", "reflected"),
     speed_error: float | None = None,
@@ -237,6 +252,9 @@ def gauge(
     own : iterable of str
         Numbers that each chain has for itself, such as the load that friction
         holds in a tapped row (``near_end.force``).
+    form : {"each", "power"}
+        How K and A depend on speed: each speed for itself, or as power laws fitted to the
+        whole curve, which incident times tell if speeds are known well.
     oils : path, optional
         Table (CSV) of further oils.
     wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads, progress
@@ -264,7 +282,7 @@ def gauge(
     told = [
         *options.words(
             wet_case=wet_case, dry_case=dry_case, speed_error=speed_error, tof_error=tof_error,
-            ratio_error=ratio_error, accuracy=accuracy, threads=threads,
+            ratio_error=ratio_error, accuracy=accuracy, form=form, threads=threads,
         ),
         *options.listed("use", use), *options.listed("dry-free", dry_free),
         *options.listed("own", own),

@@ -1,11 +1,16 @@
 //! `fit`: times of flight to parameters.
 
+mod heeded;
 mod more;
 pub mod pulses;
 mod results;
+mod rivals;
+mod tables;
 
-pub use more::{CHAIN, More, Rival, Rivals, Sampled, saved};
-pub use results::{inferred, joined, json, parameters_csv, profiles_csv, rows_csv, rows_json};
+pub use more::{CHAIN, More, Sampled, saved};
+pub use results::{inferred, joined, json, rows_json};
+pub use rivals::{Lost, Rival, Rivals};
+pub use tables::{Table, of_any as tables_of_any, tables};
 
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
@@ -17,6 +22,9 @@ use hertzchain_infer::{
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
 const OUTLIER: f64 = 1.345;
+
+/// Share of a normal distribution within one standard error of its mean.
+pub(crate) const SHARE_OF_A_STANDARD_ERROR: f64 = 0.682_689_5;
 
 /// What any fit tells.
 pub struct Inferred {
@@ -70,6 +78,7 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 /// # Errors
 /// What is in the way of a fit.
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
+    heeded::of_table(arguments)?;
     let fit = best(&problem, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, &fit, &covariance, arguments)?;
@@ -87,6 +96,7 @@ pub fn fitted_elsewhere(
     computed: &dyn Problem,
     arguments: &Arguments,
 ) -> Result<Fitted, Failure> {
+    heeded::of_table(arguments)?;
     let fit = best(computed, arguments)?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(computed, (&fit, &covariance), None, arguments)?;
@@ -102,7 +112,7 @@ fn told(
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
     Ok(Fitted {
-        rivals: more::rivals(&problem, &fit, arguments)?,
+        rivals: rivals::rivals(&problem, &fit, arguments)?,
         curve: problem.fitted_curve(&fit, &covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
         inferred: Inferred {

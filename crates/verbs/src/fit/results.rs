@@ -1,9 +1,9 @@
-//! A fit as JSON and tables, in SI.
+//! A fit as JSON, in SI.
 
-use super::more::{More, Rival, Rivals};
+use super::more::More;
+use super::rivals::{Rival, Rivals};
 use super::{Fitted, Inferred};
 use crate::arguments::infer::Fit as Arguments;
-use crate::table::cell;
 use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Profile};
 use serde_json::{Value, json};
 
@@ -16,6 +16,8 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
         "model": fitted.problem.model().experiment().name(),
         "model_accuracy": fitted.accuracy,
+        "instruction_set": fitted.problem.model().set.name(),
+        "fingerprint": fitted.problem.fingerprint().to_string(),
         "would_separate": match confused {
             true => fitted.problem.would_separate(),
             false => Vec::new(),
@@ -39,6 +41,8 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": arguments.words(),
         "free": arguments.freed.free,
         "seed": arguments.seed,
         "robust": arguments.robust,
@@ -61,6 +65,7 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         })),
         "jacobian_disagreement": fit.jacobian.disagreement,
         "singular_values": fitted.identifiability.singular_values,
+        "directions": fitted.identifiability.directions,
         "singular_value_floor": fitted.identifiability.floor,
         "not_determined": fitted.identifiability.confused.iter().map(|c| json!({
             "words": c.words, "change": c.change,
@@ -155,7 +160,7 @@ fn posterior(fitted: &Inferred) -> Value {
                         "mean": posterior.mean[at],
                         "sd": posterior.sd(at),
                         "median": posterior.quantile(at, 0.5),
-                        "interval_68": posterior.interval(at, 0.682_689_5),
+                        "interval_68": posterior.interval(at, super::SHARE_OF_A_STANDARD_ERROR),
                         "interval_95": posterior.interval(at, 0.95),
                         "autocorrelation_time": found.time.time,
                         "r_hat": found.r_hat,
@@ -185,6 +190,7 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
         json!({
             "model": rival.name,
             "point": rival.fit.point,
+            "settings_left_out": rival.without,
             "chi_square": rival.fit.chi_square(),
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),
@@ -194,66 +200,6 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
         })
     };
     rivals.all.iter().enumerate().map(one).collect()
-}
-
-/// One line a value of a profile.
-#[must_use]
-pub fn profiles_csv(fitted: &Inferred, profiles: &[Profile]) -> String {
-    let mut text = "name,value,chi_square_rise\n".to_owned();
-    for profile in profiles {
-        let name = &fitted.parameters[profile.parameter].name;
-        for (value, rise) in profile.values.iter().zip(&profile.rise) {
-            text += &format!("{name},{},{}\n", cell(*value), cell(*rise));
-        }
-    }
-    text
-}
-
-/// One line a parameter.
-#[must_use]
-pub fn parameters_csv(fitted: &Inferred) -> String {
-    let mut text = "name,unit,value,standard_error\n".to_owned();
-    for (at, parameter) in fitted.parameters.iter().enumerate() {
-        let sd = fitted.covariance.sd[at];
-        let sd = if sd.is_finite() {
-            cell(sd)
-        } else {
-            String::new()
-        };
-        let value = cell(fitted.fit.point[at]);
-        text += &format!("{},{},{value},{sd}\n", parameter.name, parameter.unit);
-    }
-    text
-}
-
-/// One line a measured value.
-#[must_use]
-pub fn rows_csv(fitted: &Fitted) -> String {
-    let mut text = "line,speed_m_s,observable,measured,error,fitted,residual\n".to_owned();
-    let measured = fitted.problem.measured();
-    for ((row, of), residual) in measured.into_iter().zip(&fitted.inferred.fit.residuals) {
-        text += &row_line(fitted, (row, of), *residual);
-    }
-    text
-}
-
-fn row_line(fitted: &Fitted, (at, of): (usize, Observable), residual: f64) -> String {
-    let row = &fitted.problem.data().rows[at];
-    let measured = row.value(of);
-    let predicted = fitted
-        .curve
-        .predicted
-        .get(at)
-        .and_then(|row| row[of as usize]);
-    let cells = [
-        measured.map(|m| m.value),
-        measured.map(|m| m.sigma),
-        predicted,
-        Some(residual),
-    ];
-    let cells = cells.map(|value| value.map_or(String::new(), cell));
-    let speed = cell(row.speed_m_s.value);
-    format!("{},{speed},{},{}\n", row.line, of.column(), cells.join(","))
 }
 
 /// Every measured value beside the fitted one with its standard error.

@@ -2,6 +2,8 @@
 
 mod known;
 
+pub use known::is_meant;
+
 use crate::arguments::Input;
 use crate::arguments::infer::{Assignment, Freed, Measured, Modelled, What};
 use crate::failure::Failure;

@@ -280,7 +280,16 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
         "cross-validated error",
     ];
     let table = format::table(&head.map(str::to_owned), &rows);
-    format!("\n{table}{}\n", comparison.sentence)
+    let without = rivals.all.iter().filter(|rival| !rival.without.is_empty());
+    let without = without.map(|rival| {
+        let settings = rival.without.join(", ");
+        format!(
+            "{} has no such number: --set {settings} is left out there\n",
+            rival.name
+        )
+    });
+    let without: String = without.collect();
+    format!("\n{table}{}\n{without}", comparison.sentence)
 }
 
 /// What observables are called where space is short.
