@@ -57,7 +57,7 @@ fn print(text: &str, under: &Path) -> Result<(), Box<dyn Error>> {
 
 fn shots(text: &str, under: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
     let mut shots = Vec::new();
-    for folder in run(text, 1, under)? {
+    for folder in run(text, 1..=1, under)? {
         shots.extend(judge(&folder, &Options::default())?);
     }
     Ok(shots)

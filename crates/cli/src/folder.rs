@@ -50,6 +50,12 @@ impl Folder {
         Ok(())
     }
 
+    /// Writes tables, each under its name.
+    pub fn tables(&mut self, tables: &[(&str, String)]) -> Result<(), Failure> {
+        let mut tables = tables.iter();
+        tables.try_for_each(|(name, text)| self.write(name, text.as_bytes()))
+    }
+
     /// Writes a figure as SVG and PNG.
     pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{name}.svg"), figure.svg().as_bytes())?;

@@ -2,6 +2,7 @@
 
 use crate::format::{digits, with_error};
 use hertzchain_infer::{Ending, Goodness, Parameter};
+use hertzchain_signal::ChiSquare;
 
 /// A value and its standard error, with the unit of its parameter: both over a
 /// power of ten where they are large or small.
@@ -31,14 +32,17 @@ pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
 
 /// How far data are from a fit.
 pub fn chi_square_text(goodness: &Goodness) -> String {
-    goodness.chi_square.map_or(String::new(), |found| {
-        format!(
-            "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
-            digits(found.value, 4),
-            found.freedom,
-            percent(found.probability)
-        )
-    })
+    goodness.chi_square.map_or(String::new(), chi_square_of)
+}
+
+/// A chi-square and what chance makes of it.
+pub fn chi_square_of(found: ChiSquare) -> String {
+    format!(
+        "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
+        digits(found.value, 4),
+        found.freedom,
+        percent(found.probability)
+    )
 }
 
 /// A share in percent.

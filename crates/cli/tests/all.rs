@@ -8,6 +8,8 @@ mod bibliography;
 mod campaign;
 mod ensembles;
 mod inference;
+mod inference_options;
+mod inference_results;
 mod legends;
 mod measure;
 mod program;

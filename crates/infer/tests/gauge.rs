@@ -1,6 +1,6 @@
 //! The oil gauge on simulated oils.
 
-use crate::common::Truth;
+use crate::common::{Noise, Truth, speeds_between};
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
@@ -140,6 +140,34 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
         assert!(contact.combination.is_none());
     }
     assert_eq!(gauge.to_add(), None);
+}
+
+/// Below 0.15 m/s another pair has the smaller A: neighbours tell which is the true one.
+#[test]
+fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
+    let pump = preset("pump").unwrap();
+    let noise = Noise {
+        speed_m_s: 1e-5,
+        time_s: 1e-8,
+    };
+    let wet = Truth::of(&pump, &speeds_between(0.09, 0.6, 7)).measured_with(noise, 5);
+    let gauge = gauge(wet, 5);
+    let oil = known_oils().unwrap().remove(2);
+    let mut smaller = 0;
+    for row in gauge.rows() {
+        let contact = row.told.unwrap();
+        let exact = oil.contact(gauge.wet_radius_m(), row.speed_m_s).1.ln();
+        let miss = |ln: &[f64; 2]| (ln[1] - exact).abs();
+        for other in &contact.others {
+            assert!(
+                miss(&contact.ln) < miss(other),
+                "{}: {contact:?}",
+                row.speed_m_s
+            );
+            smaller += usize::from(other[1] < contact.ln[1]);
+        }
+    }
+    assert!(smaller >= 2, "the smallest A would have done as well");
 }
 
 #[test]

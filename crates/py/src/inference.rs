@@ -202,8 +202,10 @@ pub fn gauge<'py>(
             own: &arguments.own,
             accuracy: arguments.accuracy,
         };
-        let gauged = gauging::gauged(&chains, (dry, wet), all)?;
-        Ok(gauging::json(&gauged))
+        let gauged = gauging::gauged(&chains, (dry, wet), all, arguments.form)?;
+        let mut told = gauging::json(&gauged);
+        told["options"] = arguments.words().into();
+        Ok(told)
     })?;
     json::object(py, &found)
 }

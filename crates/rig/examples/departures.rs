@@ -71,13 +71,59 @@ fn main() -> Outcome<()> {
     let mut done = done.collect::<Outcome<Vec<Departures>>>()?.into_iter();
     println!("| rig | case | m/s | load | incident, µs | by load | reflected, µs | by load |");
     println!("|---|---|---|---|---|---|---|---|");
+    let mut rigs = Vec::new();
     for ((name, _), plan) in CHANGES.iter().zip(&plans) {
+        let mut rig = Vec::new();
         for (series, found) in plan.series.iter().zip(&mut done) {
-            let (case, speed) = (&plan.case(series).name, series.programmed_m_s);
-            println!("| {name} | {case} | {speed:.3} | {}", found.cells());
+            let case = &plan.case(series).name;
+            let name = format!("{name} | {case} | {:.3}", series.programmed_m_s);
+            println!("| {name} | {}", found.cells());
+            rig.push((name, found));
         }
+        rigs.push((*name, rig));
     }
+    tell_largest(&rigs);
+    tell_loads(&rigs);
     Ok(())
+}
+
+/// Series of a rig by name.
+type OfRig = (&'static str, Vec<(String, Departures)>);
+
+/// The largest mean departures on each rig.
+fn tell_largest(rigs: &[OfRig]) {
+    println!("\nLargest mean departure of incident and reflected times, µs:");
+    for (name, series) in rigs {
+        let largest = [0, 1].map(|time: usize| {
+            let all = series.iter().map(|(_, found)| found.told(time).0.abs());
+            1e6 * all.fold(0.0, f64::max)
+        });
+        println!("  {name}: {:.2}, {:.2}", largest[0], largest[1]);
+    }
+}
+
+/// Added to standard errors of so few shots, which chance can make very small, in s.
+const AT_LEAST_S: f64 = 0.02e-6;
+
+/// In how many series the model with the mean load tells the incident departure, and the others.
+fn tell_loads(rigs: &[OfRig]) {
+    let series: Vec<&(String, Departures)> = rigs.iter().flat_map(|(_, rig)| rig).collect();
+    let missed = series.iter().filter(|(_, found)| {
+        let (mean_s, error_s) = found.told(0);
+        (mean_s - found.by_load_s[0]).abs() > 3.0 * (error_s + AT_LEAST_S)
+    });
+    let missed: Vec<_> = missed.collect();
+    println!(
+        "\nThe mean load tells the incident departure within three standard errors, {:.0} ns added \
+         to each, in {} of {} series; in the others (departure, by load, µs):",
+        1e9 * AT_LEAST_S,
+        series.len() - missed.len(),
+        series.len()
+    );
+    for (name, found) in missed {
+        let [departure, by_load] = [found.told(0).0, found.by_load_s[0]].map(|s| 1e6 * s);
+        println!("  {name}: {departure:+.2}, {by_load:+.2}");
+    }
 }
 
 /// Of one series.
@@ -143,6 +189,11 @@ fn model_s(experiment: &Experiment, speed_m_s: f64) -> Outcome<[f64; 2]> {
 }
 
 impl Departures {
+    /// Mean and standard error in s of a time's departures.
+    fn told(&self, time: usize) -> (f64, f64) {
+        moments(&self.times_s[time])
+    }
+
     fn cells(&self) -> String {
         let mut cells = format!("{} % |", mean(&self.load, 1e2, 1));
         for (times_s, by_load_s) in self.times_s.iter().zip(self.by_load_s) {
@@ -157,11 +208,16 @@ impl Departures {
     }
 }
 
-/// Mean and standard error in a unit.
-fn mean(of: &[f64], unit: f64, digits: usize) -> String {
+/// Mean and standard error.
+fn moments(of: &[f64]) -> (f64, f64) {
     let count = of.len() as f64;
     let mean = of.iter().sum::<f64>() / count;
     let squares: f64 = of.iter().map(|x| (x - mean).powi(2)).sum();
-    let error = (squares / (count * (count - 1.0))).sqrt();
+    (mean, (squares / (count * (count - 1.0))).sqrt())
+}
+
+/// Mean and standard error in a unit.
+fn mean(of: &[f64], unit: f64, digits: usize) -> String {
+    let (mean, error) = moments(of);
     format!("{:+.digits$} ± {:.digits$}", unit * mean, unit * error)
 }

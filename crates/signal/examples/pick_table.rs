@@ -60,13 +60,14 @@ fn dry_shot() -> Source {
     }
 }
 
+/// As the command line has them.
 fn methods() -> [(&'static str, Method); 4] {
     [
-        ("maximum", Method::default()),
-        ("onset at 50 %", Method::Onset { fraction: 0.5 }),
+        ("local", Method::default()),
+        ("onset", Method::Onset { fraction: 0.5 }),
         ("correlation", Method::CrossCorrelation(Template::Passing)),
         (
-            "matched shape",
+            "shape",
             Method::MatchedShape {
                 shape: Shape::cos_power(6.0),
                 width: 2.0,

@@ -1,12 +1,12 @@
 //! `design`: what to measure next.
 
-use crate::arguments::infer::Design as Arguments;
+use crate::arguments::infer::{Design as Arguments, Push, WayKind};
+use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
 use crate::inference::user;
-use crate::table::cell;
 use hertzchain_infer::{
-    Candidate, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting, Identifiability,
-    Problem, design, fit, usual_ways, wrong_speed,
+    Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
+    Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
 };
 use hertzchain_study::parse_speeds;
 use serde_json::{Value, json};
@@ -19,6 +19,8 @@ pub struct Designed {
     pub design: Design,
     /// Combinations of the parameters that the data so far leave open, in words.
     pub undetermined: Vec<String>,
+    /// What would settle them, if there are any.
+    pub advice: Vec<String>,
 }
 
 /// Speeds that could be measured.
@@ -72,6 +74,34 @@ pub fn targets(problem: &CurveProblem, arguments: &Arguments) -> Result<Vec<usiz
     arguments.target.iter().map(place).collect()
 }
 
+/// What the options say could be done otherwise.
+fn choices(arguments: &Arguments) -> Choices {
+    let mut choices = Choices {
+        preloads_n: Vec::new(),
+        sensor_beads: arguments.sensors.clone(),
+        ..Choices::default()
+    };
+    for push in &arguments.preloads {
+        if let Push::Of(force_n) = push {
+            choices.preloads_n.push(*force_n);
+        }
+    }
+    for cost in &arguments.costs {
+        choices.costs[kind(cost.of) as usize] = cost.value;
+    }
+    choices
+}
+
+fn kind(of: WayKind) -> Kind {
+    match of {
+        WayKind::Incident => Kind::Incident,
+        WayKind::Reflected => Kind::Reflected,
+        WayKind::Ratio => Kind::Ratio,
+        WayKind::Sensor => Kind::Sensor,
+        WayKind::Preload => Kind::Preload,
+    }
+}
+
 /// Fits, and ranks candidates by what they would tell of the targets.
 ///
 /// # Errors
@@ -83,7 +113,7 @@ pub fn designed(
     arguments: &Arguments,
 ) -> Result<Designed, Failure> {
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
-    let ways = usual_ways(problem.model().experiment()).map_err(user)?;
+    let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
     let candidates = problem
         .candidates(&fit, &ways, speeds, &errors)
@@ -92,8 +122,13 @@ pub fn designed(
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
     let label = |at: usize| problem.residual_label(at);
     let identified = Identifiability::new(problem.parameters(), &fit, label);
+    let advice = match identified.confused.is_empty() {
+        true => Vec::new(),
+        false => problem.would_separate(&fit).words(),
+    };
     let open = identified.confused.into_iter();
     Ok(Designed {
+        advice,
         candidates,
         design: found,
         undetermined: open.map(|confusion| confusion.words).collect(),
@@ -110,6 +145,8 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
             "measure": candidates[expected.candidate].name,
             "standard_errors": expected.after.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
             "information_nats": expected.gain,
+            "cost": candidates[expected.candidate].cost,
+            "information_over_cost": expected.gain_per_cost,
         })
     };
     json!({
@@ -121,26 +158,48 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
     })
 }
 
-/// One line a candidate, best first.
+/// Every table: files' names and what stands in them.
 #[must_use]
-pub fn csv(problem: &CurveProblem, designed: &Designed) -> String {
-    let (candidates, found) = (&designed.candidates, &designed.design);
-    let names = found
-        .targets
-        .iter()
-        .map(|at| format!(",{}_error", problem.parameters()[*at].name));
-    let mut text = format!("measure{},information_nats\n", names.collect::<String>());
-    for expected in &found.ranked {
-        let after = expected.after.iter().map(|sd| match sd.is_finite() {
-            true => format!(",{}", cell(*sd)),
-            false => ",".to_owned(),
-        });
-        let name = &candidates[expected.candidate].name;
-        text += &format!(
-            "\"{name}\"{},{}\n",
-            after.collect::<String>(),
-            cell(expected.gain)
-        );
-    }
-    text
+pub fn tables(problem: &CurveProblem, designed: &Designed) -> Vec<(&'static str, String)> {
+    let found = &designed.design;
+    vec![
+        ("design.csv", ranked(problem, designed, &found.ranked)),
+        ("series.csv", ranked(problem, designed, &found.greedy)),
+        ("now.csv", now(problem, designed)),
+    ]
+}
+
+/// One line a candidate, best first.
+fn ranked(problem: &CurveProblem, designed: &Designed, ranked: &[Expected]) -> String {
+    let targets = designed.design.targets.iter();
+    let names = targets.map(|at| format!("{}_error", problem.parameters()[*at].name));
+    let titles = std::iter::once("measure".to_owned()).chain(names);
+    let told = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
+    let table = Csv::new(titles.chain(told));
+    let line = |expected: &Expected| {
+        let name = Cell::from(designed.candidates[expected.candidate].name.clone());
+        let after = expected.after.iter().map(|sd| Cell::from(*sd));
+        let cells = std::iter::once(name).chain(after);
+        let cost = designed.candidates[expected.candidate].cost;
+        let told = [expected.gain, cost, expected.gain_per_cost].map(Cell::from);
+        cells.chain(told).collect::<Vec<_>>()
+    };
+    table.with_all(ranked, line).text()
+}
+
+/// One line a parameter that is to be tightened: its standard error so far.
+fn now(problem: &CurveProblem, designed: &Designed) -> String {
+    let found = &designed.design;
+    let line = |(at, sd): (&usize, &f64)| -> [Cell; 3] {
+        let parameter = &problem.parameters()[*at];
+        [
+            parameter.name.clone().into(),
+            parameter.unit.clone().into(),
+            (*sd).into(),
+        ]
+    };
+    let lines = found.targets.iter().zip(&found.before);
+    Csv::new(["name", "unit", "standard_error"])
+        .with_all(lines, line)
+        .text()
 }

@@ -4,6 +4,7 @@
 
 pub mod arguments;
 pub mod bibliography;
+pub mod csv;
 pub mod design;
 pub mod failure;
 pub mod fit;

@@ -1,6 +1,9 @@
 //! Recordings of virtual campaigns: each shot's times as measured, as they were, and as the
 //! model has them, of a chain in equilibrium and of the very chain that was shot at.
 
+use hertzchain_chain::observe::Passages;
+use hertzchain_chain::settle::State;
+use hertzchain_chain::wave::{self, DormandPrince, Limits};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
 use hertzchain_measure::{Options, Shot, measure};
@@ -10,6 +13,7 @@ use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Incident and reflected, in this order, here and below.
@@ -38,6 +42,9 @@ pub struct Judged {
     /// the loads that friction held on it. No second computation: what departs from them is of
     /// measuring.
     pub own_s: [f64; 2],
+    /// Those of the model at the measured speed, in s, of a chain with the gaps and loads that the
+    /// recorded one had before the shot, from the group of true values.
+    pub held_s: [f64; 2],
 }
 
 /// What measured times are held to.
@@ -47,6 +54,8 @@ pub type Curve = fn(&Judged) -> [f64; 2];
 pub const COMPACT: Curve = |shot| shot.compact_s;
 /// The recorded shots' own times.
 pub const OWN: Curve = |shot| shot.own_s;
+/// The model's curve, of chains with the recorded ones' own gaps and loads.
+pub const HELD: Curve = |shot| shot.held_s;
 
 impl Judged {
     /// Measured less true time, with the stated error of picking.
@@ -56,12 +65,26 @@ impl Judged {
         value.is_finite().then_some(Estimate { value, ..measured })
     }
 
+    /// Measured time less what it is held to, by all of its stated error: of picking and of the speed.
+    pub fn pull(&self, time: usize, curve: Curve) -> f64 {
+        let Some(measured) = self.measured_s[time] else {
+            return f64::NAN;
+        };
+        let model_s = curve(self)[time];
+        (measured.value - model_s) / measured.sigma.hypot(self.of_speed(model_s))
+    }
+
+    /// What the error of the speed makes of a time.
+    fn of_speed(&self, time_s: f64) -> f64 {
+        EXPONENT * time_s * self.speed_m_s.sigma / self.speed_m_s.value
+    }
+
     /// Measured time less what it is held to, with the stated errors that are this shot's own: of
     /// picking, without what shots share, and of the speed.
     fn departure(&self, time: usize, curve: Curve) -> Option<Estimate> {
         let measured = self.measured_s[time]?;
         let model_s = curve(self)[time];
-        let of_speed = EXPONENT * model_s * self.speed_m_s.sigma / self.speed_m_s.value;
+        let of_speed = self.of_speed(model_s);
         let value = measured.value - model_s;
         value.is_finite().then(|| Estimate {
             value,
@@ -123,9 +146,13 @@ fn mean(speed_m_s: f64, (found, moved): (Vec<Estimate>, Vec<[Moved; 2]>)) -> Opt
 }
 
 /// Runs a campaign file once a seed, each into a folder of its own.
-pub fn run(text: &str, seeds: u64, under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+pub fn run(
+    text: &str,
+    seeds: RangeInclusive<u64>,
+    under: &Path,
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let experiment = Experiment::from_text("campaign.toml", text)?;
-    (1..=seeds)
+    seeds
         .map(|seed| {
             let folder = under.join(seed.to_string());
             let plan = Plan::new(&experiment, Some(seed))?;
@@ -169,6 +196,8 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
         let true_of = |name: &str| known[&shot.file][name][row];
         let true_s = [true_of("incident_tof_s"), true_of("reflected_tof_s")];
         let to_measured = (true_of("speed_m_s") / speed_m_s.value).powf(EXPONENT);
+        let contacts = case.experiment.beads();
+        let overlaps_m = &known[&shot.file]["overlap_before_m"][row * contacts..][..contacts];
         let flight = shot.flight.as_ref().ok();
         judged.push(Judged {
             case: case.name.clone(),
@@ -184,9 +213,41 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
             true_s,
             compact_s,
             own_s: true_s.map(|time_s| time_s * to_measured),
+            held_s: held(&case.experiment, overlaps_m, speed_m_s.value)?,
         });
     }
     Ok(judged)
+}
+
+/// Longest wave in s.
+const LONGEST_S: f64 = 0.02;
+
+/// A hundredth of the rig's own error per step.
+const TOLERANCE: f64 = 1e-10;
+
+/// The model's incident and reflected times in s of a chain whose contacts from 1 on have these
+/// overlaps in m at rest, negative across a gap. Beads must be alike: their sizes are in no file.
+fn held(
+    experiment: &Experiment,
+    overlaps_m: &[f64],
+    speed_m_s: f64,
+) -> Result<[f64; 2], Box<dyn Error>> {
+    let (system, _) = experiment.system(Some(speed_m_s))?;
+    // Contact 0 is the striker's, which is put against bead 1.
+    let mut gaps_m = vec![0.0];
+    gaps_m.extend(overlaps_m.iter().map(|overlap| -overlap));
+    let mut state = State::laid(&system, &gaps_m);
+    state.strike(&system, speed_m_s);
+    let shot = system.from_state(&state)?;
+    let mut passages = Passages::new(experiment.sensor_bead(), shot.beads(), true);
+    let method = DormandPrince {
+        tolerance: TOLERANCE,
+    };
+    let limits = Limits::until(LONGEST_S);
+    wave::run(&shot, &method, limits, &mut [&mut passages])?;
+    let (incident, wall, reflected) = passages.peaks()?;
+    let reflected_s = reflected.map_or(f64::NAN, |peak| peak.time_s - wall.time_s);
+    Ok([wall.time_s - incident.time_s, reflected_s])
 }
 
 /// The model's incident and reflected times at every speed, in s.

@@ -60,7 +60,7 @@ fn compact(under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         assert!(text.contains(from), "the preset has no {from}");
         text = text.replace(from, to);
     }
-    run(&text, SEEDS, under)
+    run(&text, 1..=SEEDS, under)
 }
 
 /// Bias, spread and coverage of measured times against those of the same shots.
@@ -159,6 +159,10 @@ fn against_model(shots: &[Judged], cases: &[&str]) {
     let curves = [
         ("the model's of the chain in equilibrium", judged::COMPACT),
         (
+            "the model's of the chain with each shot's own gaps and loads",
+            judged::HELD,
+        ),
+        (
             "the recorded shots' own, taken to the measured speed",
             judged::OWN,
         ),
@@ -169,7 +173,15 @@ fn against_model(shots: &[Judged], cases: &[&str]) {
             for case in cases {
                 let own: Vec<&Judged> = shots.iter().filter(|shot| shot.case == *case).collect();
                 let rows = by_speed(&own, time, curve);
-                println!("{name}, {case}: {}", told(&rows));
+                let pulls: Vec<f64> = own.iter().map(|shot| shot.pull(time, curve)).collect();
+                let within =
+                    |factor| coverage(&pulls, factor).map_or(f64::NAN, |found| 100.0 * found.share);
+                println!(
+                    "{name}, {case}: {}; single shots within 1 and 1.96: {:.1} and {:.1} %",
+                    told(&rows),
+                    within(1.0),
+                    within(1.96)
+                );
                 println!("{}", rows.iter().map(speed_row).collect::<String>());
             }
         }

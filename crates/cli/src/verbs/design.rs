@@ -1,6 +1,6 @@
 //! `hertzchain design`: what to measure next.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
@@ -18,19 +18,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
     let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
-    let all = design::json(&problem, &designed);
+    let mut all = design::json(&problem, &designed);
+    all["options"] = arguments.words().into();
     match arguments.json {
         true => print::print_json(&all)?,
         false => print::print(&text(&problem, &designed))?,
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.write("design.csv", design::csv(&problem, &designed).as_bytes())?;
+        folder.tables(&design::tables(&problem, &designed))?;
         eprint!("Written:\n{}", folder.list());
         Ok(())
     })
@@ -51,12 +53,18 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let mut head = vec!["measure next".to_owned()];
     head.extend(names.iter().map(|name| format!("{name} ±")));
     head.push("information (nats)".to_owned());
+    let priced = candidates.iter().any(|candidate| candidate.cost != 1.0);
+    if priced {
+        head.extend(["cost", "information over cost"].map(str::to_owned));
+    }
     let row = |expected: &Expected| {
         let name = candidates[expected.candidate].name.clone();
         let after = expected.after.iter().map(|sd| sd_text(*sd));
         std::iter::once(name)
             .chain(after)
             .chain([digits(expected.gain, 3)])
+            .chain(priced.then(|| digits(candidates[expected.candidate].cost, 3)))
+            .chain(priced.then(|| digits(expected.gain_per_cost, 3)))
             .collect::<Vec<_>>()
     };
     let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
@@ -64,7 +72,7 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     format!(
         "Now: {}\n{}\n{}\n{}\n{}\n{}",
         now.join(", "),
-        beware(problem, &designed.undetermined),
+        beware(designed),
         heading("One measurement more, best first"),
         format::table(&head, &best),
         heading("A series, each the best after those before it"),
@@ -73,14 +81,15 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
 }
 
 /// What standard errors of open combinations are worth, and what would close them.
-fn beware(problem: &CurveProblem, undetermined: &[String]) -> String {
+fn beware(designed: &Designed) -> String {
+    let undetermined = &designed.undetermined;
     if undetermined.is_empty() {
         return String::new();
     }
     let open = undetermined
         .iter()
         .map(|words| format!("  Not determined so far: {words}.\n"));
-    let advice = problem.would_separate().into_iter();
+    let advice = designed.advice.iter();
     let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
     format!(
         "Beware: the errors of parameters that the data leave open, and what is said of them below, mean little.\n{}{}",

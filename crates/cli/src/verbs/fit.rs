@@ -5,10 +5,11 @@ mod pulses;
 mod report;
 mod uncertainty;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
-use hertzchain_verbs::arguments::infer::Fit as Arguments;
+use hertzchain_infer::{CurveProblem, Problem, Surrogate};
+use hertzchain_verbs::arguments::infer::{Fit as Arguments, Method};
 use hertzchain_verbs::fit::{self, Fitted, Inferred, More};
 use hertzchain_verbs::inference;
 
@@ -21,7 +22,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = inference::data(table, &arguments.measured)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
     let problem = inference::problem(model, data, &arguments.freed)?;
+    pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
     let fitted = pool.install(|| fit::fitted(problem, arguments))?;
@@ -33,10 +36,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
 }
 
+/// Warns of a posterior that takes its time.
+fn pace(problem: &CurveProblem, arguments: &Arguments) {
+    let count = problem.parameters().len();
+    let most = Surrogate::MOST_PARAMETERS;
+    if arguments.method == Method::Posterior && !arguments.direct && count > most {
+        eprintln!(
+            "warning: {count} parameters are free, and curves are interpolated for up to {most}: \
+             every curve of the posterior is computed, a hundred times as slowly; fix some \
+             parameters, or use --method profile"
+        );
+    }
+}
+
 fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {
-    folder.write("fit.csv", fit::rows_csv(fitted).as_bytes())?;
     folder.figure("fit", &pictures::fit(fitted))?;
-    write_inferred(&mut folder, &fitted.inferred, all)?;
+    let tables = fit::tables(fitted);
+    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }
@@ -45,16 +61,14 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
 fn write_inferred(
     folder: &mut Folder,
     fitted: &Inferred,
-    all: &serde_json::Value,
+    (all, tables): (&serde_json::Value, &[fit::Table]),
 ) -> Result<(), Failure> {
     folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
-    folder.write("parameters.csv", fit::parameters_csv(fitted).as_bytes())?;
+    folder.tables(tables)?;
     folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
     match &fitted.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            let table = fit::profiles_csv(fitted, profiles);
-            folder.write("profiles.csv", table.as_bytes())?;
             folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
         }
         More::Sampled(sampled) => {

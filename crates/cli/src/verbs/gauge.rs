@@ -3,7 +3,7 @@
 mod pictures;
 mod report;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_infer::gauge::Chains;
@@ -23,6 +23,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &arguments.measured,
         arguments.dry_case.as_deref(),
     )?;
+    for data in [&wet, &dry] {
+        print_assumed(data, &arguments.measured);
+    }
     let oils = gauge::all_oils(arguments.oils.as_deref())?;
     let wet_model = inference::opened(arguments.model.as_deref(), &arguments.preset, &wet.case)?;
     let dry_model = inference::opened(
@@ -39,8 +42,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         own: &arguments.own,
         accuracy: arguments.accuracy,
     };
-    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils))?;
-    let all = gauge::json(&gauged);
+    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
+    let mut all = gauge::json(&gauged);
+    all["options"] = arguments.words().into();
     match arguments.json {
         true => print::print_json(&all)?,
         false => print::print(&report::text(&gauged))?,
@@ -50,8 +54,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
-    folder.write("contacts.csv", gauge::contacts_csv(gauged).as_bytes())?;
-    if gauged.rows.iter().any(|row| row.told.is_ok()) {
+    folder.tables(&gauge::tables(gauged))?;
+    if gauged.form.is_some() || gauged.rows.iter().any(|row| row.told.is_ok()) {
         folder.figure("contacts", &pictures::contacts(gauged))?;
     }
     eprint!("Written:\n{}", folder.list());

@@ -11,6 +11,7 @@ use crate::document::{Entry, Node, Number, Value};
 use crate::experiment::Experiment;
 use crate::finding::Mistakes;
 use crate::nearest;
+use crate::reading::{PreloadReading, Reading};
 use slots::{Slot, Step};
 
 /// One number of an experiment, in SI.
@@ -174,6 +175,39 @@ impl Experiment {
     /// No striker, or a speed that is not positive and finite.
     pub fn with_speed(&self, speed_m_s: f64) -> Result<Self, PathError> {
         self.set(&[("striker.speed", speed_m_s)])
+    }
+
+    /// This experiment with a constant push on bead 1, a force in N, in place of any
+    /// that the file or the reading has.
+    ///
+    /// ```
+    /// let pushed = hertzchain_experiment::preset("dry")?.with_push(0.5)?;
+    /// assert_eq!(pushed.get("near_end.force")?, 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A negative force, or one that the chain does not bear.
+    pub fn with_push(&self, force_n: f64) -> Result<Self, PathError> {
+        let step = |key: &str| Step::Key(key.to_owned());
+        let force = Value::Number(Number {
+            value: force_n,
+            half_digit: 0.0,
+            from_code: true,
+        });
+        let mut tree = self.tree().clone();
+        assign(&mut tree, &[step("near_end")], Value::Table(Vec::new()));
+        for (key, value) in [
+            ("push", Value::Text("constant".to_owned())),
+            ("force", force),
+        ] {
+            assign(&mut tree, &[step("near_end"), step(key)], value);
+        }
+        let own = Reading {
+            preload: PreloadReading::None,
+            ..self.reading()
+        };
+        Ok(self.with_tree(tree)?.with_reading(&own)?)
     }
 
     fn slots(&self) -> Vec<Slot<'_>> {

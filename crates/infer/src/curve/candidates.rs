@@ -6,12 +6,42 @@ use crate::data::{Data, DataRow, Observable};
 use crate::free::Form;
 use crate::{Candidate, Fit, ModelError, Problem};
 use hertzchain_experiment::reading::PreloadReading;
-use hertzchain_experiment::{Experiment, Mistakes, PathError, Reading};
+use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_signal::Estimate;
+
+/// What a way to measure asks of the rig, beyond another speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing: incident times.
+    Incident,
+    /// That returns are seen.
+    Reflected,
+    /// That heights of peaks are trusted.
+    Ratio,
+    /// A sensor in another bead.
+    Sensor,
+    /// A push.
+    Preload,
+}
+
+impl Kind {
+    /// All of them, in their order.
+    pub const ALL: [Self; 5] = [
+        Self::Incident,
+        Self::Reflected,
+        Self::Ratio,
+        Self::Sensor,
+        Self::Preload,
+    ];
+}
 
 /// A way to measure: a chain, and what is read from it.
 #[derive(Clone, Debug)]
 pub struct Way {
+    /// What it asks for.
+    pub kind: Kind,
+    /// What one speed of it costs, in whatever unit the others do.
+    pub cost: f64,
     /// What it is called.
     pub name: String,
     /// The chain.
@@ -30,6 +60,9 @@ pub struct ExpectedErrors {
     /// Of ratios of peaks.
     pub ratio: f64,
 }
+
+/// Where a file has the push on bead 1.
+const PUSH: &str = "near_end.force";
 
 /// Ratios of peaks are measured to this, where no data tell.
 const USUAL_RATIO_ERROR: f64 = 0.005;
@@ -57,6 +90,16 @@ impl ExpectedErrors {
     }
 }
 
+impl ExpectedErrors {
+    /// Of an observable.
+    pub(super) fn of(&self, observable: Observable) -> f64 {
+        match observable.is_time() {
+            true => self.time_s,
+            false => self.ratio,
+        }
+    }
+}
+
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
@@ -72,6 +115,14 @@ pub enum WayError {
     /// A chain that can't be in this reading.
     #[error(transparent)]
     Reading(#[from] Mistakes),
+    /// A bead that can't hold the sensor.
+    #[error("a sensor in bead {bead}: expected one from 1 to {}, before the last of the chain", .beads - 1)]
+    Sensor {
+        /// The bead.
+        bead: usize,
+        /// Beads of the chain.
+        beads: usize,
+    },
     /// Numbers of one speed say nothing of another.
     #[error("{0} has one value for each speed of the data: that tells nothing of other speeds")]
     EachSpeed(String),
@@ -85,44 +136,91 @@ pub enum WayError {
     },
 }
 
-/// The chain with more read from it, other sensor beads, and a push on bead 1.
+/// What could be done otherwise, beside shooting at other speeds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choices {
+    /// Constant pushes on bead 1 in N.
+    pub preloads_n: Vec<f64>,
+    /// Beads that could hold the sensor; an eighth, a half and three quarters down the
+    /// chain where none are told.
+    pub sensor_beads: Option<Vec<usize>>,
+    /// Cost of a measurement of each kind, by which its information is divided.
+    pub costs: [f64; Kind::ALL.len()],
+}
+
+/// Push of the paper's springs in N.
+pub const USUAL_PRELOAD_N: f64 = 0.24;
+
+impl Default for Choices {
+    fn default() -> Self {
+        Self {
+            preloads_n: vec![USUAL_PRELOAD_N],
+            sensor_beads: None,
+            costs: [1.0; Kind::ALL.len()],
+        }
+    }
+}
+
+impl Choices {
+    fn cost(&self, kind: Kind) -> f64 {
+        self.costs[kind as usize]
+    }
+
+    fn sensor_beads(&self, beads: usize) -> Vec<usize> {
+        let usual = || vec![beads / 8, beads / 2, 3 * beads / 4];
+        self.sensor_beads.clone().unwrap_or_else(usual)
+    }
+}
+
+/// The chain with more read from it, with the sensor in other beads, and pushed.
 ///
 /// # Errors
-/// A chain that does not bear it.
-pub fn usual_ways(experiment: &Experiment) -> Result<Vec<Way>, WayError> {
+/// A chain that does not bear it, or a bead that there is not.
+pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, WayError> {
     use Observable::{Incident, Reflected, ReturningOverPassing};
-    let way = |name: &str, experiment: &Experiment, observables: &[Observable]| Way {
+    let way = |kind: Kind, name: &str, experiment: &Experiment, observables: &[Observable]| Way {
+        kind,
+        cost: choices.cost(kind),
         name: name.to_owned(),
         experiment: experiment.clone(),
         observables: observables.to_vec(),
     };
+    let both = [Incident, Reflected];
     let mut ways = vec![
-        way("incident", experiment, &[Incident]),
-        way("incident, reflected", experiment, &[Incident, Reflected]),
+        way(Kind::Incident, "incident", experiment, &[Incident]),
+        way(Kind::Reflected, "incident, reflected", experiment, &both),
         way(
+            Kind::Ratio,
             "incident, reflected, returning ratio",
             experiment,
             &[Incident, Reflected, ReturningOverPassing],
         ),
     ];
-    let now = experiment.sensor_bead();
-    let beads = experiment.beads();
-    for bead in [beads / 8, beads / 2, 3 * beads / 4] {
-        if bead != now && bead >= 1 && bead < beads {
+    let (now, beads) = (experiment.sensor_bead(), experiment.beads());
+    for bead in choices.sensor_beads(beads) {
+        if choices.sensor_beads.is_some() && !(1..beads).contains(&bead) {
+            return Err(WayError::Sensor { bead, beads });
+        }
+        if bead != now && (1..beads).contains(&bead) {
             let moved = experiment.set(&[("sensors.bead", bead as f64)])?;
             let name = format!("incident, reflected, sensor in bead {bead}");
-            ways.push(way(&name, &moved, &[Incident, Reflected]));
+            ways.push(way(Kind::Sensor, &name, &moved, &both));
         }
     }
-    if experiment.reading().preload == PreloadReading::None {
-        let pushed = experiment.with_reading(&Reading {
-            preload: PreloadReading::Constant,
-            ..experiment.reading()
-        })?;
-        let name = "incident, reflected, pushed with 0.24 N";
-        ways.push(way(name, &pushed, &[Incident, Reflected]));
+    for force_n in &choices.preloads_n {
+        let pushed = experiment.with_push(*force_n)?;
+        let name = format!("incident, reflected, pushed with {force_n} N");
+        ways.push(way(Kind::Preload, &name, &pushed, &both));
     }
     Ok(ways)
+}
+
+/// The chain with the usual push on bead 1, if it has none and bears it.
+pub(super) fn pushed(experiment: &Experiment) -> Option<Experiment> {
+    let none = experiment.reading().preload == PreloadReading::None;
+    let bare = none && !experiment.get(PUSH).is_ok_and(|force_n| force_n > 0.0);
+    let pushed = bare.then(|| experiment.with_push(USUAL_PRELOAD_N));
+    pushed?.ok()
 }
 
 impl CurveProblem {
@@ -146,8 +244,10 @@ impl CurveProblem {
         if let Some(number) = each {
             return Err(WayError::EachSpeed(number.name().to_owned()));
         }
+        // Where the push is free, the fit's own stands in the place of any other.
+        let is_free = |way: &&Way| way.kind != Kind::Preload || !numbers.is_free(PUSH);
         let mut all = Vec::new();
-        for way in ways {
+        for way in ways.iter().filter(is_free) {
             let model = Model::new(&way.experiment, numbers.clone())?;
             let model = model.with_accuracy(self.model().accuracy);
             let found = of_way(model, fit, way, speeds_m_s, errors);
@@ -197,14 +297,14 @@ fn of_way(
         Candidate {
             name: format!("{speed:.3} m/s: {}", way.name),
             rows: own.map(|(residual, _)| slope(residual)).collect(),
-            cost: 1.0,
+            cost: way.cost,
         }
     };
     Ok(speeds_m_s.iter().enumerate().map(candidate).collect())
 }
 
 /// Data as they would be at the fit, without noise.
-fn expected(
+pub(super) fn expected(
     model: &Model,
     fit: &Fit,
     way: &Way,
@@ -219,11 +319,7 @@ fn expected(
         .unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
     let row = |(at, speed): (usize, &f64)| {
         let value = |of: Observable| {
-            let sigma = if of.is_time() {
-                errors.time_s
-            } else {
-                errors.ratio
-            };
+            let sigma = errors.of(of);
             let wanted = way.observables.contains(&of);
             let value = curve.get(at)?[of.index()].filter(|_| wanted)?;
             Some(Estimate { value, sigma })

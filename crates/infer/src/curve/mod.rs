@@ -11,8 +11,9 @@ mod stencil;
 mod surrogate;
 mod whiten;
 
+pub use advice::{Advice, Prospect};
 pub use band::FittedCurve;
-pub use candidates::{ExpectedErrors, Way, WayError, usual_ways};
+pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, WayError, ways};
 pub use joint::{Joint, Part, Supply};
 pub(crate) use model::Shooting;
 pub use model::{Model, Predicted, Speeds};

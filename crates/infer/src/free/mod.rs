@@ -203,6 +203,13 @@ impl FreeNumber {
     }
 }
 
+/// Whether two names, each of an experiment, mean numbers at the same place.
+#[must_use]
+pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool {
+    let target = |(experiment, name)| name::find(experiment, name).map(|found| found.target);
+    matches!((target(one), target(other)), (Ok(one), Ok(other)) if one == other)
+}
+
 /// Speeds in m/s with as many digits as tell them apart, four at the least.
 fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     let rounded = |digits: usize| -> Vec<String> {
@@ -261,6 +268,13 @@ impl FreeNumbers {
     #[must_use]
     pub fn as_slice(&self) -> &[FreeNumber] {
         &self.0
+    }
+
+    /// Whether the number of this path is among them.
+    pub(crate) fn is_free(&self, path: &str) -> bool {
+        self.0
+            .iter()
+            .any(|number| number.target.path() == Some(path))
     }
 
     /// Parameters of all numbers over data at these speeds in m/s.

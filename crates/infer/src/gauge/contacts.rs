@@ -1,6 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
 use super::dry::shifts;
+use super::neighbours::smoothest;
 use super::{CONTACT, Gauge};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::data::{Data, Observable};
@@ -77,6 +78,9 @@ struct Solution {
     cost: f64,
 }
 
+/// All solutions of a row, the smallest A first, at least one; or why there is none.
+type Solved = Result<Vec<Solution>, FitError>;
+
 /// What is free in a row, by the number of its measurements.
 #[derive(Clone, Copy, PartialEq)]
 enum Free {
@@ -89,26 +93,63 @@ impl Gauge {
     #[must_use]
     pub fn rows(&self) -> Vec<WetRow> {
         let shifts = shifts(&self.dry_covariance.matrix);
-        let row = |at: usize| {
+        let numbers = (0..self.data.rows.len()).into_par_iter();
+        let solved: Vec<Solved> = numbers
+            .map(|at| self.solutions(at, self.free(at)))
+            .collect();
+        let taken = self.taken(&solved);
+        let all = solved.into_par_iter().zip(taken).enumerate();
+        let row = |(at, (solutions, taken)): (usize, (Solved, usize))| {
             let row = &self.data.rows[at];
+            let told = solutions.and_then(|found| self.contact(at, (found, taken), &shifts));
             WetRow {
                 line: row.line,
                 speed_m_s: row.speed_m_s.value,
-                told: self.contact(at, &shifts).map_err(|error| error.to_string()),
+                told: told.map_err(|error| error.to_string()),
             }
         };
-        (0..self.data.rows.len()).into_par_iter().map(row).collect()
+        all.map(row).collect()
     }
 
-    fn contact(&self, row: usize, shifts: &[Vec<f64>]) -> Result<Contact, FitError> {
-        let free = match self.data.rows[row].observables().count() {
+    fn free(&self, row: usize) -> Free {
+        match self.data.rows[row].observables().count() {
             1 => Free::StiffnessAlone,
             _ => Free::Both,
+        }
+    }
+
+    /// Of each row's solutions the one that goes on most smoothly from its neighbours'.
+    fn taken(&self, solved: &[Solved]) -> Vec<usize> {
+        let both = |at: &usize| self.free(*at) == Free::Both;
+        let known = |at: usize| {
+            let pairs = solved[at].as_ref().ok()?.iter();
+            let speed = self.data.rows[at].speed_m_s.value;
+            Some((
+                at,
+                (speed.ln(), pairs.map(|pair| pair.point[1].ln()).collect()),
+            ))
         };
-        let mut solutions = self.solutions(row, free)?;
+        let mut rows: Vec<(usize, (f64, Vec<f64>))> =
+            (0..solved.len()).filter(both).filter_map(known).collect();
+        rows.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let (places, rows): (Vec<usize>, Vec<(f64, Vec<f64>)>) = rows.into_iter().unzip();
+        let mut taken = vec![0; solved.len()];
+        for (place, number) in places.into_iter().zip(smoothest(&rows)) {
+            taken[place] = number;
+        }
+        taken
+    }
+
+    fn contact(
+        &self,
+        row: usize,
+        (mut solutions, taken): (Vec<Solution>, usize),
+        shifts: &[Vec<f64>],
+    ) -> Result<Contact, FitError> {
+        let free = self.free(row);
         let Solution {
             point, covariance, ..
-        } = solutions.remove(0);
+        } = solutions.remove(taken);
         let mut shared = Vec::new();
         // Those after them move nothing but the dry chain's own numbers.
         for shift in &shifts[..self.common()] {
@@ -267,8 +308,9 @@ impl Gauge {
         let several = told.into_iter().any(|contact| !contact.others.is_empty());
         several.then_some(
             "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
-             (--use incident,reflected,returning-ratio), or neighbouring speeds do. Told first, and \
-             taken for power laws and the figure, is that of the smallest A.",
+             (--use incident,reflected,returning-ratio). Told first, and taken for power laws and the figure, \
+             is the pair whose A goes on most smoothly from speed to speed (of fewer than three speeds, the \
+             smallest A); the others stand beside it.",
         )
     }
 
@@ -285,7 +327,8 @@ impl Gauge {
         let missing = !self.tells_both() && !self.data.has(Observable::Reflected);
         missing.then_some(
             "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
-             the returning to the passing peak (--use incident,returning-ratio)",
+             the returning to the passing peak (--use incident,returning-ratio); or state that K and A are \
+             power laws of speed, which a whole curve can tell where speeds are known well (--form power)",
         )
     }
 }
@@ -294,13 +337,13 @@ impl Gauge {
 const ITERATIONS: usize = 30;
 
 /// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
-const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
+pub(super) const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
 
 /// Difference of cost within which two solutions are equally good.
-const AS_GOOD: f64 = 1.0;
+pub(super) const AS_GOOD: f64 = 1.0;
 
 /// Difference in ln A below which two solutions are one.
-const SAME: f64 = 0.02;
+pub(super) const SAME: f64 = 0.02;
 
 /// Fall of chi-square/2 below which a row is solved: a thousandth of a standard error.
 const TOLERANCE: f64 = 1e-6;

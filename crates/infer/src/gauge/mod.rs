@@ -6,11 +6,14 @@
 
 mod contacts;
 mod dry;
+mod form;
 mod laws;
+mod neighbours;
 mod oils;
 mod verdict;
 
 pub use contacts::{Combination, Contact, WetRow};
+pub use form::{AtSpeed, LAWS, PowerForm};
 pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
 use verdict::LEAST_PROBABILITY;
@@ -41,6 +44,17 @@ pub enum GaugeError {
     /// The wet curve can't be computed at all.
     #[error("the wet curve: {0}")]
     Wet(FitError),
+    /// Fewer numbers than both laws have.
+    #[error(
+        "the wet curve has {values} measured values for {asked} numbers of both power laws (and the chain's own): \
+         add speeds or reflected times of flight"
+    )]
+    FewForLaws {
+        /// Measured values.
+        values: usize,
+        /// Free numbers.
+        asked: usize,
+    },
     /// The wet model has no wet contacts.
     #[error(
         "{0} has no wet contacts: expected a section of [[contacts]] with `wet = true` in the \

@@ -122,7 +122,7 @@ impl Gauge {
     }
 
     /// The wet curve, K and A of each speed a parameter.
-    fn wet_by_speed(&self) -> Result<CurveProblem, GaugeError> {
+    pub(super) fn wet_by_speed(&self) -> Result<CurveProblem, GaugeError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();

@@ -75,8 +75,9 @@ pub(super) fn finish(
     let moved_by = |slope: f64| slope / -top.bend * fit.half;
     // What falls moves a maximum earlier.
     let under = -moved_by(sight.fall_under(pulse, time) * fit.half);
+    let likely = moved_by(sight.likely_fall(pulse, time) * fit.half);
     Picked {
-        time_s: time,
+        time_s: time + likely,
         sigma_s: moved_by(noise * top.slope_share).hypot(under),
         moved: Moved {
             under_s: under,

@@ -20,7 +20,7 @@ use crate::{Channels, Found, Place, Pulse, Rails, Upright};
 /// How a pulse's time is told. What each is worth: docs/measuring.md.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
-    /// Time of the maximum of a bell whose logarithm is a polynomial of degree 9,
+    /// Time of the maximum of a bell whose logarithm is a polynomial of degree 10,
     /// fitted over 1.2 widths of the steeper flank. Coefficients beyond a Gaussian's are 0 ± 1
     /// before the samples speak, so noise does not bend it.
     ///

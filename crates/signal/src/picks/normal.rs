@@ -1,7 +1,7 @@
 //! Least squares of a few parameters by the normal equations.
 
-/// Most parameters of one fit: a polynomial of degree 9.
-pub(crate) const MOST: usize = 10;
+/// Most parameters of one fit: a polynomial of degree 10.
+pub(crate) const MOST: usize = 11;
 
 /// Normal equations, gathered row by row.
 #[derive(Clone)]

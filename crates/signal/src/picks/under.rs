@@ -10,7 +10,37 @@ const STRETCH: f64 = 0.3;
 /// Full widths after a return within which both sensors' forces come to their least.
 const AFTER: f64 = 5.0;
 
+/// Full widths at half maximum of each of two stretches before a return that tell how fast the
+/// wall's signal dies away: longer than the ringing on it.
+const DECAY: f64 = 1.5;
+
 impl Sight<'_> {
+    /// Fall, a sample, that is likely under a return at its maximum: the wall's signal dies away
+    /// as it did from one stretch to the next before the return began, by equal shares in equal
+    /// times. 0 where it did not fall there, where it is nothing, and in two channels.
+    ///
+    /// Never more than 1/e of what [`Self::fall_under`] allows for.
+    pub(super) fn likely_fall(&self, pulse: &Pulse, time: f64) -> f64 {
+        let Some(wall) = self.wall.filter(|_| self.summed) else {
+            return 0.0;
+        };
+        let foot = time - 2.0 * FOOT * pulse.sides_samples.0;
+        let length = DECAY * pulse.width_samples;
+        if foot - 2.0 * length <= wall as f64 + length {
+            return 0.0;
+        }
+        let (before, _) = self.mean(foot - 2.0 * length, foot - length);
+        let (after, _) = self.mean(foot - length, foot);
+        if after <= 0.0 || after >= before {
+            return 0.0;
+        }
+        let rate = (before / after).ln() / length;
+        let at_foot = after * (-rate * 0.5 * length).exp();
+        let fall = at_foot * rate * (-rate * (time - foot)).exp();
+        let most = self.fall_under(pulse, time).max(0.0);
+        fall.min(most * std::f64::consts::E.recip())
+    }
+
     /// Fall, a sample, of what may lie under a pulse at its maximum.
     ///
     /// Under the wall's pulse it is the sensor bead's signal, from what is there before the pulse

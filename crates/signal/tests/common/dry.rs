@@ -32,8 +32,13 @@ impl Dry {
 
     /// Both forces, as shares of the passing pulse's maximum, summed, at a time after the impact.
     pub fn summed(&self, time_s: f64) -> f64 {
+        self.separate(time_s).iter().sum()
+    }
+
+    /// The same, each alone: the sensor bead's and the wall's.
+    pub fn separate(&self, time_s: f64) -> [f64; 2] {
         let at = time_s / STEP_S;
-        (lagrange(&self.sensor, at) + lagrange(&self.wall, at)) / 92.601_657
+        [&self.sensor, &self.wall].map(|rows| lagrange(rows, at) / 92.601_657)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Arguments of the verbs that go from times of flight to parameters.
 
 use clap::{Args, ValueEnum};
+use hertzchain_experiment::units::{Dimension, parse_quantity, parse_unit};
+use hertzchain_infer::FEWEST_SHOTS;
 use std::path::PathBuf;
 
 /// A measured curve.
@@ -18,8 +20,8 @@ pub struct Measured {
         default_value = "incident,reflected"
     )]
     pub observables: Vec<What>,
-    /// Standard error of speeds in m/s where the table has none
-    #[arg(long, value_name = "SPEED", value_parser = positive)]
+    /// Standard error of speeds in m/s where the table has none; 0 says that they are exact
+    #[arg(long, value_name = "SPEED", value_parser = not_negative)]
     pub speed_error: Option<f64>,
     /// Standard error of times of flight in s where the table has none
     #[arg(long, value_name = "TIME", value_parser = positive)]
@@ -27,6 +29,10 @@ pub struct Measured {
     /// Standard error of ratios of peaks where the table has none
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     pub ratio_error: Option<f64>,
+    /// Shots a row from whose scatter the standard errors come, if they are not known better: they
+    /// are widened, by 13 % for 20 shots, so that intervals hold the truth as often as they say
+    #[arg(long, value_name = "COUNT", value_parser = shots)]
+    pub error_shots: Option<u32>,
 }
 
 /// Observables by name.
@@ -114,7 +120,8 @@ pub struct Fit {
     /// Most steps of a posterior's walkers
     #[arg(long, value_name = "COUNT", default_value = "20000")]
     pub steps: u64,
-    /// Compute every curve of a posterior, instead of interpolating between some hundreds
+    /// Compute every curve of a posterior, instead of interpolating between some hundreds, which is
+    /// done for up to four free parameters
     #[arg(long)]
     pub direct: bool,
     /// Go on with the walkers of the last run into the same --out
@@ -176,6 +183,17 @@ pub struct Design {
     /// the range of the data when absent
     #[arg(long, value_name = "SPEEDS")]
     pub speeds: Option<String>,
+    /// Pushes on bead 1 that could be tried, such as 0.1N,0.5N; a plain number is in N; `none` for none
+    #[arg(long, value_name = "FORCES", value_delimiter = ',', default_value = "0.24N", value_parser = force)]
+    pub preloads: Vec<Push>,
+    /// Beads that could hold the sensor; an eighth, a half and three quarters down the chain when
+    /// absent
+    #[arg(long, value_name = "BEADS", value_delimiter = ',')]
+    pub sensors: Option<Vec<usize>>,
+    /// What a speed costs when it is measured in a way: incident, reflected, ratio, sensor or
+    /// preload, each 1 when absent; ways are ranked by information over cost
+    #[arg(long, value_name = "WAY=NUMBER", value_delimiter = ',', value_parser = cost)]
+    pub costs: Vec<Cost>,
     /// Length of the proposed series
     #[arg(long, value_name = "COUNT", default_value = "5")]
     pub picks: usize,
@@ -185,6 +203,63 @@ pub struct Design {
     /// Write design.json and design.csv into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// A push that could be tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Push {
+    /// None at all.
+    Nothing,
+    /// Of a force in N.
+    Of(f64),
+}
+
+fn force(text: &str) -> Result<Push, String> {
+    if text.trim() == "none" {
+        return Ok(Push::Nothing);
+    }
+    let expected = || "expected a force that is not negative, such as 0.24N, or none".to_owned();
+    let quantity = parse_quantity(text.trim()).map_err(|_| expected())?;
+    let newton = parse_unit("N").map_or(Dimension::NONE, |unit| unit.dimension);
+    let is_force = quantity.dimension == Dimension::NONE || quantity.dimension == newton;
+    match is_force && quantity.value >= 0.0 && quantity.value.is_finite() {
+        true => Ok(Push::Of(quantity.value)),
+        false => Err(expected()),
+    }
+}
+
+/// What a way to measure costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The way.
+    pub of: WayKind,
+    /// Its cost, in whatever unit the others are.
+    pub value: f64,
+}
+
+/// Ways to measure, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WayKind {
+    /// Incident times alone
+    Incident,
+    /// Reflected times too
+    Reflected,
+    /// And the ratio of returning to passing peaks
+    Ratio,
+    /// A sensor in another bead
+    Sensor,
+    /// A push on bead 1
+    Preload,
+}
+
+fn cost(text: &str) -> Result<Cost, String> {
+    let expected = "expected WAY=NUMBER with a positive number, such as sensor=10; ways are incident, reflected, \
+                    ratio, sensor, preload";
+    let (of, value) = text.split_once('=').ok_or(expected)?;
+    Ok(Cost {
+        of: WayKind::from_str(of.trim(), false).map_err(|_| expected)?,
+        value: positive(value).map_err(|_| expected)?,
+    })
 }
 
 /// Arguments of `gauge`.
@@ -229,6 +304,9 @@ pub struct Gauge {
     /// friction holds in a tapped row (near_end.force); fitted anew with every oil
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub own: Vec<String>,
+    /// How K and A of the wet contacts depend on speed
+    #[arg(long, value_enum, value_name = "FORM", default_value = "each")]
+    pub form: WetForm,
     /// Table (CSV) of further oils, with the columns of the program's own
     #[arg(long, value_name = "FILE")]
     pub oils: Option<PathBuf>,
@@ -244,6 +322,16 @@ pub struct Gauge {
     /// Write gauge.json, contacts.csv and a figure (SVG, PNG) into this folder
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// How K and A depend on speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum WetForm {
+    /// In any way: each speed for itself
+    #[default]
+    Each,
+    /// As power laws of speed, fitted to the whole curve; incident times do if speeds are known well
+    Power,
 }
 
 /// Ways to tell uncertainty.
@@ -282,28 +370,21 @@ fn assignment(text: &str) -> Result<Assignment, String> {
 pub struct Against {
     /// File or preset.
     pub model: String,
-    free: Vec<String>,
+    /// What is free in it.
+    pub free: Vec<String>,
 }
 
 impl Against {
-    /// The same as options of a fit, computed as another.
-    pub fn options(&self, like: &Modelled) -> (Modelled, Freed) {
+    /// The model as options of a fit, computed as another, with all that is set there.
+    pub fn modelled(&self, like: &Modelled) -> Modelled {
         let file = Some(PathBuf::from(&self.model)).filter(|file| file.exists());
-        let modelled = Modelled {
+        Modelled {
             preset: file.is_none().then(|| self.model.clone()),
             model: file,
-            set: Vec::new(),
+            set: like.set.clone(),
             accuracy: like.accuracy,
             threads: like.threads,
-        };
-        let freed = Freed {
-            free: self.free.clone(),
-            start: Vec::new(),
-            bounds: Vec::new(),
-            prior: Vec::new(),
-            scale: Vec::new(),
-        };
-        (modelled, freed)
+        }
     }
 }
 
@@ -321,6 +402,24 @@ fn positive(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| "expected a positive number in SI, such as 3e-7".to_owned())
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| "expected 0 or a positive number in SI, such as 7e-4".to_owned())
+}
+
+fn shots(text: &str) -> Result<u32, String> {
+    let number = text.trim().parse().ok();
+    number
+        .filter(|count| *count >= FEWEST_SHOTS)
+        .ok_or_else(|| {
+            format!(
+                "expected a whole number from {FEWEST_SHOTS}: the scatter of fewer shots tells no \
+             error of a row; take one over many rows"
+            )
+        })
 }
 
 fn count(text: &str) -> Result<usize, String> {

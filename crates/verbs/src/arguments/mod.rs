@@ -2,6 +2,7 @@
 
 pub mod infer;
 pub mod measure;
+mod words;
 
 use crate::failure::Failure;
 use crate::given::Given;

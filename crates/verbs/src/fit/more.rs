@@ -1,13 +1,12 @@
-//! Uncertainty beyond the covariance, and other models of the same data.
+//! Uncertainty beyond the covariance.
 
 use super::Arguments;
-use crate::arguments::infer::{Against, Method};
+use crate::arguments::infer::Method;
 use crate::failure::Failure;
-use crate::inference::{self, user, wanted};
+use crate::inference::{user, wanted};
 use hertzchain_infer::{
-    Chain, Compared, Comparison, Covariance, CrossValidation, CurveProblem, Fit, Fitting, Folding,
-    Posterior, Problem, Profile, Profiling, Requirements, Sampling, Surrogate, Unconverged,
-    compare, cross_validate, fit, profile,
+    Chain, Covariance, CurveProblem, Fit, Posterior, Problem, Profile, Profiling, Requirements,
+    Sampling, Surrogate, Unconverged, profile,
 };
 use hertzchain_study::reproduce::write_atomically;
 use hertzchain_study::{StudyError, stopped};
@@ -32,9 +31,17 @@ pub struct Sampled {
     pub chain: Chain,
     /// Its posterior, if it has converged.
     pub posterior: Result<Posterior, Unconverged>,
-    /// Largest error of interpolated curves in standard errors; `None` where
-    /// every curve was computed.
-    pub surrogate_error: Option<f64>,
+    /// Whether curves were interpolated.
+    pub curves: Curves,
+}
+
+/// Where a posterior's curves come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curves {
+    /// From others around the best fit, right to so many standard errors.
+    Interpolated(f64),
+    /// Every one was computed, for this reason if interpolation was wanted.
+    Computed(Option<String>),
 }
 
 /// As the method asks, by interpolated curves where that is as good.
@@ -44,25 +51,32 @@ pub fn more(
     covariance: &Covariance,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
-    let surrogate = match (arguments.method, arguments.direct) {
-        (Method::Posterior, false) => Surrogate::new(problem, fit, covariance).ok(),
-        _ => None,
-    };
-    match surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR) {
-        None => more_of(problem, (fit, covariance), None, arguments),
-        Some(found) => more_of(&found, (fit, covariance), Some(found.error), arguments),
+    let found = (fit, covariance);
+    if arguments.method != Method::Posterior || arguments.direct {
+        return more_of(problem, found, Curves::Computed(None), arguments);
     }
+    let why = match Surrogate::new(problem, fit, covariance) {
+        Ok(surrogate) if surrogate.error <= SURROGATE_ERROR => {
+            let curves = Curves::Interpolated(surrogate.error);
+            return more_of(&surrogate, found, curves, arguments);
+        }
+        Ok(surrogate) => format!(
+            "interpolated ones would be off by {:.2} standard errors",
+            surrogate.error
+        ),
+        Err(error) => error.to_string(),
+    };
+    more_of(problem, found, Curves::Computed(Some(why)), arguments)
 }
 
-/// As the method asks, of any problem; `surrogate_error` tells how far its model
-/// is from the computed one.
+/// As the method asks, of any problem; `curves` tells where its curves come from.
 ///
 /// # Errors
 /// What is in the way.
 pub fn more_of(
     problem: &dyn Problem,
     (fit, covariance): (&Fit, &Covariance),
-    surrogate_error: Option<f64>,
+    curves: Curves,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
     match arguments.method {
@@ -86,7 +100,7 @@ pub fn more_of(
             Ok(More::Sampled(Box::new(Sampled {
                 chain,
                 posterior,
-                surrogate_error,
+                curves,
             })))
         }
     }
@@ -191,127 +205,3 @@ impl Write for Wanted {
         Ok(())
     }
 }
-
-/// A model that was fitted to the same data.
-pub struct Rival {
-    /// Its name, with what is free.
-    pub name: String,
-    /// Its fit.
-    pub fit: Fit,
-    /// How well it foretells what it has not seen.
-    pub foretells: CrossValidation,
-}
-
-/// A model that found no minimum.
-pub struct Lost {
-    /// Its name, with what is free.
-    pub name: String,
-    /// How far from the data it ended.
-    pub chi_square: f64,
-    /// Why it ended there.
-    pub why: String,
-}
-
-/// All models, the fit's own first, and what the data say of them.
-pub struct Rivals {
-    /// Models.
-    pub all: Vec<Rival>,
-    /// Models that found no minimum, and so are out of the comparison.
-    pub lost: Vec<Lost>,
-    /// Their comparison, if at least two are left.
-    pub comparison: Option<Comparison>,
-}
-
-/// Fits the other models to the same data, if any are asked for.
-pub fn rivals(
-    problem: &CurveProblem,
-    own: &Fit,
-    arguments: &Arguments,
-) -> Result<Option<Rivals>, Failure> {
-    if arguments.against.is_empty() {
-        return Ok(None);
-    }
-    let name = format!(
-        "{} ({})",
-        problem.model().experiment().name(),
-        arguments.freed.free.join(", ")
-    );
-    let mut all = vec![rival(name, problem, own.clone(), arguments.seed)?];
-    let mut lost = Vec::new();
-    for against in &arguments.against {
-        match other(against, problem, arguments)? {
-            Ok(rival) => all.push(rival),
-            Err(without) => lost.push(without),
-        }
-    }
-    let compared: Vec<Compared<'_>> = all
-        .iter()
-        .map(|rival| Compared {
-            name: &rival.name,
-            fit: &rival.fit,
-            cross_validation: Some(&rival.foretells),
-        })
-        .collect();
-    let comparison = match compared.len() {
-        1 => None,
-        _ => Some(compare(&compared).map_err(user)?),
-    };
-    Ok(Some(Rivals {
-        all,
-        lost,
-        comparison,
-    }))
-}
-
-fn other(
-    against: &Against,
-    problem: &CurveProblem,
-    arguments: &Arguments,
-) -> Result<Result<Rival, Lost>, Failure> {
-    let (mut modelled, freed) = against.options(&arguments.modelled);
-    // A model far from the data is steep there: its noise would hide the minimum.
-    modelled.accuracy = modelled.accuracy.min(RIVALS_ACCURACY);
-    let data = problem.data().clone();
-    let experiment = inference::experiment(&modelled, Some(&data.case))?;
-    let model = inference::model(&experiment, &modelled, &freed)?;
-    let problem = inference::problem(model, data, &freed)?;
-    let name = format!("{} ({})", against.model, freed.free.join(", "));
-    let how = Fitting {
-        starts: arguments.starts,
-        seed: arguments.seed,
-        ..Fitting::default()
-    };
-    let fit =
-        fit(&problem, &how).map_err(|error| Failure::User(format!("--against {name}: {error}")))?;
-    if !fit.ending.converged() {
-        return Ok(Err(Lost {
-            chi_square: fit.chi_square(),
-            why: fit.ending.to_string(),
-            name,
-        }));
-    }
-    Ok(Ok(rival(name, &problem, fit, arguments.seed)?))
-}
-
-/// Relative accuracy of other models' times of flight.
-const RIVALS_ACCURACY: f64 = 1e-6;
-
-fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Rival, Failure> {
-    // What was measured at one speed is left out together.
-    let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
-    let how = Folding {
-        groups,
-        parts: Some(PARTS.min(problem.data().rows.len())),
-        seed,
-    };
-    let foretells = cross_validate(problem, &fit, &how)
-        .map_err(|error| Failure::User(format!("{name}: {error}")))?;
-    Ok(Rival {
-        name,
-        fit,
-        foretells,
-    })
-}
-
-/// Parts into which rows are dealt for cross-validation.
-const PARTS: usize = 5;

@@ -1,6 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{Inferred, best, inferred, joined, more};
+use super::{Curves, Inferred, best, heeded, inferred, joined, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
@@ -49,6 +49,7 @@ pub fn recorded(arguments: &Arguments) -> Result<Recorded, Failure> {
 /// # Errors
 /// As [`recorded`].
 pub fn recorded_of(experiment: &Experiment, arguments: &Arguments) -> Result<Recorded, Failure> {
+    heeded::of_recordings(arguments)?;
     let model = inference::model(experiment, &arguments.modelled, &arguments.freed)?;
     let (records, refused) = records(experiment, arguments)?;
     Ok(Recorded {
@@ -172,7 +173,12 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
         parameters: parameters.to_vec(),
         identifiability: Identifiability::new(parameters, &fit, label),
         goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
-        more: more::more_of(&problem, (&fit, &covariance), None, arguments)?,
+        more: more::more_of(
+            &problem,
+            (&fit, &covariance),
+            Curves::Computed(None),
+            arguments,
+        )?,
         covariance,
         fit,
     };

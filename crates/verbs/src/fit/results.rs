@@ -1,28 +1,44 @@
-//! A fit as JSON and tables, in SI.
+//! A fit as JSON, in SI.
 
-use super::more::{More, Rival, Rivals};
+use super::more::{Curves, More};
+use super::rivals::{Rival, Rivals};
 use super::{Fitted, Inferred};
 use crate::arguments::infer::Fit as Arguments;
-use crate::table::cell;
-use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Profile};
+use crate::inference::assumed;
+use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
 #[must_use]
 pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
     let data = fitted.problem.data();
-    let confused = !fitted.inferred.identifiability.confused.is_empty();
     let own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
         "model": fitted.problem.model().experiment().name(),
         "model_accuracy": fitted.accuracy,
-        "would_separate": match confused {
-            true => fitted.problem.would_separate(),
-            false => Vec::new(),
-        },
+        "assumed": assumed(data, &arguments.measured),
+        "instruction_set": fitted.problem.model().set.name(),
+        "fingerprint": fitted.problem.fingerprint().to_string(),
+        "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
+        "prospects": fitted.advice.as_ref().map(prospects),
         "comparison": fitted.rivals.as_ref().map(comparison),
     });
     joined(own, inferred(&fitted.inferred, arguments))
+}
+
+/// What further data would determine.
+fn prospects(advice: &Advice) -> Value {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let one = |prospect: &Prospect| {
+        json!({
+            "measure": prospect.measure,
+            "determined": prospect.determined,
+            "worst_relative_standard_error": finite(prospect.worst),
+            "standard_errors": prospect.sd.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+        })
+    };
+    let all = std::iter::once(&advice.now).chain(&advice.prospects);
+    all.chain(&advice.together).map(one).collect()
 }
 
 /// The entries of two objects in one.
@@ -39,6 +55,8 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": arguments.words(),
         "free": arguments.freed.free,
         "seed": arguments.seed,
         "robust": arguments.robust,
@@ -61,6 +79,7 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         })),
         "jacobian_disagreement": fit.jacobian.disagreement,
         "singular_values": fitted.identifiability.singular_values,
+        "directions": fitted.identifiability.directions,
         "singular_value_floor": fitted.identifiability.floor,
         "not_determined": fitted.identifiability.confused.iter().map(|c| json!({
             "words": c.words, "change": c.change,
@@ -78,7 +97,8 @@ fn parameters(fitted: &Inferred) -> Value {
             "name": parameter.name,
             "unit": parameter.unit,
             "value": fitted.fit.point[at],
-            "standard_error": finite(fitted.covariance.sd[at]),
+            "standard_error": finite(fitted.standard_error(at)),
+            "determined": fitted.standard_error(at).is_finite(),
             "at_bound": fitted.fit.is_bound(at),
             "start": parameter.start,
             "lower": finite(parameter.lower),
@@ -137,11 +157,16 @@ fn posterior(fitted: &Inferred) -> Value {
     let More::Sampled(sampled) = &fitted.more else {
         return Value::Null;
     };
+    let (error, why) = match &sampled.curves {
+        Curves::Interpolated(error) => (Some(error), None),
+        Curves::Computed(why) => (None, why.as_ref()),
+    };
     let mut all = json!({
         "walkers": sampled.chain.walkers(),
         "steps": sampled.chain.steps(),
         "acceptance": sampled.chain.acceptance(),
-        "surrogate_error": sampled.surrogate_error,
+        "surrogate_error": error,
+        "no_surrogate": why,
     });
     match &sampled.posterior {
         Err(unconverged) => all["unconverged"] = json!(unconverged.to_string()),
@@ -155,7 +180,7 @@ fn posterior(fitted: &Inferred) -> Value {
                         "mean": posterior.mean[at],
                         "sd": posterior.sd(at),
                         "median": posterior.quantile(at, 0.5),
-                        "interval_68": posterior.interval(at, 0.682_689_5),
+                        "interval_68": posterior.interval(at, super::SHARE_OF_A_STANDARD_ERROR),
                         "interval_95": posterior.interval(at, 0.95),
                         "autocorrelation_time": found.time.time,
                         "r_hat": found.r_hat,
@@ -185,6 +210,7 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
         json!({
             "model": rival.name,
             "point": rival.fit.point,
+            "settings_left_out": rival.without,
             "chi_square": rival.fit.chi_square(),
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),
@@ -194,66 +220,6 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
         })
     };
     rivals.all.iter().enumerate().map(one).collect()
-}
-
-/// One line a value of a profile.
-#[must_use]
-pub fn profiles_csv(fitted: &Inferred, profiles: &[Profile]) -> String {
-    let mut text = "name,value,chi_square_rise\n".to_owned();
-    for profile in profiles {
-        let name = &fitted.parameters[profile.parameter].name;
-        for (value, rise) in profile.values.iter().zip(&profile.rise) {
-            text += &format!("{name},{},{}\n", cell(*value), cell(*rise));
-        }
-    }
-    text
-}
-
-/// One line a parameter.
-#[must_use]
-pub fn parameters_csv(fitted: &Inferred) -> String {
-    let mut text = "name,unit,value,standard_error\n".to_owned();
-    for (at, parameter) in fitted.parameters.iter().enumerate() {
-        let sd = fitted.covariance.sd[at];
-        let sd = if sd.is_finite() {
-            cell(sd)
-        } else {
-            String::new()
-        };
-        let value = cell(fitted.fit.point[at]);
-        text += &format!("{},{},{value},{sd}\n", parameter.name, parameter.unit);
-    }
-    text
-}
-
-/// One line a measured value.
-#[must_use]
-pub fn rows_csv(fitted: &Fitted) -> String {
-    let mut text = "line,speed_m_s,observable,measured,error,fitted,residual\n".to_owned();
-    let measured = fitted.problem.measured();
-    for ((row, of), residual) in measured.into_iter().zip(&fitted.inferred.fit.residuals) {
-        text += &row_line(fitted, (row, of), *residual);
-    }
-    text
-}
-
-fn row_line(fitted: &Fitted, (at, of): (usize, Observable), residual: f64) -> String {
-    let row = &fitted.problem.data().rows[at];
-    let measured = row.value(of);
-    let predicted = fitted
-        .curve
-        .predicted
-        .get(at)
-        .and_then(|row| row[of as usize]);
-    let cells = [
-        measured.map(|m| m.value),
-        measured.map(|m| m.sigma),
-        predicted,
-        Some(residual),
-    ];
-    let cells = cells.map(|value| value.map_or(String::new(), cell));
-    let speed = cell(row.speed_m_s.value);
-    format!("{},{speed},{},{}\n", row.line, of.column(), cells.join(","))
 }
 
 /// Every measured value beside the fitted one with its standard error.

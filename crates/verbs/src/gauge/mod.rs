@@ -1,14 +1,18 @@
 //! `gauge`: which oil is on the contacts.
 
 mod results;
+mod tables;
 
-pub use results::{contacts_csv, json};
+pub use results::json;
+pub use tables::tables;
 
-use crate::arguments::infer::Measured;
+use crate::arguments::infer::{Measured, WetForm};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use hertzchain_infer::Data;
-use hertzchain_infer::gauge::{Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils};
+use hertzchain_infer::gauge::{
+    Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
+};
 use std::fs;
 use std::path::Path;
 
@@ -20,7 +24,9 @@ pub struct Gauged {
     pub rows: Vec<WetRow>,
     /// Power laws through them, where rows tell both.
     pub laws: Option<GaugeLaws>,
-    /// Which oil.
+    /// Power laws that the whole curve asks for, if they are asked for.
+    pub form: Option<PowerForm>,
+    /// Which oil: by its whole curve, or by the laws if these are asked for and sound.
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
@@ -34,21 +40,49 @@ pub fn gauged(
     chains: &Chains<'_>,
     (dry, wet): (Data, Data),
     oils: Vec<Oil>,
+    form: WetForm,
 ) -> Result<Gauged, Failure> {
     let gauge = Gauge::new(chains, dry, wet);
     wanted()?;
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
     wanted()?;
-    let verdict = gauge.verdict(&oils);
+    let form = match form {
+        WetForm::Each => None,
+        WetForm::Power => Some(gauge.power_form()),
+    };
+    wanted()?;
+    let form = form.transpose().map_err(user)?;
+    let verdict = match &form {
+        None => gauge.verdict(&oils),
+        Some(form) => gauge.verdict_of_laws(form, &oils),
+    };
     wanted()?;
     Ok(Gauged {
         laws: GaugeLaws::through(&rows).ok(),
         verdict: verdict.map_err(user)?,
+        form,
         oils,
         rows,
         gauge,
     })
+}
+
+impl Gauged {
+    /// What speaks against believing it.
+    #[must_use]
+    pub fn doubts(&self) -> Option<String> {
+        let of_form = self.form.as_ref().and_then(PowerForm::doubts);
+        let all = of_form.into_iter().chain(self.gauge.doubts(&self.verdict));
+        let all: Vec<String> = all.collect();
+        (!all.is_empty()).then(|| all.join(" "))
+    }
+
+    /// What to add to data that do not tell K and A apart, if nothing else does.
+    #[must_use]
+    pub fn to_add(&self) -> Option<&'static str> {
+        self.gauge.to_add().filter(|_| self.form.is_none())
+    }
 }
 
 /// The curve of a file, of this case or of the one that holds for all.

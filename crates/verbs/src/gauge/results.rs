@@ -1,9 +1,8 @@
-//! What the gauge says as JSON and tables, in SI.
+//! What the gauge says as JSON, in SI.
 
 use super::Gauged;
-use crate::table::cell;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Gauge, LAWS, PowerForm, SharedLaw, WetRow};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -21,7 +20,8 @@ pub fn json(gauged: &Gauged) -> Value {
         "contacts": gauged.rows.iter().map(row).collect::<Value>(),
         "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
         "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
-        "to_add": gauge.to_add(),
+        "form": gauged.form.as_ref().map(|form| form_json(form, gauge)),
+        "to_add": gauged.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
             "chi_square": found.chi_square.value, "freedom": found.chi_square.freedom,
@@ -34,7 +34,7 @@ pub fn json(gauged: &Gauged) -> Value {
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": verdict.sentence(),
-        "doubts": gauge.doubts(verdict),
+        "doubts": gauged.doubts(),
     })
 }
 
@@ -70,6 +70,48 @@ fn row(row: &WetRow) -> Value {
     all
 }
 
+/// Power laws of the whole curve.
+fn form_json(form: &PowerForm, gauge: &Gauge) -> Value {
+    let sd = form.sd();
+    let law = |at: usize| {
+        json!({
+            "prefactor": form.values[at].exp(), "prefactor_relative_error": finite(sd[at]),
+            "exponent": form.values[at + 1], "exponent_error": finite(sd[at + 1]),
+        })
+    };
+    let speed = |speed: &f64| {
+        let at = form.at(*speed);
+        let [k, a] = at.ln.map(f64::exp);
+        json!({
+            "speed_m_s": speed,
+            "stiffness": { "value": k, "standard_error": finite(k * at.ln_sd[0]) },
+            "relaxation_time_s": { "value": a, "standard_error": finite(a * at.ln_sd[1]) },
+        })
+    };
+    let other = |values: &[f64; LAWS]| {
+        json!({
+            "stiffness": { "prefactor": values[0].exp(), "exponent": values[1] },
+            "relaxation_time_s": { "prefactor": values[2].exp(), "exponent": values[3] },
+        })
+    };
+    json!({
+        "stiffness": law(0),
+        "relaxation_time_s": law(2),
+        "covariance_of_ln_prefactors_and_exponents": form.covariance.map(|row| row.map(finite)),
+        "chi_square": form.chi_square.map(|c| json!({
+            "value": c.value, "freedom": c.freedom, "probability": c.probability,
+        })),
+        "contacts": gauge.wet().speeds_m_s().iter().map(speed).collect::<Value>(),
+        "oils_held_against_it": form.is_sound(),
+        "others": form.others.iter().map(other).collect::<Value>(),
+        "not_determined": form.undetermined,
+    })
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
 fn law_json(law: &SharedLaw) -> Value {
     json!({
         "prefactor": law.law.prefactor,
@@ -78,28 +120,4 @@ fn law_json(law: &SharedLaw) -> Value {
         "exponent_error": law.exponent_sd,
         "reduced_chi_square": law.reduced_chi_square,
     })
-}
-
-/// One line a speed.
-#[must_use]
-pub fn contacts_csv(gauged: &Gauged) -> String {
-    let mut text = "speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error,\
-                    combination_exponent,combination_reference_s\n"
-        .to_owned();
-    for row in &gauged.rows {
-        let Ok(contact) = &row.told else { continue };
-        let [(k, k_sd), (a, a_sd)] = contact.estimates();
-        let mut cells = vec![cell(row.speed_m_s), cell(k), cell(k_sd)];
-        cells.extend(match &contact.combination {
-            None => [cell(a), cell(a_sd), String::new(), String::new()],
-            Some(c) => [
-                String::new(),
-                String::new(),
-                cell(c.exponent),
-                cell(c.reference_s),
-            ],
-        });
-        text += &format!("{}\n", cells.join(","));
-    }
-    text
 }

@@ -46,11 +46,7 @@ fn each(
 ) -> Result<(), Failure> {
     let known: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
     for Assignment { name, text } in given {
-        let of_number = format!("{name}@");
-        let first = format!("{name}.prefactor");
-        let meant = |p: &&mut Parameter| {
-            p.name == *name || p.name.starts_with(&of_number) || p.name == first
-        };
+        let meant = |p: &&mut Parameter| is_meant(name, &p.name);
         let mut found = parameters.iter_mut().filter(meant).peekable();
         if found.peek().is_none() {
             return Err(Failure::User(format!(
@@ -64,6 +60,12 @@ fn each(
         }
     }
     Ok(())
+}
+
+/// Whether a name means a parameter: its own, or that of the number it is one of.
+pub fn is_meant(name: &str, parameter: &str) -> bool {
+    let rest = parameter.strip_prefix(name);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('@') || rest == ".prefactor")
 }
 
 /// A number in the parameter's unit: plain in SI, or with a unit of its own.

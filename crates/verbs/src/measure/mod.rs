@@ -23,7 +23,7 @@ const ORDER: usize = 4;
 const POWER: f64 = 6.0;
 
 /// Full width of its fit, in full widths at half maximum.
-const FITTED_WIDTHS: f64 = 1.6;
+const FITTED_WIDTHS: f64 = 2.0;
 
 /// Files, and those of folders in order of their names; the table of shots may
 /// lie among them.

@@ -11,6 +11,7 @@ use hertzchain_verbs::arguments::infer::Fit as Arguments;
 use hertzchain_verbs::fit::pulses::{
     Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown,
 };
+use hertzchain_verbs::fit::tables_of_any;
 use hertzchain_verbs::inference;
 use serde_json::Value;
 
@@ -66,7 +67,8 @@ fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure
     let shown = shown(fitted)?;
     folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
     folder.figure("pulses", &picture(&shown))?;
-    write_inferred(&mut folder, &fitted.inferred, all)?;
+    let tables = tables_of_any(&fitted.inferred);
+    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }

@@ -1,8 +1,11 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
-use hertzchain_infer::gauge::{Contact, Oil};
+use hertzchain_infer::gauge::{Contact, Oil, PowerForm};
 use hertzchain_verbs::gauge::Gauged;
+
+/// Standard errors that the band of power laws spans to either side: 95 %.
+const BAND: f64 = 1.96;
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
@@ -23,12 +26,12 @@ pub fn contacts(gauged: &Gauged) -> Figure {
     }
 }
 
-/// Whether any row tells K and A apart. If none does, an oil's K is another
+/// Whether any row tells K and A apart, or a form that is stated does. If nothing does, an oil's K is another
 /// quantity than what was measured.
 fn tells_both(gauged: &Gauged) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
     let mut told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
-    told.any(both)
+    gauged.form.is_some() || told.any(both)
 }
 
 fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
@@ -47,14 +50,28 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     let chart = oils.fold(chart, |chart, (at, oil)| {
         chart.with(curve(gauged, (at, oil), of, unit))
     });
+    let chart = gauged.form.iter().fold(chart, |chart, form| {
+        let [low, high] = [-BAND, BAND].map(|sign| law(gauged, form, of, unit, sign));
+        let middle = law(gauged, form, of, unit, 0.0);
+        let speeds = speeds(gauged);
+        let line = Series::line("power laws", &speeds, &middle).colour(Colour::BLACK);
+        chart
+            .with(Series::band("", &speeds, &low, &high).colour(Colour::BLACK))
+            .with(line)
+    });
     let known = gauged.rows.iter().filter_map(|row| {
         let contact = row.told.as_ref().ok()?;
+        // A combination's K is not that of a law.
+        if gauged.form.is_some() && contact.combination.is_some() {
+            return None;
+        }
         let (value, sd) = contact.estimates()[of];
         Some((row.speed_m_s, unit * value, unit * sd))
     });
     let known: Vec<(f64, f64, f64)> = known.collect();
     let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
-    let points = Series::points("measured", &column(|p| p.0), &column(|p| p.1))
+    let name = if known.is_empty() { "" } else { "measured" };
+    let points = Series::points(name, &column(|p| p.0), &column(|p| p.1))
         .y_error(&column(|p| p.2))
         .marker(Marker::Circle)
         .colour(Colour::BLACK);
@@ -73,13 +90,27 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     }
 }
 
-/// What an oil would give.
-fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
+/// Speeds in m/s at which lines are drawn.
+fn speeds(gauged: &Gauged) -> Vec<f64> {
     let speeds = gauged.gauge.wet().speeds_m_s();
     let first = speeds.first().copied().unwrap_or(0.1);
     let last = speeds.last().copied().unwrap_or(1.0);
     let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
-    let speeds: Vec<f64> = (0..POINTS).map(speed).collect();
+    (0..POINTS).map(speed).collect()
+}
+
+/// A power law of the whole curve, moved by so many of its standard errors.
+fn law(gauged: &Gauged, form: &PowerForm, of: usize, unit: f64, sds: f64) -> Vec<f64> {
+    let value = |speed: f64| {
+        let at = form.at(speed);
+        unit * (at.ln[of] + sds * at.ln_sd[of]).exp()
+    };
+    speeds(gauged).into_iter().map(value).collect()
+}
+
+/// What an oil would give.
+fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
+    let speeds = speeds(gauged);
     let value = |speed: &f64| {
         let (k, a) = oil.contact(gauged.gauge.wet_radius_m(), *speed);
         unit * [k, a][of]

@@ -2,9 +2,9 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{chi_square_text, estimate, percent};
+use crate::words::{chi_square_of, chi_square_text, estimate, percent};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, Gauge, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Contact, Gauge, PowerForm, SharedLaw, WetRow};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Everything that is to be said.
@@ -15,19 +15,28 @@ pub fn text(gauged: &Gauged) -> String {
         text += &law("K", "N/m^1.5", &laws.stiffness);
         text += &law("A", "s", &laws.relaxation);
     }
-    if let Some(add) = gauged.gauge.to_add() {
+    text += &gauged
+        .form
+        .as_ref()
+        .map_or(String::new(), |form| by_form(gauged, form));
+    if let Some(add) = gauged.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To tell both, {add}.\n"
         );
     }
     text += &held_numbers(gauged);
     text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
-    text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
+    let by_laws = gauged.form.as_ref().is_some_and(PowerForm::is_sound);
+    let known = match by_laws {
+        false => "Known oils",
+        true => "Known oils, by the power laws that each would give",
+    };
+    text += &format!("\n{}\n{}", heading(known), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
     text += &format!("{}\n", gauged.verdict.sentence());
-    let doubts = gauged.gauge.doubts(&gauged.verdict);
+    let doubts = gauged.doubts();
     text + &doubts.map_or(String::new(), |doubts| format!("Beware: {doubts}\n"))
 }
 
@@ -112,6 +121,50 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     format!(
         "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
         digits(prefactor, 4)
+    )
+}
+
+/// Power laws of the whole curve, and what they give at its speeds.
+fn by_form(gauged: &Gauged, form: &PowerForm) -> String {
+    let sd = form.sd();
+    let law = |name: &str, unit: &str, at: usize| {
+        let prefactor = digits(form.values[at].exp(), 4);
+        let relative = match sd[at].is_finite() {
+            true => percent(sd[at]),
+            false => "not determined".to_owned(),
+        };
+        let (exponent, error) = with_error(form.values[at + 1], sd[at + 1]);
+        format!("{name} = {prefactor} {unit} (± {relative}) · v^({exponent} ± {error})\n")
+    };
+    let row = |speed: f64| {
+        let at = form.at(speed);
+        let both = |of: usize, unit: f64| {
+            let value = unit * at.ln[of].exp();
+            let (value, sd) = with_error(value, value * at.ln_sd[of]);
+            format!("{value} ± {sd}")
+        };
+        vec![digits(speed, 4), both(0, 1e-9), both(1, 1e9)]
+    };
+    let rows: Vec<Vec<String>> = gauged
+        .gauge
+        .wet()
+        .speeds_m_s()
+        .into_iter()
+        .map(row)
+        .collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
+    let open = form
+        .undetermined
+        .iter()
+        .map(|words| format!("  Not determined: {words}.\n"));
+    format!(
+        "\n{}\n{}{}{}{}{}",
+        heading("Wet contacts as power laws of speed, fitted to both curves"),
+        law("K", "N/m^1.5", 0),
+        law("A", "s", 2),
+        form.chi_square.map_or(String::new(), chi_square_of),
+        open.collect::<String>(),
+        format::table(&head, &rows)
     )
 }
 

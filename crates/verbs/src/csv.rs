@@ -1,0 +1,135 @@
+//! Tables as text (CSV), as every result file has them.
+
+use crate::table::cell;
+
+/// A table under way: a line of titles, then lines of as many cells.
+#[derive(Clone, Debug)]
+pub struct Csv(String);
+
+/// A cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Words, in quotes where they hold a comma, a quote or the end of a line.
+    Words(String),
+    /// A number with the fewest digits that give it back exactly; nothing if it is not
+    /// finite.
+    Number(f64),
+    /// Nothing.
+    Empty,
+}
+
+impl From<&str> for Cell {
+    fn from(words: &str) -> Self {
+        Self::Words(words.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(words: String) -> Self {
+        Self::Words(words)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Self::Words(count.to_string())
+    }
+}
+
+impl From<bool> for Cell {
+    fn from(is: bool) -> Self {
+        Self::Words(is.to_string())
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Empty, Into::into)
+    }
+}
+
+impl Cell {
+    fn text(&self) -> String {
+        match self {
+            Self::Empty => String::new(),
+            Self::Number(number) if !number.is_finite() => String::new(),
+            Self::Number(number) => cell(*number),
+            Self::Words(words) if words.contains([',', '"', '\n', '\r']) => {
+                format!("\"{}\"", words.replace('"', "\"\""))
+            }
+            Self::Words(words) => words.clone(),
+        }
+    }
+}
+
+impl Csv {
+    /// A table with these titles.
+    #[must_use]
+    pub fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
+        Self(String::new()).with(titles)
+    }
+
+    /// The same with a line more.
+    #[must_use]
+    pub fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
+        let cells = cells.into_iter().map(|cell| cell.into().text());
+        self.0 += &cells.collect::<Vec<_>>().join(",");
+        self.0.push('\n');
+        self
+    }
+
+    /// The same with a line more for each item.
+    #[must_use]
+    pub fn with_all<I, T: Into<Cell>, L: IntoIterator<Item = T>>(
+        self,
+        items: impl IntoIterator<Item = I>,
+        line: impl Fn(I) -> L,
+    ) -> Self {
+        let items = items.into_iter();
+        items.fold(self, |table, item| table.with(line(item)))
+    }
+
+    /// As text.
+    #[must_use]
+    pub fn text(self) -> String {
+        self.0
+    }
+}
+
+/// A square table: names along and down.
+#[must_use]
+pub fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Csv {
+    let titles = std::iter::once("name").chain(names.iter().copied());
+    let line = |(i, name): (usize, &&str)| {
+        let values = (0..names.len()).map(|j| Cell::from(value(i, j)));
+        std::iter::once(Cell::from(*name))
+            .chain(values)
+            .collect::<Vec<_>>()
+    };
+    Csv::new(titles).with_all(names.iter().enumerate(), line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_that_hold_commas_or_quotes_are_quoted_and_what_is_no_number_is_empty() {
+        let cells = [
+            Cell::from("a, \"b\""),
+            Cell::from(f64::INFINITY),
+            Cell::from(Some(1.5e-7)),
+            Cell::from(None::<f64>),
+            Cell::from(3_usize),
+            Cell::from(true),
+        ];
+        let table = Csv::new(["a", "b"]).with(cells);
+        assert_eq!(table.text(), "a,b\n\"a, \"\"b\"\"\",,1.5e-7,,3,true\n");
+    }
+}

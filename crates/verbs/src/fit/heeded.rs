@@ -1,0 +1,59 @@
+//! Options that a fit could not heed are refused before anything is computed.
+
+use super::Arguments;
+use crate::arguments::infer::Method;
+use crate::failure::Failure;
+
+/// Of a fit of a table.
+///
+/// # Errors
+/// An option that would say nothing, why, and what to do.
+pub fn of_table(arguments: &Arguments) -> Result<(), Failure> {
+    let recorded = &arguments.recorded;
+    let why = "is for recordings, and DATA is a table of times of flight: leave it out";
+    refuse("--shots", recorded.shots.is_some(), why)?;
+    refuse("--rate", recorded.rate.is_some(), why)?;
+    refuse("--channel", !recorded.channel.is_empty(), why)?;
+    let why = "can't be combined with --against: models are compared by likelihoods, and a robust loss is none; \
+               compare without --robust, or leave outliers out of the table";
+    refuse(
+        "--robust",
+        arguments.robust && !arguments.against.is_empty(),
+        why,
+    )?;
+    of_any(arguments)
+}
+
+/// Of a fit of recordings.
+///
+/// # Errors
+/// As [`of_table`].
+pub fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
+    let why = "compares models of a table of times of flight, and DATA are recordings: take their times by \
+               `hertzchain measure` and compare models of speeds.csv, or fit the other model to the recordings by itself";
+    refuse("--against", !arguments.against.is_empty(), why)?;
+    let why = "is for tables of times of flight, and DATA are recordings, whose noise is taken from themselves: leave it out";
+    refuse("--tof-error", arguments.measured.tof_error.is_some(), why)?;
+    refuse(
+        "--ratio-error",
+        arguments.measured.ratio_error.is_some(),
+        why,
+    )?;
+    let shots = arguments.measured.error_shots;
+    refuse("--error-shots", shots.is_some(), why)?;
+    of_any(arguments)
+}
+
+fn of_any(arguments: &Arguments) -> Result<(), Failure> {
+    let sampled = arguments.method == Method::Posterior;
+    let why =
+        "goes on with the walkers of a posterior, and --method is another: add --method posterior";
+    refuse("--resume", arguments.resume && !sampled, why)
+}
+
+fn refuse(option: &str, given: bool, why: &str) -> Result<(), Failure> {
+    match given {
+        true => Err(Failure::User(format!("{option} {why}"))),
+        false => Ok(()),
+    }
+}

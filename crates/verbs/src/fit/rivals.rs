@@ -1,0 +1,233 @@
+//! Other models of the same data.
+
+use super::Arguments;
+use crate::arguments::infer::{Against, Assignment, Freed};
+use crate::failure::Failure;
+use crate::inference::{self, is_meant, user};
+use hertzchain_experiment::{Experiment, PathError};
+use hertzchain_infer::{
+    Compared, Comparison, CrossValidation, CurveProblem, Fit, Fitting, Folding, compare,
+    cross_validate, fit, same_number,
+};
+
+/// A model that was fitted to the same data.
+pub struct Rival {
+    /// Its name, with what is free.
+    pub name: String,
+    /// Its fit.
+    pub fit: Fit,
+    /// How well it foretells what it has not seen.
+    pub foretells: CrossValidation,
+    /// What is set in the fit's own model, and is not there in this one.
+    pub without: Vec<String>,
+}
+
+/// A model that found no minimum.
+pub struct Lost {
+    /// Its name, with what is free.
+    pub name: String,
+    /// How far from the data it ended.
+    pub chi_square: f64,
+    /// Why it ended there.
+    pub why: String,
+}
+
+/// All models, the fit's own first, and what the data say of them.
+pub struct Rivals {
+    /// Models.
+    pub all: Vec<Rival>,
+    /// Models that found no minimum, and so are out of the comparison.
+    pub lost: Vec<Lost>,
+    /// Their comparison, if at least two are left.
+    pub comparison: Option<Comparison>,
+}
+
+/// Fits the other models to the same data, if any are asked for.
+pub fn rivals(
+    problem: &CurveProblem,
+    own: &Fit,
+    arguments: &Arguments,
+) -> Result<Option<Rivals>, Failure> {
+    if arguments.against.is_empty() {
+        return Ok(None);
+    }
+    let name = format!(
+        "{} ({})",
+        problem.model().experiment().name(),
+        arguments.freed.free.join(", ")
+    );
+    let mut all = vec![rival(name, problem, own.clone(), arguments.seed)?];
+    let mut lost = Vec::new();
+    for against in &arguments.against {
+        match other(against, problem, arguments)? {
+            Ok(rival) => all.push(rival),
+            Err(without) => lost.push(without),
+        }
+    }
+    let compared: Vec<Compared<'_>> = all
+        .iter()
+        .map(|rival| Compared {
+            name: &rival.name,
+            fit: &rival.fit,
+            cross_validation: Some(&rival.foretells),
+        })
+        .collect();
+    let comparison = match compared.len() {
+        1 => None,
+        _ => Some(compare(&compared).map_err(user)?),
+    };
+    Ok(Some(Rivals {
+        all,
+        lost,
+        comparison,
+    }))
+}
+
+fn other(
+    against: &Against,
+    problem: &CurveProblem,
+    arguments: &Arguments,
+) -> Result<Result<Rival, Lost>, Failure> {
+    let name = format!("{} ({})", against.model, against.free.join(", "));
+    let of_rival = |failure| match failure {
+        Failure::User(why) => Failure::User(format!("--against {name}: {why}")),
+        other => other,
+    };
+    let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
+    let how = Fitting {
+        starts: arguments.starts,
+        seed: arguments.seed,
+        ..Fitting::default()
+    };
+    let fit = fit(&posed, &how).map_err(|error| of_rival(user(error)))?;
+    if !fit.ending.converged() {
+        return Ok(Err(Lost {
+            chi_square: fit.chi_square(),
+            why: fit.ending.to_string(),
+            name,
+        }));
+    }
+    let rival = rival(name.clone(), &posed, fit, arguments.seed)?;
+    Ok(Ok(Rival { without, ..rival }))
+}
+
+/// The same data against another model, in which everything is set and known that is
+/// in the fit's own, as far as it has such numbers; and settings that it has not.
+fn posed(
+    against: &Against,
+    problem: &CurveProblem,
+    arguments: &Arguments,
+) -> Result<(CurveProblem, Vec<String>), Failure> {
+    let mut modelled = against.modelled(&arguments.modelled);
+    // A model far from the data is steep there: its noise would hide the minimum.
+    modelled.accuracy = modelled.accuracy.min(RIVALS_ACCURACY);
+    let data = problem.data().clone();
+    let sets = std::mem::take(&mut modelled.set);
+    let plain = inference::experiment(&modelled, Some(&data.case))?;
+    let (experiment, without) = set_where_known(plain, &sets)?;
+    let own = problem.model().experiment();
+    let freed = renamed(&arguments.freed, own, &against.free, &experiment);
+    let model = inference::model(&experiment, &modelled, &freed)?;
+    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
+    let posed = inference::problem(model, data, &about(freed, &names))?;
+    Ok((posed, without))
+}
+
+/// The experiment with those numbers set that it has, and the settings left out.
+fn set_where_known(
+    mut experiment: Experiment,
+    sets: &[Assignment],
+) -> Result<(Experiment, Vec<String>), Failure> {
+    let mut without = Vec::new();
+    for set in sets {
+        match experiment.place(&set.name) {
+            Err(PathError::Unknown { .. }) => without.push(set.to_string()),
+            _ => experiment = inference::changed(experiment, std::slice::from_ref(set))?,
+        }
+    }
+    Ok((experiment, without))
+}
+
+/// What is known of numbers, by the names that a rival frees them by.
+fn renamed(known: &Freed, own: &Experiment, free: &[String], rival: &Experiment) -> Freed {
+    let name = |given: &Assignment| {
+        let of_own = known.free.iter().map(|name| plain(name));
+        let number = of_own.filter(|number| is_of(&given.name, number));
+        let number = number.max_by_key(|number| number.len())?;
+        let of_rival = free.iter().map(|name| plain(name));
+        let mut same =
+            of_rival.filter(|other| *other == number || same_number((own, number), (rival, other)));
+        Some(format!("{}{}", same.next()?, &given.name[number.len()..]))
+    };
+    let all = |given: &[Assignment]| {
+        let given = given.iter().filter_map(|one| {
+            Some(Assignment {
+                name: name(one)?,
+                text: one.text.clone(),
+            })
+        });
+        given.collect()
+    };
+    Freed {
+        free: free.to_vec(),
+        start: all(&known.start),
+        bounds: all(&known.bounds),
+        prior: all(&known.prior),
+        scale: all(&known.scale),
+    }
+}
+
+/// A number's name without how it depends on speed.
+fn plain(name: &str) -> &str {
+    name.split(':').next().unwrap_or_default().trim()
+}
+
+/// Whether a name is that of a number or of one of its parameters.
+fn is_of(name: &str, number: &str) -> bool {
+    let rest = name.strip_prefix(number);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '@']))
+}
+
+/// What is said of parameters that there are.
+fn about(freed: Freed, parameters: &[&str]) -> Freed {
+    let known = |given: Vec<Assignment>| -> Vec<Assignment> {
+        let is_known = |one: &Assignment| {
+            parameters
+                .iter()
+                .any(|parameter| is_meant(&one.name, parameter))
+        };
+        given.into_iter().filter(is_known).collect()
+    };
+    Freed {
+        free: freed.free,
+        start: known(freed.start),
+        bounds: known(freed.bounds),
+        prior: known(freed.prior),
+        scale: known(freed.scale),
+    }
+}
+
+/// Relative accuracy of other models' times of flight.
+const RIVALS_ACCURACY: f64 = 1e-6;
+
+fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Rival, Failure> {
+    // What was measured at one speed is left out together.
+    let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
+    let how = Folding {
+        groups,
+        parts: Some(PARTS.min(problem.data().rows.len())),
+        seed,
+    };
+    let foretells = cross_validate(problem, &fit, &how)
+        .map_err(|error| Failure::User(format!("{name}: {error}")))?;
+    Ok(Rival {
+        name,
+        fit,
+        foretells,
+        without: Vec::new(),
+    })
+}
+
+/// Parts into which rows are dealt for cross-validation.
+const PARTS: usize = 5;

@@ -1,0 +1,289 @@
+//! A fit as tables (CSV), in SI: what `fit.json` holds, and the samples of a posterior.
+
+use super::more::{More, Sampled};
+use super::rivals::Rivals;
+use super::{Fitted, Inferred};
+use crate::csv::{Cell, Csv, square};
+use hertzchain_infer::{
+    Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile,
+};
+
+/// A file's name and what stands in it.
+pub type Table = (&'static str, String);
+
+/// Every table of a fit of a curve.
+#[must_use]
+pub fn tables(fitted: &Fitted) -> Vec<Table> {
+    let mut all = vec![("fit.csv", rows(fitted))];
+    all.extend(of_any(&fitted.inferred));
+    let rivals = fitted.rivals.as_ref();
+    all.extend(rivals.map(|rivals| ("comparison.csv", comparison(rivals))));
+    all
+}
+
+/// Tables that any fit has.
+#[must_use]
+pub fn of_any(fitted: &Inferred) -> Vec<Table> {
+    let names: Vec<&str> = fitted.parameters.iter().map(|p| p.name.as_str()).collect();
+    let covariance = &fitted.covariance;
+    let entry = |i: usize, j: usize| Some(covariance.matrix[i][j]);
+    let correlation = |i: usize, j: usize| covariance.correlation(i, j);
+    let mut all = vec![
+        ("summary.csv", summary(fitted)),
+        ("parameters.csv", parameters(fitted)),
+        ("covariance.csv", square(&names, entry).text()),
+        ("correlation.csv", square(&names, correlation).text()),
+        ("singular-values.csv", singular_values(fitted, &names)),
+        ("starts.csv", starts(fitted, &names)),
+    ];
+    match &fitted.more {
+        More::Nothing => {}
+        More::Profiles(found) => {
+            all.push(("profiles.csv", profiles(&names, found)));
+            all.push(("intervals.csv", intervals(&names, found)));
+        }
+        More::Sampled(sampled) => all.extend(sampled_tables(sampled)),
+    }
+    all
+}
+
+/// One line a number that tells of the whole fit.
+fn summary(fitted: &Inferred) -> String {
+    let (fit, goodness) = (&fitted.fit, &fitted.goodness);
+    let (chi_square, runs) = (goodness.chi_square, goodness.runs);
+    let lines: [(&str, Cell); 12] = [
+        ("converged", fit.ending.converged().into()),
+        ("cost", fit.cost.into()),
+        ("chi_square", chi_square.map(|c| c.value).into()),
+        ("freedom", chi_square.map(|c| c.freedom).into()),
+        ("probability", chi_square.map(|c| c.probability).into()),
+        ("runs", runs.map(|r| r.count).into()),
+        ("runs_expected", runs.map(|r| r.expected).into()),
+        (
+            "runs_probability_fewer",
+            runs.map(|r| r.probability_fewer).into(),
+        ),
+        (
+            "runs_probability_more",
+            runs.map(|r| r.probability_more).into(),
+        ),
+        (
+            "jacobian_disagreement",
+            fit.jacobian.worst_disagreement().into(),
+        ),
+        ("singular_value_floor", fitted.identifiability.floor.into()),
+        (
+            "combinations_determined",
+            fitted.identifiability.determined().into(),
+        ),
+    ];
+    let line = |(name, value): (&str, Cell)| [name.into(), value];
+    Csv::new(["quantity", "value"]).with_all(lines, line).text()
+}
+
+fn parameters(fitted: &Inferred) -> String {
+    let titles = "name,unit,value,standard_error,determined,at_bound,start,lower,upper,scale";
+    let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 10] {
+        let sd = fitted.standard_error(at);
+        [
+            parameter.name.clone().into(),
+            parameter.unit.clone().into(),
+            fitted.fit.point[at].into(),
+            sd.into(),
+            sd.is_finite().into(),
+            fitted.fit.is_bound(at).into(),
+            parameter.start.into(),
+            parameter.lower.into(),
+            parameter.upper.into(),
+            parameter.scale.into(),
+        ]
+    };
+    let table = Csv::new(titles.split(','));
+    table
+        .with_all(fitted.parameters.iter().enumerate(), line)
+        .text()
+}
+
+/// One line a singular value, with the combination of scaled parameters it belongs to.
+fn singular_values(fitted: &Inferred, names: &[&str]) -> String {
+    let found = &fitted.identifiability;
+    let titles = ["singular_value", "determined"].into_iter();
+    let line = |(at, value): (usize, &f64)| {
+        let cells = [Cell::from(*value), (at < found.determined()).into()].into_iter();
+        let direction = found.directions[at].iter();
+        cells
+            .chain(direction.map(|share| Cell::from(*share)))
+            .collect::<Vec<_>>()
+    };
+    let table = Csv::new(titles.chain(names.iter().copied()));
+    table
+        .with_all(found.singular_values.iter().enumerate(), line)
+        .text()
+}
+
+/// One line a start: where it came to.
+fn starts(fitted: &Inferred, names: &[&str]) -> String {
+    let titles = ["cost".to_owned(), "iterations".to_owned()].into_iter();
+    let from = names.iter().map(|name| format!("{name} from"));
+    let to = names.iter().map(|name| format!("{name} to"));
+    let table = Csv::new(titles.chain(from).chain(to));
+    let line = |start: &hertzchain_infer::Started| {
+        let cells = [Cell::from(start.cost), start.iterations.into()].into_iter();
+        let points = start.start.iter().chain(&start.point);
+        cells
+            .chain(points.map(|value| Cell::from(*value)))
+            .collect::<Vec<_>>()
+    };
+    table.with_all(&fitted.fit.starts, line).text()
+}
+
+/// One line a value of a profile.
+fn profiles(names: &[&str], profiles: &[Profile]) -> String {
+    let lines = profiles.iter().flat_map(|profile| {
+        let points = profile.values.iter().zip(&profile.rise);
+        points.map(move |(value, rise)| (names[profile.parameter], *value, *rise))
+    });
+    let line = |(name, value, rise): (&str, f64, f64)| -> [Cell; 3] {
+        [name.into(), value.into(), rise.into()]
+    };
+    Csv::new(["name", "value", "chi_square_rise"])
+        .with_all(lines, line)
+        .text()
+}
+
+/// One line an interval of a profile; an end that the data do not give says what
+/// stopped the search there.
+fn intervals(names: &[&str], profiles: &[Profile]) -> String {
+    let lines = profiles.iter().flat_map(|profile| {
+        let name = names[profile.parameter];
+        profile
+            .intervals
+            .iter()
+            .map(move |interval| (name, interval))
+    });
+    let line = |(name, interval): (&str, &Interval)| -> [Cell; 6] {
+        let (lower, lower_is) = end(interval.lower);
+        let (upper, upper_is) = end(interval.upper);
+        [
+            name.into(),
+            interval.level.into(),
+            lower.into(),
+            lower_is.into(),
+            upper.into(),
+            upper_is.into(),
+        ]
+    };
+    let titles = "name,chi_square_rise,lower,lower_is,upper,upper_is";
+    Csv::new(titles.split(',')).with_all(lines, line).text()
+}
+
+fn end(end: End) -> (f64, &'static str) {
+    match end {
+        End::At(value) => (value, "end"),
+        End::Bound(value) => (value, "bound"),
+        End::Open(value) => (value, "open beyond"),
+        End::ModelFails(value) => (value, "model fails beyond"),
+    }
+}
+
+/// Summary and samples of a posterior; nothing of a chain that has not converged.
+fn sampled_tables(sampled: &Sampled) -> Vec<Table> {
+    let Ok(posterior) = &sampled.posterior else {
+        return Vec::new();
+    };
+    let names = sampled.chain.names();
+    let count = posterior.samples.first().map_or(0, Vec::len);
+    let line = |at: usize| {
+        posterior
+            .samples
+            .iter()
+            .map(move |of| Cell::from(of[at]))
+            .collect::<Vec<_>>()
+    };
+    let samples = Csv::new(names.iter().map(String::as_str)).with_all(0..count, line);
+    vec![
+        ("posterior.csv", posterior_table(names, posterior)),
+        ("samples.csv", samples.text()),
+    ]
+}
+
+fn posterior_table(names: &[String], posterior: &Posterior) -> String {
+    let titles = "name,mean,sd,median,lower_68,upper_68,lower_95,upper_95,autocorrelation_time,r_hat,effective_samples";
+    let line = |(at, found): (usize, &Diagnosis)| -> [Cell; 11] {
+        let [lower, upper] = posterior.interval(at, super::SHARE_OF_A_STANDARD_ERROR);
+        let [least, most] = posterior.interval(at, 0.95);
+        [
+            names[at].clone().into(),
+            posterior.mean[at].into(),
+            posterior.sd(at).into(),
+            posterior.quantile(at, 0.5).into(),
+            lower.into(),
+            upper.into(),
+            least.into(),
+            most.into(),
+            found.time.time.into(),
+            found.r_hat.into(),
+            found.effective.into(),
+        ]
+    };
+    let table = Csv::new(titles.split(','));
+    table
+        .with_all(posterior.diagnoses.iter().enumerate(), line)
+        .text()
+}
+
+/// One line a model, as it was given; those without a minimum have a chi-square alone.
+fn comparison(rivals: &Rivals) -> String {
+    let titles =
+        "model,free,chi_square,aic,aicc,bic,weight,prediction_error,prediction_error_error";
+    let found = rivals.comparison.as_ref();
+    let numbered = rivals.all.iter().enumerate();
+    let judged = |at: usize, found: &Comparison| -> [Cell; 5] {
+        let criteria = &found.criteria[at];
+        [
+            criteria.parameters.into(),
+            criteria.aic.into(),
+            criteria.aicc.into(),
+            criteria.bic.into(),
+            found.weights[at].into(),
+        ]
+    };
+    let line = |(at, rival): (usize, &super::Rival)| -> [Cell; 9] {
+        let none = || [const { Cell::Empty }; 5];
+        let [free, aic, aicc, bic, weight] = found.map_or_else(none, |found| judged(at, found));
+        let (name, chi_square) = (rival.name.clone().into(), rival.fit.chi_square().into());
+        let (mean, error) = (rival.foretells.mean.into(), rival.foretells.error.into());
+        [name, free, chi_square, aic, aicc, bic, weight, mean, error]
+    };
+    let lost = |lost: &super::Lost| -> [Cell; 9] {
+        let mut cells = [const { Cell::Empty }; 9];
+        cells[0] = lost.name.clone().into();
+        cells[2] = lost.chi_square.into();
+        cells
+    };
+    let table = Csv::new(titles.split(',')).with_all(numbered, line);
+    table.with_all(&rivals.lost, lost).text()
+}
+
+/// One line a measured value.
+fn rows(fitted: &Fitted) -> String {
+    let titles = "line,speed_m_s,observable,measured,error,fitted,fitted_error,residual";
+    let measured = fitted.problem.measured().into_iter();
+    let line = |((at, of), residual): ((usize, Observable), &f64)| -> [Cell; 8] {
+        let row = &fitted.problem.data().rows[at];
+        let (value, curve) = (row.value(of), &fitted.curve);
+        let predicted = curve.predicted.get(at).and_then(|row| row[of as usize]);
+        [
+            row.line.to_string().into(),
+            row.speed_m_s.value.into(),
+            of.column().into(),
+            value.map(|value| value.value).into(),
+            value.map(|value| value.sigma).into(),
+            predicted.into(),
+            curve.sd.get(at).map(|row| row[of as usize]).into(),
+            (*residual).into(),
+        ]
+    };
+    let lines = measured.zip(&fitted.inferred.fit.residuals);
+    Csv::new(titles.split(',')).with_all(lines, line).text()
+}

@@ -1,0 +1,215 @@
+//! What the gauge says as tables (CSV), in SI: what `gauge.json` holds.
+
+use super::Gauged;
+use crate::csv::{Cell, Csv};
+use hertzchain_infer::Problem;
+use hertzchain_infer::gauge::{Contact, Match, OwnNumber, PowerForm, SharedLaw, WetRow};
+
+/// Every table: files' names and what stands in them.
+#[must_use]
+pub fn tables(gauged: &Gauged) -> Vec<(&'static str, String)> {
+    let mut all = vec![
+        ("summary.csv", summary(gauged)),
+        ("dry.csv", dry(gauged)),
+        ("contacts.csv", contacts(gauged)),
+        ("oils.csv", oils(gauged)),
+    ];
+    all.extend((!gauged.verdict.failed.is_empty()).then(|| ("failed.csv", failed(gauged))));
+    all.extend(gauged.laws.is_some().then(|| ("laws.csv", laws(gauged))));
+    if let Some(form) = &gauged.form {
+        all.push(("form.csv", form_laws(form)));
+        all.push(("form-contacts.csv", form_contacts(form, gauged)));
+    }
+    all
+}
+
+/// One line a number or sentence that tells of the whole.
+fn summary(gauged: &Gauged) -> String {
+    let (gauge, verdict) = (&gauged.gauge, &gauged.verdict);
+    let form = gauged.form.as_ref().and_then(|form| form.chi_square);
+    let chi_square = gauge.dry_goodness().chi_square;
+    let lines: [(&str, Cell); 9] = [
+        ("verdict", verdict.sentence().into()),
+        ("doubts", gauged.doubts().into()),
+        ("to_add", gauged.to_add().into()),
+        ("dry_chi_square", chi_square.map(|c| c.value).into()),
+        ("dry_freedom", chi_square.map(|c| c.freedom).into()),
+        ("dry_probability", chi_square.map(|c| c.probability).into()),
+        ("form_chi_square", form.map(|c| c.value).into()),
+        ("form_freedom", form.map(|c| c.freedom).into()),
+        ("form_probability", form.map(|c| c.probability).into()),
+    ];
+    let line = |(name, value): (&str, Cell)| [name.into(), value];
+    Csv::new(["quantity", "value"]).with_all(lines, line).text()
+}
+
+/// One line a parameter of the dry contacts.
+fn dry(gauged: &Gauged) -> String {
+    let gauge = &gauged.gauge;
+    let numbered = gauge.dry().parameters().iter().enumerate();
+    let line = |(at, parameter): (usize, &hertzchain_infer::Parameter)| -> [Cell; 4] {
+        [
+            parameter.name.clone().into(),
+            parameter.unit.clone().into(),
+            gauge.dry_fit.point[at].into(),
+            gauge.dry_covariance.sd[at].into(),
+        ]
+    };
+    let table = Csv::new(["name", "unit", "value", "standard_error"]);
+    table.with_all(numbered, line).text()
+}
+
+/// One line a pair of K and A that a speed allows, the one taken first; one line a
+/// speed that tells a combination, or nothing.
+fn contacts(gauged: &Gauged) -> String {
+    let titles = "line,speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error,ln_covariance,\
+                  combination_exponent,combination_reference_s,taken,missing";
+    let lines = gauged.rows.iter().flat_map(|row| match &row.told {
+        Err(why) => vec![missing(row, why)],
+        Ok(contact) => pairs(row, contact),
+    });
+    Csv::new(titles.split(','))
+        .with_all(lines, |line| line)
+        .text()
+}
+
+/// Cells of a table of contacts.
+type Line = [Cell; 11];
+
+fn begun(row: &WetRow) -> Line {
+    let mut cells = [const { Cell::Empty }; 11];
+    cells[0] = row.line.to_string().into();
+    cells[1] = row.speed_m_s.into();
+    cells
+}
+
+fn missing(row: &WetRow, why: &str) -> Line {
+    let mut cells = begun(row);
+    cells[10] = why.into();
+    cells
+}
+
+fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
+    let [(k, k_sd), (a, a_sd)] = contact.estimates();
+    let mut taken = begun(row);
+    (taken[2], taken[3], taken[9]) = (k.into(), k_sd.into(), true.into());
+    match &contact.combination {
+        None => {
+            (taken[4], taken[5]) = (a.into(), a_sd.into());
+            taken[6] = contact.covariance()[0][1].into();
+        }
+        Some(combination) => {
+            (taken[7], taken[8]) = (combination.exponent.into(), combination.reference_s.into());
+        }
+    }
+    let other = |ln: &[f64; 2]| {
+        let mut cells = begun(row);
+        (cells[2], cells[4], cells[9]) = (ln[0].exp().into(), ln[1].exp().into(), false.into());
+        cells
+    };
+    std::iter::once(taken)
+        .chain(contact.others.iter().map(other))
+        .collect()
+}
+
+/// One line an oil, nearest first.
+fn oils(gauged: &Gauged) -> String {
+    let titles =
+        "name,distance,chi_square,freedom,probability,possible,farthest,farthest_standard_errors";
+    let own: Vec<&str> = gauged
+        .verdict
+        .matches
+        .first()
+        .map_or_else(Vec::new, |found| {
+            found
+                .own
+                .iter()
+                .map(|own| own.parameter.name.as_str())
+                .collect()
+        });
+    let titles = titles.split(',').map(str::to_owned);
+    let own = own
+        .iter()
+        .flat_map(|name| [(*name).to_owned(), format!("{name} error")]);
+    let line = |found: &Match| {
+        let chi_square = &found.chi_square;
+        let cells: [Cell; 8] = [
+            found.oil.clone().into(),
+            found.distance.into(),
+            chi_square.value.into(),
+            chi_square.freedom.into(),
+            chi_square.probability.into(),
+            found.fits().into(),
+            found.farthest.0.clone().into(),
+            found.farthest.1.into(),
+        ];
+        let numbers = |own: &OwnNumber| [Cell::from(own.value), own.standard_error.into()];
+        cells
+            .into_iter()
+            .chain(found.own.iter().flat_map(numbers))
+            .collect::<Vec<_>>()
+    };
+    let table = Csv::new(titles.chain(own));
+    table.with_all(&gauged.verdict.matches, line).text()
+}
+
+/// One line an oil that could not be computed.
+fn failed(gauged: &Gauged) -> String {
+    let line = |(oil, why): &(String, String)| [oil.clone(), why.clone()];
+    Csv::new(["name", "why"])
+        .with_all(&gauged.verdict.failed, line)
+        .text()
+}
+
+/// One line a power law through values of single speeds.
+fn laws(gauged: &Gauged) -> String {
+    let titles =
+        "law,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
+    let line = |(name, law): (&str, &SharedLaw)| -> [Cell; 6] {
+        [
+            name.into(),
+            law.law.prefactor.into(),
+            law.ln_prefactor_sd.into(),
+            law.law.exponent.into(),
+            law.exponent_sd.into(),
+            law.reduced_chi_square.into(),
+        ]
+    };
+    let both = gauged.laws.iter().flat_map(|laws| {
+        [
+            ("stiffness", &laws.stiffness),
+            ("relaxation_time_s", &laws.relaxation),
+        ]
+    });
+    Csv::new(titles.split(',')).with_all(both, line).text()
+}
+
+/// One line a power law of the whole curve.
+fn form_laws(form: &PowerForm) -> String {
+    let sd = form.sd();
+    let line = |(name, at): (&str, usize)| -> [Cell; 6] {
+        [
+            name.into(),
+            form.values[at].exp().into(),
+            sd[at].into(),
+            form.values[at + 1].into(),
+            sd[at + 1].into(),
+            form.covariance[at][at + 1].into(),
+        ]
+    };
+    let titles = "law,prefactor,prefactor_relative_error,exponent,exponent_error,covariance_of_ln_prefactor_and_exponent";
+    let both = [("stiffness", 0), ("relaxation_time_s", 2)];
+    Csv::new(titles.split(',')).with_all(both, line).text()
+}
+
+/// One line a speed: what both laws give there.
+fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
+    let titles = "speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error";
+    let line = |speed: f64| {
+        let at = form.at(speed);
+        let [k, a] = at.ln.map(f64::exp);
+        [speed, k, k * at.ln_sd[0], a, a * at.ln_sd[1]]
+    };
+    let speeds = gauged.gauge.wet().speeds_m_s();
+    Csv::new(titles.split(',')).with_all(speeds, line).text()
+}
