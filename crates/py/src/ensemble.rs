@@ -8,8 +8,8 @@ use crate::sweep::{Asked, judges, representative};
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Warning;
 use hertzchain_study::{
-    InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, shoot_all, shoot_tuned,
-    shoot_unjudged, stopped,
+    InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, piece, shoot_all,
+    shoot_tuned, shoot_unjudged, stopped,
 };
 use hertzchain_verbs::arguments::{How, parsed};
 use hertzchain_verbs::failure::{Failure, of_speed};
@@ -18,9 +18,6 @@ use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
-
-/// Rows that are in memory as chains at a time.
-const TOGETHER: usize = 4096;
 
 /// Rows that one thread plans in a go: neighbours often share their numbers.
 const NEIGHBOURS: usize = 64;
@@ -157,7 +154,7 @@ struct Fired {
 }
 
 impl Fired {
-    /// Of all rows, some thousands at a time.
+    /// Of all rows, some hundreds at a time.
     fn of(
         rows: &Rows<'_>,
         judges: Option<Judges>,
@@ -167,8 +164,9 @@ impl Fired {
         let shooting = Shooting::of(judges, rows, set);
         let mut fired = Self::default();
         let count = rows.speeds_m_s.len();
-        for first in (0..count).step_by(TOGETHER) {
-            let part: Vec<usize> = (first..count.min(first + TOGETHER)).collect();
+        let piece = piece();
+        for first in (0..count).step_by(piece) {
+            let part: Vec<usize> = (first..count.min(first + piece)).collect();
             let (mut plans, mut told) = (Vec::new(), Vec::new());
             for planned in rows.planned(&part) {
                 told.push(planned.map(|(plan, warnings)| {

@@ -10,14 +10,11 @@
 //! ```
 
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_study::{InstructionSet, Plan, shoot_all};
+use hertzchain_study::{InstructionSet, Plan, piece, shoot_all};
 use rayon::prelude::*;
 use std::error::Error;
 use std::io::{Write, stdin, stdout};
 use std::time::Instant;
-
-/// Shots that are in memory as chains at a time.
-const TOGETHER: usize = 4096;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -50,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _line in stdin().lines() {
         let begun = Instant::now();
         let mut sum_s = 0.0;
-        for part in rows.chunks(TOGETHER) {
+        for part in rows.chunks(piece()) {
             let plans: Result<Vec<Plan>, String> = part.par_iter().map(|at| plan(*at)).collect();
             for shot in shoot_all(&plans?, InstructionSet::default(), false, &|| {}) {
                 sum_s += shot?.flight.map_or(0.0, |flight| flight.incident_s);

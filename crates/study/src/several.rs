@@ -10,9 +10,12 @@ use crate::tuned::Tuned;
 use hertzchain_experiment::Warning;
 use rayon::prelude::*;
 
-/// Shots of each thread that are in memory as chains at a time: enough that none
-/// waits long for the others at the end, and few enough for near memory.
-const TOGETHER: usize = 256;
+/// Plans to have in memory at a time, in the current rayon pool: so many for each thread
+/// that none waits long for the others at the end, and few enough for near memory.
+#[must_use]
+pub fn piece() -> usize {
+    256 * rayon::current_num_threads()
+}
 
 /// A shot's plan with what is odd about it, or why there is none.
 pub(crate) type Planned = Result<(Plan, Vec<Warning>), PointError>;
@@ -55,7 +58,7 @@ impl Several<'_> {
         tuned: Option<&Tuned>,
         mut take: impl FnMut(usize, Told),
     ) {
-        for part in places.chunks(TOGETHER * rayon::current_num_threads()) {
+        for part in places.chunks(piece()) {
             if stopped() {
                 return;
             }

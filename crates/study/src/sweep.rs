@@ -146,7 +146,7 @@ pub fn sweep(experiment: &Experiment, speeds_m_s: &[f64], settings: &Settings<'_
 }
 
 /// The same for whoever keeps no whole shots: points are handed over in the order
-/// of their speeds, some thousands at a time; none more once it is asked to stop.
+/// of their speeds, some hundreds at a time; none more once it is asked to stop.
 /// Gives the setting that pilots chose.
 pub fn sweep_each(
     experiment: &Experiment,

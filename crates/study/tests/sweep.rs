@@ -1,7 +1,7 @@
 //! Sweeps over speed.
 
 use hertzchain_experiment::preset;
-use hertzchain_study::{Rows, Settings, Stop, Sweep, parse_speeds, sweep, sweep_each};
+use hertzchain_study::{Rows, Settings, Stop, Sweep, parse_speeds, piece, sweep, sweep_each};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn hertz(accuracy: f64, speeds: &str) -> Sweep {
@@ -76,17 +76,14 @@ fn what_is_broken_off_at_its_first_shot_has_planned_one_piece_of_many() {
     };
     let experiment = preset("hertz").unwrap();
     let tiny = experiment.set(&[("beads[0].count", 7.0)]).unwrap();
-    let speeds: Vec<f64> = (1..=5 * PIECE).map(|at| 1e-3 * at as f64).collect();
+    let pool = stop.pool(2).unwrap();
+    let piece = pool.install(piece);
+    let speeds: Vec<f64> = (1..=5 * piece).map(|at| 1e-3 * at as f64).collect();
     let mut handed = 0;
-    let pool = stop.pool(THREADS).unwrap();
     pool.install(|| sweep_each(&tiny, &speeds, &settings, |_| handed += 1));
-    assert_eq!((planned.into_inner(), handed), (PIECE, PIECE));
+    // A stop can't take back what is planned together.
+    assert_eq!((planned.into_inner(), handed), (piece, piece));
 }
-
-const THREADS: usize = 2;
-
-/// Speeds that are planned together: what a stop can't take back.
-const PIECE: usize = 256 * THREADS;
 
 #[test]
 fn points_handed_over_are_those_of_the_whole_sweep() {
