@@ -2,9 +2,12 @@
 //! for ours.
 
 use hertzchain_experiment::Warning;
+use hertzchain_infer::Data;
+use hertzchain_verbs::arguments::infer::Measured;
 use hertzchain_verbs::failure;
 pub use hertzchain_verbs::failure::{Failure, of_speed};
 use hertzchain_verbs::given::Given;
+use hertzchain_verbs::inference::assumed;
 use hertzchain_verbs::input::option;
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -26,6 +29,13 @@ pub fn report(failure: &Failure) -> ExitCode {
 /// Warnings at a speed that an option gave, told of the option.
 pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
     eprint!("{}", failure::option_warnings(option, warnings, colour()));
+}
+
+/// What is assumed of data that do not say all.
+pub fn print_assumed(data: &Data, measured: &Measured) {
+    if let Some(assumed) = assumed(data, measured) {
+        eprintln!("warning: {assumed}");
+    }
 }
 
 /// What is odd about an experiment at the speed that may have been given.

@@ -148,6 +148,75 @@ fn profiles_and_other_models_are_told_in_words() {
     let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
     assert!(text.contains("determine 3 of 4 combinations"), "{text}");
     assert!(text.contains("free K and A instead"), "{text}");
+    assert!(text.contains("no further data of this kind"), "{text}");
+    // What is open has no error bar, and B has one.
+    for name in ["Y", "nu", "eta"] {
+        let own = |line: &&str| line.trim_start().starts_with(&format!("{name} "));
+        let line = text.lines().find(own).unwrap();
+        assert!(line.ends_with("not determined"), "{text}");
+    }
+    assert!(text.contains("B    77"), "{text}");
+    let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
+    let determined = |at: usize| found["parameters"][at]["determined"].as_bool();
+    assert_eq!(
+        [0, 1, 2, 3].map(determined),
+        [false, false, false, true].map(Some)
+    );
+    assert!(found["parameters"][0]["standard_error"].is_null());
+}
+
+#[test]
+fn speeds_without_errors_are_warned_of_by_line() {
+    let folder = folder("exact");
+    let rows = "0.1,0,1.0274e-3,1e-7\n0.4,1e-3,7.9465e-4,1e-7\n1.0,,6.8166e-4,1e-7\n";
+    let data = file(&folder, "data.csv", &format!("{HEAD}{rows}"));
+    let told = |more: &[&str]| {
+        let fit = ["fit", &data, "-p", "dry", "--free", "eta"];
+        let output = run(&[&fit[..], more].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = told(&[]);
+    assert!(
+        warning.contains("lines 2, 4: speeds without an error"),
+        "{warning}"
+    );
+    // A cell that is 0 is a cell; one that is empty is filled.
+    let warning = told(&["--speed-error", "1e-3"]);
+    assert!(
+        warning.contains("line 2: speeds without an error"),
+        "{warning}"
+    );
+    assert_eq!(told(&["--speed-error", "0"]), "");
+    let message = refused(&["fit", &data, "--free", "eta", "--error-shots", "4"]);
+    assert!(
+        message.contains("expected a whole number from 6"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_posterior_of_five_parameters_says_before_it_begins_that_it_takes_its_time() {
+    let folder = folder("five");
+    let data = curve(&folder, "pump");
+    let posterior = [
+        "fit",
+        &data,
+        "-p",
+        "pump",
+        "--free",
+        "wet.Y,wet.nu,wet.eta",
+        "--method",
+        "posterior",
+        "--steps",
+        "1",
+    ];
+    let output = run(&with_errors(&posterior));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("5 parameters are free, and curves are interpolated for up to 4"),
+        "{told}"
+    );
 }
 
 #[test]
@@ -283,6 +352,10 @@ fn parameters_that_can_not_be_free_are_told_by_name() {
         (
             &["--free", "friction", "--start", "friction=0.05"],
             "friction changes no residual",
+        ),
+        (
+            &["--free", "eta,wall_gain"],
+            "wall_gain changes no residual near 1.0000e0",
         ),
         (
             &["--free", "eta", "--bounds", "eta=1e5:1e6"],

@@ -1,22 +1,25 @@
 //! Which combinations of parameters the data determine, and which not.
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
-use crate::linear::{combine, svd};
-use crate::{Fit, Parameter};
+use crate::linear::{Svd, combine, norm, svd};
+use crate::{Fit, Jacobian, Parameter};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its
-/// scale, and what they mean. Priors do not enter: it is the data that are asked.
+/// size, and what they mean: its scale, or its value at the best fit where that is
+/// larger, as it is after a start far too low. Priors do not enter: it is the data that are asked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
-    /// Largest first: a combination as long as one scale changes all residuals
+    /// Largest first: a combination as long as one size changes all residuals
     /// together by so many σ.
     pub singular_values: Vec<f64>,
     /// Singular values up to here cannot be told from 0 by the derivatives.
     pub floor: f64,
-    /// Unit directions, in units of the scales, one for each singular value.
+    /// Unit directions, in units of the sizes, one for each singular value.
     pub directions: Vec<Vec<f64>>,
     /// Combinations that the data do not determine, worst first.
     pub confused: Vec<Confusion>,
+    /// The parameters' sizes, in whose units the directions are.
+    pub sizes: Vec<f64>,
 }
 
 /// A combination of parameters that the data cannot tell from none.
@@ -27,14 +30,14 @@ pub struct Confusion {
     pub change: Vec<f64>,
     /// Change of each residual of the data thereby, in σ.
     pub effect: Vec<f64>,
-    /// Standard error of the combination, in units of the scales; infinite if
+    /// Standard error of the combination, in units of the sizes; infinite if
     /// the derivatives cannot tell its effect from none at all.
     pub standard_error: f64,
     /// All this in a sentence.
     pub words: String,
 }
 
-/// Standard error, in units of scales, from which a combination counts as
+/// Standard error, in units of sizes, from which a combination counts as
 /// undetermined: its size is then not even known to a factor of about two, and a
 /// linear analysis means nothing any more.
 pub const UNDETERMINED: f64 = 1.0;
@@ -46,21 +49,12 @@ impl Identifiability {
     /// [`Problem::residual_label`](crate::Problem::residual_label).
     #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit, label: impl Fn(usize) -> String) -> Self {
-        let jacobian = &fit.jacobian;
-        let columns: Vec<Vec<f64>> = (jacobian.columns.iter().zip(parameters))
-            .map(|(column, parameter)| {
-                let data = column.iter().take(jacobian.data_rows);
-                data.map(|x| x * parameter.scale).collect()
-            })
-            .collect();
-        let found = svd(&columns);
-        let errors = (columns.iter().zip(&jacobian.disagreement))
-            .map(|(column, d)| crate::linear::norm(column) * (ROUNDING + EXTRAPOLATED * d));
-        let floor = errors.map(|e| e * e).sum::<f64>().sqrt();
-        let weak = |value: &f64| value * UNDETERMINED <= 1.0 || *value <= floor;
+        let parameters = &sized(parameters, &fit.point);
+        let scaled = Scaled::of(parameters, &fit.jacobian);
+        let (found, floor) = scaled.taken_apart();
         let pairs = found.values.iter().zip(&found.right).rev();
         let confused = pairs
-            .filter(|(value, _)| weak(value))
+            .filter(|(value, _)| is_weak(**value, floor))
             .map(|(value, direction)| {
                 let error = if *value <= floor {
                     f64::INFINITY
@@ -75,6 +69,7 @@ impl Identifiability {
             floor,
             directions: found.right,
             confused,
+            sizes: parameters.iter().map(|p| p.scale).collect(),
         }
     }
 
@@ -82,6 +77,107 @@ impl Identifiability {
     #[must_use]
     pub fn determined(&self) -> usize {
         self.singular_values.len() - self.confused.len()
+    }
+
+    /// Whether a parameter's value means nothing: a combination that the data leave
+    /// open moves it, and within a standard error (what priors tell counted in) it
+    /// may be off by its whole size.
+    #[must_use]
+    pub fn leaves_open(&self, parameter: usize, sd: f64) -> bool {
+        let weak = self.singular_values.iter().zip(&self.directions);
+        let mut weak = weak.filter(|(value, _)| is_weak(**value, self.floor));
+        let moves = weak.any(|(_, direction)| direction[parameter].abs() > MOVED);
+        sd.is_infinite() || moves && sd >= UNDETERMINED * self.sizes[parameter]
+    }
+}
+
+/// Parameters whose scales are their sizes at a point.
+pub(crate) fn sized(parameters: &[Parameter], point: &[f64]) -> Vec<Parameter> {
+    let pairs = parameters.iter().zip(point);
+    let size = |(of, value): (&Parameter, &f64)| Parameter {
+        scale: of.scale.max(value.abs()),
+        ..of.clone()
+    };
+    pairs.map(size).collect()
+}
+
+/// Component of a unit direction that moves a parameter.
+const MOVED: f64 = 1e-4;
+
+/// Whether a singular value leaves its combination open.
+fn is_weak(value: f64, floor: f64) -> bool {
+    value * UNDETERMINED <= 1.0 || value <= floor
+}
+
+/// A Jacobian of data in units of the parameters' sizes, and how wrong its
+/// columns may be.
+#[derive(Clone, Debug)]
+pub(crate) struct Scaled {
+    columns: Vec<Vec<f64>>,
+    errors: Vec<f64>,
+}
+
+/// What rows of a Jacobian determine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Determined {
+    /// How many combinations.
+    pub count: usize,
+    /// Standard error of the one that is known worst, in units of the sizes;
+    /// infinite if nothing is known of it.
+    pub worst: f64,
+    /// Standard errors of the parameters, in units of their sizes.
+    pub sd: Vec<f64>,
+}
+
+impl Scaled {
+    pub(crate) fn of(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
+        let column = |(column, of): (&Vec<f64>, &Parameter)| -> Vec<f64> {
+            let data = column.iter().take(jacobian.data_rows);
+            data.map(|x| x * of.scale).collect()
+        };
+        let pairs = jacobian.columns.iter().zip(parameters);
+        let columns: Vec<Vec<f64>> = pairs.map(column).collect();
+        let errors = (columns.iter().zip(&jacobian.disagreement))
+            .map(|(column, d)| norm(column) * (ROUNDING + EXTRAPOLATED * d))
+            .collect();
+        Self { columns, errors }
+    }
+
+    /// Together with the rows of another.
+    pub(crate) fn and(&self, other: &Self) -> Self {
+        let columns = self.columns.iter().zip(&other.columns);
+        let errors = self.errors.iter().zip(&other.errors);
+        Self {
+            columns: columns.map(|(a, b)| [&a[..], b].concat()).collect(),
+            errors: errors.map(|(a, b)| a.hypot(*b)).collect(),
+        }
+    }
+
+    /// Singular values, and up to where they cannot be told from 0.
+    fn taken_apart(&self) -> (Svd, f64) {
+        (svd(&self.columns), norm(&self.errors))
+    }
+
+    pub(crate) fn determined(&self) -> Determined {
+        let (found, floor) = self.taken_apart();
+        let known = |value: f64| match value <= floor {
+            true => f64::INFINITY,
+            false => value.recip(),
+        };
+        let pairs = || found.values.iter().zip(&found.right);
+        let part = |value: f64, share: f64| match share.abs() > MOVED {
+            true => (share * known(value)).powi(2),
+            false => 0.0,
+        };
+        let variance = |k: usize| pairs().map(|(value, v)| part(*value, v[k])).sum::<f64>();
+        let weak = found.values.iter().filter(|value| is_weak(**value, floor));
+        Determined {
+            count: found.values.len() - weak.count(),
+            worst: found.values.last().map_or(0.0, |least| known(*least)),
+            sd: (0..self.columns.len())
+                .map(|k| variance(k).sqrt())
+                .collect(),
+        }
     }
 }
 
@@ -108,7 +204,7 @@ fn confusion(
     }
 }
 
-/// What percents of a parameter are of: its value, or its scale where that is 0.
+/// What percents of a parameter are of: its value, or its size where that is 0.
 fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
     match fit.point[k].abs() {
         0.0 => parameters[k].scale,

@@ -29,10 +29,14 @@ pub use compare::{
 };
 pub use covariance::Covariance;
 pub use curve::{
-    Choices, CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Kind, Model, Part,
-    Predicted, Speeds, Supply, Surrogate, SurrogateError, USUAL_PRELOAD_N, Way, WayError, ways,
+    Advice, Choices, CurveError, CurveProblem, ExpectedErrors, FittedCurve, Joint, Kind, Model,
+    Part, Predicted, Prospect, Speeds, Supply, Surrogate, SurrogateError, USUAL_PRELOAD_N, Way,
+    WayError, ways,
 };
-pub use data::{Data, DataError, DataRow, Defaults, Observable, Place, Selection, wrong_speed};
+pub use data::{
+    Data, DataError, DataRow, Defaults, FEWEST_SHOTS, Observable, Place, Selection, widening,
+    wrong_speed,
+};
 pub use design::{Candidate, Design, DesignError, Expected, design};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES, same_number};
 pub use goodness::{Goodness, Runs, runs};

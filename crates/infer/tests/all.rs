@@ -16,4 +16,5 @@ mod peers;
 mod posterior;
 mod pulses;
 mod round_trip;
+mod shots;
 mod toys;

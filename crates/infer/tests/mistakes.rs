@@ -7,7 +7,8 @@
 
 use crate::toys::{Curve, spaced, straight};
 use hertzchain_infer::{
-    Fit, FitError, Fitting, ModelError, Parameter, ParameterError, Prior, Problem, Residuals, fit,
+    Covariance, Fit, FitError, Fitting, ModelError, Parameter, ParameterError, Prior, Problem,
+    Residuals, fit,
 };
 
 type Line = Curve<fn(&[f64], f64) -> f64>;
@@ -64,6 +65,30 @@ fn parameters_that_change_nothing_are_named() {
         refused(&line(twice, 5)),
         FitError::Twice { name: "a".into() }
     );
+}
+
+/// Of a parameter that no residual knows, differences leave rounding alone, along which
+/// a descent would go as far as numbers reach.
+#[test]
+fn a_parameter_that_nothing_measures_is_refused_where_it_starts() {
+    let mut free = two();
+    free.push(Parameter::new("gain", "", 0.7));
+    let found = refused(&line(free, 9));
+    let value = 0.7;
+    let name = "gain".to_owned();
+    assert_eq!(found, FitError::ChangesNothing { name, value });
+}
+
+#[test]
+fn a_parameter_without_effect_where_it_starts_alone_is_fitted() {
+    let cubic: fn(&[f64], f64) -> f64 = |p, x| p[0] + p[1].powi(3) * x;
+    let free = vec![Parameter::new("a", "", 1.0), Parameter::new("c", "", 0.01)];
+    let x = spaced(0.0, 1.0, 9);
+    let data: Line = Curve::drawn(free, &x, 0.01, &[1.0, 1.0], 6, cubic);
+    // Twice as much of c moves the farthest point by 7e-6/0.01 standard errors.
+    let found = fit(&data, &Fitting::default()).unwrap();
+    let sd = Covariance::new(&data.parameters, &found).sd[1];
+    assert!((found.point[1] - 1.0).abs() < 3.0 * sd, "{:?}", found.point);
 }
 
 #[test]

@@ -1,4 +1,5 @@
-# The same decay fitted by scipy.optimize and sampled by emcee.
+# The same decay fitted by scipy.optimize and sampled by emcee; a power law with errors in
+# both coordinates by scipy.optimize.
 import json
 
 import emcee
@@ -38,4 +39,19 @@ found["mean"] = list(chain.reshape(-1, 2).mean(axis=0))
 found["sd"] = list(chain.reshape(-1, 2).std(axis=0))
 found["time"] = list(emcee.autocorr.integrated_time(chain))
 found["acceptance"] = [float(sampler.acceptance_fraction.mean())]
+
+# y = a x^b: the true x are free beside a and b, and all distances count in their own errors.
+law = {key: np.array(value) for key, value in data["law"].items()}
+ln_x, ln_y = np.log(law["x"]), np.log(law["y"])
+ln_x_sigma, ln_y_sigma = law["x_sigma"] / law["x"], law["y_sigma"] / law["y"]
+
+
+def distances(p):
+    true = p[2:]
+    return np.concatenate([(ln_x - true) / ln_x_sigma, (ln_y - p[0] - p[1] * true) / ln_y_sigma])
+
+
+fit = least_squares(distances, [ln_y.mean(), 0.0, *ln_x], x_scale="jac", **exact)
+covariance = np.linalg.inv(fit.jac.T @ fit.jac)
+found["law"] = [np.exp(fit.x[0]), fit.x[1], 2 * fit.cost, *np.sqrt(np.diag(covariance)[:2])]
 print(json.dumps(found))

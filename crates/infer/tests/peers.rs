@@ -3,10 +3,11 @@
 #[path = "../../records/tests/common/python.rs"]
 mod python;
 
-use crate::toys::{Curve, decay, spaced};
+use crate::toys::{Curve, decay, normals, spaced};
 use hertzchain_infer::{
     Chain, Covariance, Fitting, Loss, Parameter, Posterior, Requirements, Sampling, fit,
 };
+use hertzchain_signal::power_law_both_errors;
 use python::Python;
 use std::collections::HashMap;
 use std::path::Path;
@@ -30,10 +31,52 @@ fn data() -> Decay {
 fn others(data: &Decay) -> Option<HashMap<String, Vec<f64>>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("infer-peers");
     std::fs::create_dir_all(&folder).unwrap();
-    let text = serde_json::json!({"x": data.x, "y": data.y, "sigma": data.sigma}).to_string();
+    let [x, x_sigma, y, y_sigma] = law();
+    let law = serde_json::json!({"x": x, "x_sigma": x_sigma, "y": y, "y_sigma": y_sigma});
+    let text = serde_json::json!({"x": data.x, "y": data.y, "sigma": data.sigma, "law": law});
+    let text = text.to_string();
     std::fs::write(folder.join("data.json"), text).unwrap();
     let printed = PYTHON.run(&folder, include_str!("peers.py"))?;
     Some(serde_json::from_str(&printed).unwrap())
+}
+
+/// Times of flight in s as v^−0.2 against speeds in m/s, both with errors: in the paper's
+/// range, at five times its errors, so that those of speeds matter.
+fn law() -> [Vec<f64>; 4] {
+    let speeds: Vec<f64> = spaced(-2.5, 0.2, 12).iter().map(|ln| ln.exp()).collect();
+    let (of_speed, of_time) = (normals(11, 12), normals(12, 12));
+    let x_sigma = vec![0.0034; 12];
+    let measured = |at: usize| speeds[at] + x_sigma[at] * of_speed[at];
+    let x: Vec<f64> = (0..12).map(measured).collect();
+    let times = speeds.iter().map(|v| 6.5e-4 * v.powf(-0.2));
+    let y: Vec<f64> = times
+        .zip(of_time)
+        .map(|(time, e)| time + 5.5e-7 * e)
+        .collect();
+    [x, x_sigma, y, vec![5.5e-7; 12]]
+}
+
+#[test]
+fn a_power_law_with_errors_in_both_is_that_of_scipy() {
+    let data = data();
+    let Some(others) = others(&data) else { return };
+    let [x, x_sigma, y, y_sigma] = law();
+    let ours = power_law_both_errors(&x, &x_sigma, &y, &y_sigma).unwrap();
+    let theirs = &others["law"];
+    let (prefactor, exponent) = (theirs[3] * theirs[0], theirs[4]);
+    // Both stop at relative changes of 1e-15 to 1e-13; their minimum is flat over 1e-7
+    // standard errors in double precision.
+    assert!((ours.prefactor - theirs[0]).abs() < 1e-6 * prefactor);
+    assert!((ours.exponent - theirs[1]).abs() < 1e-6 * exponent);
+    assert!((ours.chi_square.unwrap().value / theirs[2] - 1.0).abs() < 1e-9);
+    // With the true abscissas eliminated, the full problem's covariance has York's weights
+    // at the adjusted abscissas: the same but for where both stopped.
+    for (ours, theirs) in [
+        (ours.prefactor_error, prefactor),
+        (ours.exponent_error, exponent),
+    ] {
+        assert!((ours / theirs - 1.0).abs() < 1e-5, "{ours} {theirs}");
+    }
 }
 
 fn posterior(data: &Decay) -> (Posterior, f64) {

@@ -1,6 +1,6 @@
 //! From known parameters to data and back, at the paper's noise.
 
-use crate::common::{Truth, model, problem, speeds_m_s};
+use crate::common::{Noise, Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
     Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,
@@ -97,8 +97,14 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let label = |at: usize| three.residual_label(at);
     let found = Identifiability::new(three.parameters(), &best, label);
     assert_eq!(found.determined(), 2, "{:?}", found.singular_values);
-    let advice = three.would_separate().join("; ");
-    assert!(advice.contains("enter only through K and A"), "{advice}");
+    let advice = three.would_separate(&best);
+    // Nor reflected times, peaks, other speeds, a push, nor all of it.
+    let all = advice.prospects.iter().chain(&advice.together);
+    assert_eq!(all.clone().count(), 4, "{advice:?}");
+    assert!(all.clone().all(|p| p.determined == 2), "{advice:?}");
+    let words = advice.words();
+    assert!(words[0].contains("enter only through K and A"), "{words:?}");
+    assert!(words[1].starts_with("no further data"), "{words:?}");
     // K and A they do tell.
     let two = problem(&model(&viscoelastic, &["K", "A"]), data);
     let best = fit(&two, &Fitting::default()).unwrap();
@@ -112,6 +118,62 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
         let pull = (best.point[at] - exact) / covariance.sd[at];
         assert!(pull.abs() < 3.0, "{at}: {pull}");
     }
+}
+
+#[test]
+fn what_would_separate_confused_numbers_is_foretold_with_their_errors() {
+    let viscoelastic = preset("hertz-viscoelastic").unwrap();
+    let truth = Truth::of(&viscoelastic, &[0.4, 0.5, 0.6]);
+    let noise = Noise {
+        speed_m_s: 1e-9,
+        time_s: 1e-12,
+    };
+    // On the curve itself, but with errors of 5 µs.
+    let mut both = truth.measured_with(noise, 1);
+    for row in &mut both.rows {
+        row.speed_m_s.sigma = 0.0;
+        let values = row.values.iter_mut().flatten();
+        values.for_each(|value| value.sigma = 5e-6);
+    }
+    let two = model(&viscoelastic, &["K", "A"]);
+    let incident = problem(&two, both.only(&[Observable::Incident]));
+    let best = fit(&incident, &Fitting::default()).unwrap();
+    let advice = incident.would_separate(&best);
+    assert_eq!((advice.now.determined, advice.combinations), (1, 2));
+    let reflected = advice.prospects.iter();
+    let mut reflected = reflected.filter(|p| p.measure.starts_with("reflected"));
+    let reflected = reflected.next().unwrap();
+    assert_eq!(reflected.determined, 2);
+    // What a fit with them comes to.
+    let problem = problem(&two, both);
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let sd = Covariance::new(problem.parameters(), &best).sd;
+    for (foretold, sd) in reflected.sd.iter().zip(&sd) {
+        // The incident fit is off by its descent's tolerance, 5e-5 of errors that are
+        // larger than A itself, and so are slopes there.
+        assert!((foretold / sd - 1.0).abs() < 1e-3, "{foretold} {sd}");
+    }
+    let words = advice.words().join("; ");
+    assert!(words.contains("measure reflected times"), "{words}");
+    assert!(!words.contains("no further data"), "{words}");
+}
+
+/// What counts is the value that was found, not the start's thousandth of it.
+#[test]
+fn a_start_far_too_low_leaves_nothing_open() {
+    let dry = preset("dry").unwrap();
+    let data = Truth::of(&dry, &speeds_m_s(6)).measured(7);
+    let model = model(&dry, &["eta", "B"]);
+    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    (parameters[0].start, parameters[0].scale) = (32.0, 32.0);
+    let problem = hertzchain_infer::CurveProblem::new(model, data, parameters).unwrap();
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let label = |at: usize| problem.residual_label(at);
+    let found = Identifiability::new(problem.parameters(), &best, label);
+    let sd = Covariance::new(problem.parameters(), &best).sd;
+    assert!(sd[0] > 32.0, "{sd:?}");
+    assert_eq!(found.determined(), 2, "{:?}", found.singular_values);
+    assert!(!found.leaves_open(0, sd[0]));
 }
 
 #[test]

@@ -10,8 +10,9 @@ use crate::tuned::Tuned;
 use hertzchain_experiment::Warning;
 use rayon::prelude::*;
 
-/// Shots that are in memory as chains at a time.
-const TOGETHER: usize = 4096;
+/// Shots of each thread that are in memory as chains at a time: enough that none
+/// waits long for the others at the end, and few enough for near memory.
+const TOGETHER: usize = 256;
 
 /// A shot's plan with what is odd about it, or why there is none.
 pub(crate) type Planned = Result<(Plan, Vec<Warning>), PointError>;
@@ -54,7 +55,7 @@ impl Several<'_> {
         tuned: Option<&Tuned>,
         mut take: impl FnMut(usize, Told),
     ) {
-        for part in places.chunks(TOGETHER) {
+        for part in places.chunks(TOGETHER * rayon::current_num_threads()) {
             if stopped() {
                 return;
             }

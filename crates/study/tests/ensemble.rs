@@ -131,7 +131,6 @@ fn a_checked_ensemble_tells_the_accuracy_it_reached() {
     }
 }
 
-/// Rows that differ from the paper's: sizes, laws, walls, preload, speeds.
 #[test]
 fn a_train_of_waves_is_followed_until_its_largest_has_returned() {
     // The wall is pressed harder by a later wave than by the first.
@@ -153,6 +152,7 @@ fn a_train_of_waves_is_followed_until_its_largest_has_returned() {
     }
 }
 
+/// Rows that differ from the paper's: sizes, laws, lengths, strikers, preload, speeds.
 fn random_plans(count: u64) -> Vec<Plan> {
     let mut state = 20_u64;
     let mut random = move |low: f64, high: f64| {

@@ -78,13 +78,15 @@ fn what_is_broken_off_at_its_first_shot_has_planned_one_piece_of_many() {
     let tiny = experiment.set(&[("beads[0].count", 7.0)]).unwrap();
     let speeds: Vec<f64> = (1..=5 * PIECE).map(|at| 1e-3 * at as f64).collect();
     let mut handed = 0;
-    let pool = stop.pool(2).unwrap();
+    let pool = stop.pool(THREADS).unwrap();
     pool.install(|| sweep_each(&tiny, &speeds, &settings, |_| handed += 1));
     assert_eq!((planned.into_inner(), handed), (PIECE, PIECE));
 }
 
+const THREADS: usize = 2;
+
 /// Speeds that are planned together: what a stop can't take back.
-const PIECE: usize = 4096;
+const PIECE: usize = 256 * THREADS;
 
 #[test]
 fn points_handed_over_are_those_of_the_whole_sweep() {

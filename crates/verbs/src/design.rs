@@ -19,6 +19,8 @@ pub struct Designed {
     pub design: Design,
     /// Combinations of the parameters that the data so far leave open, in words.
     pub undetermined: Vec<String>,
+    /// What would settle them, if there are any.
+    pub advice: Vec<String>,
 }
 
 /// Speeds that could be measured.
@@ -120,8 +122,13 @@ pub fn designed(
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
     let label = |at: usize| problem.residual_label(at);
     let identified = Identifiability::new(problem.parameters(), &fit, label);
+    let advice = match identified.confused.is_empty() {
+        true => Vec::new(),
+        false => problem.would_separate(&fit).words(),
+    };
     let open = identified.confused.into_iter();
     Ok(Designed {
+        advice,
         candidates,
         design: found,
         undetermined: open.map(|confusion| confusion.words).collect(),

@@ -354,6 +354,7 @@ fn fly<N: Number<W>, const W: usize>(
                     block.step(simd);
                     recorder.add(block);
                 }
+                recorder.look(simd, LOOK_EVERY);
             }
         ));
         if block.steps.is_multiple_of(CORRECTION_EVERY) {
@@ -368,7 +369,6 @@ fn fly<N: Number<W>, const W: usize>(
                 lane.look(block, recorder, at, settings.end, systems[at]);
             }
         }
-        recorder.looked();
         if let Some(behind) = &mut behind {
             block.leave_behind(behind);
         }

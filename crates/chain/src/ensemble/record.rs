@@ -10,7 +10,7 @@ use fearless_simd::{dispatch, prelude::*};
 #[derive(Clone, Debug)]
 struct Rows<N, const W: usize> {
     values: Vec<N>,
-    /// Largest of each lane since the last look.
+    /// Largest of each lane between the last two looks.
     crest: [N; W],
 }
 
@@ -20,8 +20,6 @@ pub(super) struct Recorder<N, const W: usize> {
     lanes: usize,
     sensors: Vec<Sensor>,
     rows: Vec<Rows<N, W>>,
-    /// Steps recorded.
-    steps: usize,
 }
 
 /// Extremes of a sensor and shot for which room is made.
@@ -38,7 +36,6 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
             lanes,
             rows: sensors.iter().map(rows).collect(),
             sensors: sensors.to_vec(),
-            steps: 0,
         }
     }
 
@@ -53,13 +50,27 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 
     #[inline(always)]
     fn add_row<const LANES: usize>(&mut self, block: &Block<'_, N, W>) {
-        self.steps += 1;
         for (sensor, rows) in self.sensors.iter().zip(&mut self.rows) {
             let row: [N; LANES] = block.signals(*sensor);
-            for (crest, value) in rows.crest.iter_mut().zip(row) {
-                *crest = if value > *crest { value } else { *crest };
-            }
             rows.values.extend_from_slice(&row);
+        }
+    }
+
+    /// Finds what each lane's sensors have shown at most in the last steps.
+    #[inline(always)]
+    pub fn look<S: Simd>(&mut self, simd: S, steps: usize) {
+        for Rows { values, crest } in &mut self.rows {
+            let first = values.len() - steps * self.lanes;
+            let mut most = N::Wide::<S>::simd_from(simd, N::default());
+            let (chunks, rest) = values[first..].as_chunks::<W>();
+            for chunk in chunks {
+                let now = N::Wide::<S>::load_array_ref(simd, chunk);
+                most = now.simd_gt(most).select(now, most);
+            }
+            most.store_array(crest);
+            // One lane alone has its samples in all places.
+            let own = rest.iter().chain(&crest[self.lanes..]);
+            crest[0] = own.fold(crest[0], |a, &b| if b > a { b } else { a });
         }
     }
 
@@ -69,13 +80,6 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
             rows: &self.rows[sensor],
             lanes: self.lanes,
             lane,
-        }
-    }
-
-    /// Begins a new stretch between looks.
-    pub fn looked(&mut self) {
-        for rows in &mut self.rows {
-            rows.crest = [N::default(); W];
         }
     }
 
@@ -126,7 +130,7 @@ pub(super) struct Samples<'a, N, const W: usize> {
 }
 
 impl<'a, N: Number<W>, const W: usize> Samples<'a, N, W> {
-    /// The largest since the last look.
+    /// The largest between the last two looks.
     pub fn crest(self) -> f64 {
         self.rows.crest[self.lane].into()
     }

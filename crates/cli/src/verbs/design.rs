@@ -1,6 +1,6 @@
 //! `hertzchain design`: what to measure next.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
@@ -18,6 +18,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
@@ -71,7 +72,7 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     format!(
         "Now: {}\n{}\n{}\n{}\n{}\n{}",
         now.join(", "),
-        beware(problem, &designed.undetermined),
+        beware(designed),
         heading("One measurement more, best first"),
         format::table(&head, &best),
         heading("A series, each the best after those before it"),
@@ -80,14 +81,15 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
 }
 
 /// What standard errors of open combinations are worth, and what would close them.
-fn beware(problem: &CurveProblem, undetermined: &[String]) -> String {
+fn beware(designed: &Designed) -> String {
+    let undetermined = &designed.undetermined;
     if undetermined.is_empty() {
         return String::new();
     }
     let open = undetermined
         .iter()
         .map(|words| format!("  Not determined so far: {words}.\n"));
-    let advice = problem.would_separate().into_iter();
+    let advice = designed.advice.iter();
     let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
     format!(
         "Beware: the errors of parameters that the data leave open, and what is said of them below, mean little.\n{}{}",

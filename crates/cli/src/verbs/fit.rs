@@ -5,10 +5,11 @@ mod pulses;
 mod report;
 mod uncertainty;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
-use hertzchain_verbs::arguments::infer::Fit as Arguments;
+use hertzchain_infer::{CurveProblem, Problem, Surrogate};
+use hertzchain_verbs::arguments::infer::{Fit as Arguments, Method};
 use hertzchain_verbs::fit::{self, Fitted, Inferred, More};
 use hertzchain_verbs::inference;
 
@@ -21,7 +22,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = inference::data(table, &arguments.measured)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
     let problem = inference::problem(model, data, &arguments.freed)?;
+    pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
     let fitted = pool.install(|| fit::fitted(problem, arguments))?;
@@ -31,6 +34,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => print::print(&report::text(&fitted))?,
     }
     folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+}
+
+/// Warns of a posterior that takes its time.
+fn pace(problem: &CurveProblem, arguments: &Arguments) {
+    let count = problem.parameters().len();
+    let most = Surrogate::MOST_PARAMETERS;
+    if arguments.method == Method::Posterior && !arguments.direct && count > most {
+        eprintln!(
+            "warning: {count} parameters are free, and curves are interpolated for up to {most}: \
+             every curve of the posterior is computed, a hundred times as slowly; fix some \
+             parameters, or use --method profile"
+        );
+    }
 }
 
 fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {

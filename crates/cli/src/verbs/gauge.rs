@@ -3,7 +3,7 @@
 mod pictures;
 mod report;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_infer::gauge::Chains;
@@ -23,6 +23,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &arguments.measured,
         arguments.dry_case.as_deref(),
     )?;
+    for data in [&wet, &dry] {
+        print_assumed(data, &arguments.measured);
+    }
     let oils = gauge::all_oils(arguments.oils.as_deref())?;
     let wet_model = inference::opened(arguments.model.as_deref(), &arguments.preset, &wet.case)?;
     let dry_model = inference::opened(

@@ -5,6 +5,7 @@ use super::problem::CurveProblem;
 use crate::data::{Data, DataRow, Observable};
 use crate::free::Form;
 use crate::{Candidate, Fit, ModelError, Problem};
+use hertzchain_experiment::reading::PreloadReading;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_signal::Estimate;
 
@@ -85,6 +86,16 @@ impl ExpectedErrors {
             speed_m_s: median(speeds).unwrap_or(0.0),
             time_s: of(true).unwrap_or(f64::NAN),
             ratio: of(false).unwrap_or(USUAL_RATIO_ERROR),
+        }
+    }
+}
+
+impl ExpectedErrors {
+    /// Of an observable.
+    pub(super) fn of(&self, observable: Observable) -> f64 {
+        match observable.is_time() {
+            true => self.time_s,
+            false => self.ratio,
         }
     }
 }
@@ -204,6 +215,14 @@ pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, WayE
     Ok(ways)
 }
 
+/// The chain with the usual push on bead 1, if it has none and bears it.
+pub(super) fn pushed(experiment: &Experiment) -> Option<Experiment> {
+    let none = experiment.reading().preload == PreloadReading::None;
+    let bare = none && !experiment.get(PUSH).is_ok_and(|force_n| force_n > 0.0);
+    let pushed = bare.then(|| experiment.with_push(USUAL_PRELOAD_N));
+    pushed?.ok()
+}
+
 impl CurveProblem {
     /// Each way at each speed as something to measure, with derivatives at a fit's
     /// optimum by central differences, all speeds of a way in one ensemble.
@@ -285,7 +304,7 @@ fn of_way(
 }
 
 /// Data as they would be at the fit, without noise.
-fn expected(
+pub(super) fn expected(
     model: &Model,
     fit: &Fit,
     way: &Way,
@@ -300,11 +319,7 @@ fn expected(
         .unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
     let row = |(at, speed): (usize, &f64)| {
         let value = |of: Observable| {
-            let sigma = if of.is_time() {
-                errors.time_s
-            } else {
-                errors.ratio
-            };
+            let sigma = errors.of(of);
             let wanted = way.observables.contains(&of);
             let value = curve.get(at)?[of.index()].filter(|_| wanted)?;
             Some(Estimate { value, sigma })

@@ -11,6 +11,7 @@ mod stencil;
 mod surrogate;
 mod whiten;
 
+pub use advice::{Advice, Prospect};
 pub use band::FittedCurve;
 pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, WayError, ways};
 pub use joint::{Joint, Part, Supply};

@@ -85,6 +85,12 @@ impl CurveProblem {
         Self::unchecked(model, data, parameters)
     }
 
+    /// The same problem with other starts, bounds, scales and priors.
+    pub(super) fn with_parameters(mut self, parameters: Vec<Parameter>) -> Self {
+        self.parameters = parameters;
+        self
+    }
+
     fn unchecked(model: Model, data: Data, parameters: Vec<Parameter>) -> Self {
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();

@@ -32,7 +32,7 @@ const TRIALS: usize = 40;
 #[non_exhaustive]
 pub enum SurrogateError {
     /// Too many nodes.
-    #[error("{0} parameters are too many for a surrogate, which bears up to four")]
+    #[error("{0} parameters are too many to interpolate curves, which is done for up to {most}", most = Surrogate::MOST_PARAMETERS)]
     TooMany(usize),
     /// A parameter without a width.
     #[error("{name} has no finite standard error: there is no box to interpolate in")]
@@ -61,6 +61,10 @@ pub struct Surrogate {
 }
 
 impl Surrogate {
+    /// Parameters that it bears: five values of each of five would be thousands of
+    /// curves.
+    pub const MOST_PARAMETERS: usize = NODES.len();
+
     /// Around a fit, six standard errors to either side.
     ///
     /// # Errors

@@ -4,11 +4,13 @@ mod check;
 mod columns;
 mod error;
 mod read;
+mod shots;
 
 pub use check::wrong_speed;
 pub use error::{DataError, Place};
 pub(crate) use read::with_plain_ends;
 pub use read::{Defaults, Selection};
+pub use shots::{FEWEST_SHOTS, widening};
 
 use hertzchain_signal::Estimate;
 
@@ -130,6 +132,15 @@ impl Data {
     #[must_use]
     pub fn has(&self, of: Observable) -> bool {
         self.rows.iter().any(|row| row.value(of).is_some())
+    }
+
+    /// Lines whose speeds have no error, or one of 0: they count as exactly known.
+    #[must_use]
+    pub fn lines_of_exact_speeds(&self) -> Vec<u64> {
+        let exact = self.rows.iter().filter(|row| row.speed_m_s.sigma == 0.0);
+        let mut lines: Vec<u64> = exact.map(|row| row.line).collect();
+        lines.sort_unstable();
+        lines
     }
 
     /// These data with some observables alone; rows that have none of them go.

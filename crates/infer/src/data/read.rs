@@ -1,7 +1,7 @@
 //! From text to rows.
 
 use super::columns::{Column, Columns, Measured};
-use super::{Data, DataError, DataRow, Observable, Place, check};
+use super::{Data, DataError, DataRow, Observable, Place, check, widening};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use hertzchain_signal::Estimate;
 
@@ -14,6 +14,9 @@ pub struct Defaults {
     pub time_s: Option<f64>,
     /// Of ratios of peaks.
     pub ratio: Option<f64>,
+    /// Shots from whose scatter all these errors come, the table's too: they are
+    /// widened by [`widening`](super::widening). `None` if they are known.
+    pub shots: Option<u32>,
 }
 
 /// What to take from a table.
@@ -200,7 +203,7 @@ impl Reader<'_> {
         };
         let estimate = Estimate {
             value: speed,
-            sigma: known.or(self.defaults.speed_m_s).unwrap_or(0.0),
+            sigma: self.widened(known.or(self.defaults.speed_m_s).unwrap_or(0.0)),
         };
         let place = sigma.as_ref().unwrap_or(value);
         self.sound(check::speed_sigma(estimate), line, place)?;
@@ -236,9 +239,15 @@ impl Reader<'_> {
             );
             self.cell_error(line, place, what)
         })?;
+        let sigma = self.widened(sigma);
         let estimate = Estimate { value, sigma };
         self.sound(check::sigma(of, estimate), line, place)?;
         Ok(Some(estimate))
+    }
+
+    /// A standard error with what its own uncertainty costs.
+    fn widened(&self, sigma: f64) -> f64 {
+        sigma * self.defaults.shots.and_then(widening).unwrap_or(1.0)
     }
 
     fn sound(&self, wrong: Option<String>, line: u64, column: &Column) -> Result<(), DataError> {

@@ -1,7 +1,7 @@
 //! One way down to a minimum, as questions and answers.
 
 use super::merit::{Linear, Merit, Valued};
-use super::slopes::{Stencil, slopes};
+use super::slopes::{Slopes, Stencil, slopes};
 use crate::linear::{Svd, dot, norm, svd};
 use crate::{ModelError, Parameter, Residuals};
 
@@ -24,6 +24,13 @@ pub(crate) struct Descent<'a> {
     iterations: usize,
     /// Iterations in a row that hardly gained anything.
     idle: usize,
+    /// Where it started, and whether it must see there that every parameter counts.
+    start: Vec<f64>,
+    wary: bool,
+    /// Whether the last step went as the linear model said: then fewer are tried.
+    sure: bool,
+    /// Neighbours of the point, and the steps to them.
+    beside: Option<Beside>,
 }
 
 /// When a descent ends.
@@ -59,6 +66,9 @@ pub enum Ending {
     },
     /// The model has no residuals here or beside here.
     ModelFails(ModelError),
+    /// A parameter, by its place, that changes no residual at the start, or is on
+    /// its way to nowhere.
+    ChangesNothing(usize),
 }
 
 impl Ending {
@@ -89,6 +99,9 @@ impl std::fmt::Display for Ending {
                 2.0 * expected_fall
             ),
             Self::ModelFails(error) => write!(f, "not converged: the model fails: {error}"),
+            Self::ChangesNothing(at) => {
+                write!(f, "not converged: parameter {} changes nothing", at + 1)
+            }
         }
     }
 }
@@ -110,7 +123,7 @@ struct Trials {
     loose: Vec<usize>,
     scales: Vec<f64>,
     expected_fall: f64,
-    dampings: [f64; 4],
+    dampings: Vec<f64>,
     points: Vec<Vec<f64>>,
 }
 
@@ -128,6 +141,14 @@ const LARGEST_DAMPING: f64 = 1e10;
 const LEAST_DAMPING: f64 = 1e-12;
 /// A fall of χ²/2 that no conclusion depends on.
 const SMALL_FALL: f64 = 1e-3;
+/// Change of all residuals together, in σ, by a parameter's whole size, below which
+/// it counts for nothing.
+pub(super) const NOTICED: f64 = 0.01;
+/// Distance from the start, in units of the scale, from which it is nowhere.
+const NOWHERE: f64 = 1e3;
+/// An expected fall that is hardly more than a model's noise: where a step does not
+/// gain at least a tenth of it, none will. It is 0.0014 standard errors.
+const QUIET_FALL: f64 = 1e-6;
 /// Iterations that gain less than a thousandth of what was expected, after
 /// which the model's noise is taken to be reached.
 const IDLE: usize = 3;
@@ -141,6 +162,7 @@ impl<'a> Descent<'a> {
             merit,
             free,
             limits,
+            start: point.clone(),
             point,
             at: None,
             steps,
@@ -148,6 +170,9 @@ impl<'a> Descent<'a> {
             stage: Stage::Done(Ending::Minimum),
             iterations: 0,
             idle: 0,
+            wary: false,
+            sure: false,
+            beside: None,
         };
         descent.stage = Stage::Start(descent.stencils());
         descent
@@ -157,6 +182,12 @@ impl<'a> Descent<'a> {
     pub fn with_steps(mut self, steps: &[f64]) -> Self {
         self.steps = steps.to_vec();
         self.stage = Stage::Start(self.stencils());
+        self
+    }
+
+    /// The same, ended at once if a parameter changes nothing where it starts.
+    pub fn wary(mut self) -> Self {
+        self.wary = true;
         self
     }
 
@@ -221,7 +252,16 @@ impl<'a> Descent<'a> {
             Ok(slopes) => slopes,
             Err(error) => return Stage::Done(Ending::ModelFails(error)),
         };
+        if let Some(parameter) = self.without_effect(&slopes) {
+            return Stage::Done(Ending::ChangesNothing(parameter));
+        }
         let linear = self.merit.linear(at, &slopes);
+        // The first steps are not yet suited to the residuals.
+        let suited = self.iterations > 0;
+        self.beside = suited.then(|| Beside {
+            steps: self.steps.clone(),
+            found: found.to_vec(),
+        });
         self.choose_steps(&linear);
         let trials = self.trials(linear);
         if trials.expected_fall < self.limits.tolerance {
@@ -236,6 +276,19 @@ impl<'a> Descent<'a> {
         }
         self.iterations += 1;
         Stage::Trials(Box::new(trials))
+    }
+
+    /// A parameter by whose whole size no residual changes, at the start or far from it.
+    fn without_effect(&self, slopes: &Slopes) -> Option<usize> {
+        let data = self.merit.problem.residual_count();
+        let without = |(k, column): (&usize, &Vec<f64>)| {
+            let (value, scale) = (self.point[*k], self.parameters()[*k].scale);
+            let nowhere = (value - self.start[*k]).abs() > NOWHERE * scale;
+            let looked_at = nowhere || self.wary && self.iterations == 0;
+            let effect = norm(&column[..data]) * value.abs().max(scale);
+            (looked_at && effect < NOTICED).then_some(*k)
+        };
+        self.free.iter().zip(&slopes.columns).find_map(without)
     }
 
     fn choose_steps(&mut self, linear: &Linear) {
@@ -267,7 +320,7 @@ impl<'a> Descent<'a> {
             loose,
             scales,
             expected_fall: 0.0,
-            dampings: [0.0; 4],
+            dampings: Vec::new(),
             points: Vec::new(),
         };
         trials.expected_fall = trials.fall();
@@ -277,7 +330,11 @@ impl<'a> Descent<'a> {
 
     /// Ends of steps for dampings around a middle one.
     fn spread(&self, trials: &mut Trials, damping: f64) {
-        trials.dampings = [0.1, 1.0, 10.0, 100.0].map(|factor| factor * damping);
+        let factors: &[f64] = match self.sure {
+            true => &[0.1, 100.0],
+            false => &[0.1, 1.0, 10.0, 100.0],
+        };
+        trials.dampings = factors.iter().map(|factor| factor * damping).collect();
         trials.points = (trials.dampings.iter())
             .map(|damping| self.clipped(trials, &trials.step(*damping)))
             .collect();
@@ -304,13 +361,20 @@ impl<'a> Descent<'a> {
                 let gained = before - valued.cost;
                 let idle = gained < 1e-3 * trials.expected_fall.min(1.0);
                 self.idle = if idle { self.idle + 1 } else { 0 };
+                if trials.expected_fall < QUIET_FALL && gained < 0.1 * trials.expected_fall {
+                    self.idle = IDLE;
+                }
+                self.sure = gained > 0.5 * trials.expected_fall;
                 self.damping = (0.3 * trials.dampings[i]).max(LEAST_DAMPING);
                 self.point.clone_from(&trials.points[i]);
+                self.beside = None;
                 self.at = Some(valued);
                 Stage::Slopes(self.stencils())
             }
-            _ if trials.dampings[3] < LARGEST_DAMPING => {
-                self.damping = 1e3 * trials.dampings[3];
+            _ if trials.expected_fall < QUIET_FALL => Stage::Done(resting(trials.expected_fall)),
+            _ if trials.most() < LARGEST_DAMPING => {
+                self.damping = 1e3 * trials.most();
+                self.sure = false;
                 self.spread(&mut trials, self.damping);
                 Stage::Trials(trials)
             }
@@ -328,6 +392,7 @@ impl<'a> Descent<'a> {
             point: self.point,
             at: self.at,
             steps: self.steps,
+            beside: self.beside,
             iterations: self.iterations,
             ending,
         }
@@ -349,8 +414,17 @@ pub(crate) struct Reached {
     /// Residuals there; `None` if the model failed at the first point.
     pub at: Option<Valued>,
     pub steps: Vec<f64>,
+    /// What is known of its neighbours.
+    pub beside: Option<Beside>,
     pub iterations: usize,
     pub ending: Ending,
+}
+
+/// Residuals at the neighbours of a point, two for each free parameter.
+#[derive(Clone, Debug)]
+pub(crate) struct Beside {
+    pub steps: Vec<f64>,
+    pub found: Vec<Result<Residuals, ModelError>>,
 }
 
 impl Reached {
@@ -360,6 +434,11 @@ impl Reached {
 }
 
 impl Trials {
+    /// The largest damping.
+    fn most(&self) -> f64 {
+        self.dampings.last().copied().unwrap_or(LARGEST_DAMPING)
+    }
+
     /// Components of the scaled gradient along the right singular vectors.
     fn along(&self) -> Vec<f64> {
         let gradient: Vec<f64> = (self.loose.iter().zip(&self.scales))

@@ -1,13 +1,13 @@
 //! A whole fit: from starts to the optimum and what is known there.
 
-use super::descent::{Descent, Ending, Limits, Reached};
+use super::descent::{Descent, Ending, Limits, NOTICED, Reached};
 use super::drive::drive;
 use super::jacobian::{Jacobian, jacobian};
 use super::merit::Merit;
 use super::starts::starts;
 use super::{FitError, Loss};
 use crate::linear::norm;
-use crate::{Parameter, Prior, Problem};
+use crate::{ModelError, Parameter, Prior, Problem, Residuals};
 
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,13 +156,20 @@ pub fn fit(problem: &dyn Problem, how: &Fitting) -> Result<Fit, FitError> {
     let merit = Merit::new(problem, how.loss);
     let all: Vec<usize> = (0..problem.parameters().len()).collect();
     let starts = starts(problem.parameters(), how.starts, how.seed);
-    let descents = (starts.iter())
-        .map(|start| Descent::new(merit.clone(), start.clone(), all.clone(), how.limits()))
-        .collect();
-    let driven = drive(problem, descents);
+    let descent =
+        |start: &Vec<f64>| Descent::new(merit.clone(), start.clone(), all.clone(), how.limits());
+    let mut descents: Vec<Descent<'_>> = starts.iter().map(descent).collect();
+    descents[0] = descent(&starts[0]).wary();
+    let mut driven = drive(problem, descents);
+    // What changes nothing where it starts may do so elsewhere.
+    if changes_only_elsewhere(problem, &driven.reached[0])? {
+        let again = drive(problem, vec![descent(&starts[0])]);
+        driven.evaluations += again.evaluations;
+        driven.reached.splice(..1, again.reached);
+    }
     let best = (driven.reached.iter()).min_by(|a, b| a.cost().total_cmp(&b.cost()));
     let best = best.ok_or(FitError::NothingFree)?;
-    started(best)?;
+    started(problem, best)?;
     let mut fit = at_optimum(&merit, best)?;
     fit.evaluations += driven.evaluations;
     fit.starts = (starts.into_iter().zip(&driven.reached))
@@ -171,6 +178,42 @@ pub fn fit(problem: &dyn Problem, how: &Fitting) -> Result<Fit, FitError> {
     Ok(fit)
 }
 
+/// Whether a descent ended at its start for a parameter without effect there that has
+/// one at other values; an error if it has none anywhere.
+fn changes_only_elsewhere(problem: &dyn Problem, reached: &Reached) -> Result<bool, FitError> {
+    let Ending::ChangesNothing(k) = reached.ending else {
+        return Ok(false);
+    };
+    if reached.iterations > 0 {
+        return Ok(false);
+    }
+    let parameter = &problem.parameters()[k];
+    let start = &reached.point;
+    let elsewhere = |factor: &f64| {
+        let mut point = start.clone();
+        point[k] = (start[k] + factor * parameter.scale).clamp(parameter.lower, parameter.upper);
+        point
+    };
+    let points: Vec<Vec<f64>> = ELSEWHERE.iter().map(elsewhere).collect();
+    let here = reached.at.as_ref().map_or(&[][..], |at| &at.rows);
+    let differs = |found: &Result<Residuals, ModelError>| {
+        found.as_ref().is_ok_and(|found| {
+            let pairs = found.standardised.iter().zip(here);
+            let squares = pairs
+                .map(|(there, here)| (there - here).powi(2))
+                .sum::<f64>();
+            squares.sqrt() >= NOTICED
+        })
+    };
+    match problem.residuals(&points).iter().any(differs) {
+        true => Ok(true),
+        false => Err(nothing(problem, k, start)),
+    }
+}
+
+/// How far from a start, in units of the scale, a parameter is tried.
+const ELSEWHERE: [f64; 6] = [1.0, -1.0, 30.0, -30.0, 1e3, -1e3];
+
 /// The fit at a point where nothing is left to be done, without descending.
 fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
     let problem = merit.problem;
@@ -178,11 +221,15 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
         return Err(FitError::NothingFree);
     };
     let here = (best.point.as_slice(), at);
-    let (jacobian, slopes) =
-        jacobian(merit, here, &best.steps).map_err(|source| FitError::BesideOptimum {
-            point: best.point.clone(),
-            source,
-        })?;
+    let (steps, known) = match &best.beside {
+        Some(beside) => (&beside.steps, &beside.found[..]),
+        None => (&best.steps, &[][..]),
+    };
+    let derived = jacobian(merit, here, steps, known);
+    let (jacobian, slopes) = derived.map_err(|source| FitError::BesideOptimum {
+        point: best.point.clone(),
+        source,
+    })?;
     changes_something(problem.parameters(), &best.point, &jacobian)?;
     let gradient = merit.linear(at, &slopes).gradient;
     Ok(Fit {
@@ -191,7 +238,7 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
         residuals: at.rows[..problem.residual_count()].to_vec(),
         ln_sigmas: at.ln_sigmas.iter().sum(),
         binding: binding(problem.parameters(), &best.point, &gradient),
-        evaluations: 4 * best.point.len(),
+        evaluations: 4 * best.point.len() - known.len(),
         jacobian,
         ending: best.ending.clone(),
         starts: Vec::new(),
@@ -199,10 +246,18 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
     })
 }
 
-fn started(reached: &Reached) -> Result<(), FitError> {
+fn started(problem: &dyn Problem, reached: &Reached) -> Result<(), FitError> {
     match (&reached.at, &reached.ending) {
         (None, Ending::ModelFails(error)) => Err(FitError::Start(error.clone())),
+        (_, Ending::ChangesNothing(k)) => Err(nothing(problem, *k, &reached.point)),
         _ => Ok(()),
+    }
+}
+
+fn nothing(problem: &dyn Problem, parameter: usize, point: &[f64]) -> FitError {
+    FitError::ChangesNothing {
+        name: problem.parameters()[parameter].name.clone(),
+        value: point[parameter],
     }
 }
 

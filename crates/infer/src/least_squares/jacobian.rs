@@ -3,7 +3,7 @@
 use super::merit::{Merit, Valued};
 use super::slopes::{Slopes, Stencil, slopes};
 use crate::linear::norm;
-use crate::{ModelError, Problem};
+use crate::{ModelError, Problem, Residuals};
 
 /// Relative error of derivatives by rounding: the least singular value, of unit
 /// columns, that double precision resolves.
@@ -40,11 +40,13 @@ impl Jacobian {
     }
 }
 
-/// Derivatives by steps and by doubled steps, in one call of the model.
+/// Derivatives by steps and by doubled steps, in one call of the model; `known` are the
+/// residuals at the nearer neighbours, where these have been computed.
 pub(crate) fn jacobian(
     merit: &Merit<'_>,
     (point, at): (&[f64], &Valued),
     steps: &[f64],
+    known: &[Result<Residuals, ModelError>],
 ) -> Result<(Jacobian, Slopes), ModelError> {
     let problem: &dyn Problem = merit.problem;
     let stencils = |factor: f64| -> Vec<Stencil> {
@@ -56,7 +58,8 @@ pub(crate) fn jacobian(
     let points: Vec<Vec<f64>> = (near.iter().chain(&far))
         .flat_map(|stencil| stencil.points(point))
         .collect();
-    let found = problem.residuals(&points);
+    let mut found = known.to_vec();
+    found.extend(problem.residuals(&points[known.len()..]));
     if found.len() != points.len() {
         return Err(ModelError(
             "the model returned fewer results than points".into(),

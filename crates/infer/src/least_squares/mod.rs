@@ -19,6 +19,6 @@ pub use loss::Loss;
 pub(crate) use descent::Descent;
 pub(crate) use drive::drive;
 pub(crate) use fit::check;
-pub(crate) use jacobian::{EXTRAPOLATED, ROUNDING};
+pub(crate) use jacobian::{EXTRAPOLATED, ROUNDING, jacobian};
 pub(crate) use merit::Merit;
 pub(crate) use slopes::Slopes;

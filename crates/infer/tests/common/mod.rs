@@ -8,6 +8,7 @@
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Model, Observable, Predicted, Speeds,
+    widening,
 };
 use hertzchain_signal::Estimate;
 use hertzchain_study::{Plan, Solver, shoot};
@@ -62,12 +63,16 @@ impl Noise {
 }
 
 /// A curve at the experiment's own numbers, a hundred times as accurate as a
-/// fit's, with its slopes d ln y/d ln v from shots 1 % slower and faster.
+/// surrogate's and a thousand times as a fit's, with its slopes d ln y/d ln v from shots 1 % slower and faster.
 pub struct Truth {
     pub speeds_m_s: Vec<f64>,
     pub curve: Vec<Predicted>,
     slopes: Vec<[f64; 4]>,
 }
+
+/// Relative accuracy of a true curve: a hundred times that of the curves, right to
+/// 1e-6, between which a fit's surrogate interpolates.
+pub const TRUTH: f64 = 1e-8;
 
 /// Relative distance of the shots that tell slopes.
 const ASIDE: f64 = 0.01;
@@ -79,7 +84,7 @@ impl Truth {
 
     /// A model's curve at a point.
     pub fn at(model: &Model, point: &[f64], speeds_m_s: &[f64]) -> Self {
-        let exact = model.clone().with_accuracy(1e-7);
+        let exact = model.clone().with_accuracy(TRUTH);
         let at = |factor: f64| {
             let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
             exact
@@ -110,6 +115,50 @@ impl Truth {
             let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
             (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
         }
+    }
+
+    /// The largest relative error of a true curve, found by shots of other steps.
+    pub fn accuracy_reached(experiment: &Experiment, speeds_m_s: &[f64]) -> f64 {
+        let exact = model(experiment, &[]).with_accuracy(TRUTH);
+        let speeds = Speeds::of_rows(speeds_m_s);
+        exact.accuracy_reached(&[], &speeds).unwrap()
+    }
+
+    /// A repetition whose standard errors come from the scatter of its own twenty
+    /// shots, widened for that or not.
+    pub fn measured_by_shots(&self, seed: u64, widened: bool) -> Data {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let mut mean_of = |scatter: f64| -> Estimate {
+            let shots: Vec<f64> = (0..SHOTS as usize)
+                .map(|_| {
+                    let normal: f64 = StandardNormal.sample(&mut generator);
+                    scatter * normal
+                })
+                .collect();
+            let mean = shots.iter().sum::<f64>() / SHOTS;
+            let squares: f64 = shots.iter().map(|shot| (shot - mean).powi(2)).sum();
+            let sigma = (squares / (SHOTS - 1.0) / SHOTS).sqrt();
+            let factor = widening(SHOTS as u32).unwrap();
+            Estimate {
+                value: mean,
+                sigma: if widened { factor * sigma } else { sigma },
+            }
+        };
+        let mut data = self.measured(seed);
+        for (at, row) in data.rows.iter_mut().enumerate() {
+            let speed = mean_of(SPEED_M_S);
+            row.speed_m_s.sigma = speed.sigma;
+            for of in [Observable::Incident, Observable::Reflected] {
+                let exact = self.curve[at][of as usize].unwrap();
+                let moved = self.slopes[at][of as usize] * speed.value / row.speed_m_s.value;
+                let time = mean_of(TIME_S);
+                row.values[of as usize] = Some(Estimate {
+                    value: exact * moved.exp() + time.value,
+                    sigma: time.sigma,
+                });
+            }
+        }
+        data
     }
 
     /// A repetition of the measurement at the paper's noise.

@@ -28,6 +28,8 @@ class Parameter(Tabled):
         At the best fit.
     standard_error : float or None
         By the covariance; None where the data do not determine it.
+    determined : bool
+        Whether the data determine it; if not, its value is one of many that fit as well.
     at_bound : bool
         Whether the best fit lies at the end of what it may be.
     start, lower, upper, scale : float or None
@@ -44,6 +46,7 @@ class Parameter(Tabled):
     unit: str
     value: float
     standard_error: float | None
+    determined: bool
     at_bound: bool
     start: float
     lower: float | None
@@ -53,7 +56,7 @@ class Parameter(Tabled):
 
     def _columns(self) -> dict[str, list[Any]]:
         numbers = ("value", "standard_error", "start", "lower", "upper", "scale")
-        return {"name": [self.name], "unit": [self.unit], **{of: [number(getattr(self, of))] for of in numbers}, "at_bound": [self.at_bound]}
+        return {"name": [self.name], "unit": [self.unit], **{of: [number(getattr(self, of))] for of in numbers}, "determined": [self.determined], "at_bound": [self.at_bound]}
 
     def _units(self) -> dict[str, str]:
         return dict.fromkeys(("value", "standard_error", "start", "lower", "upper", "scale"), self.unit)
@@ -162,6 +165,8 @@ class Fitted:
         rows = {name: str(parameter) for name, parameter in self.parameters.items()}
         if (goodness := self.chi_square) is not None:
             rows["chi-square"] = f"{short(goodness['value'], 4)} with {goodness['freedom']} degrees of freedom"
+        if (assumed := self.details.get("assumed")) is not None:
+            rows["assumed"] = assumed
         for confused in self.details["not_determined"]:
             rows["not determined"] = confused["words"]
         if not self.converged:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal
 
@@ -12,6 +13,7 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from ._posing import Data, Method, What, modelled, recordings, table, words
+from .errors import ExperimentWarning
 from .inferred import Designed, Fitted, Gauged, Parameter
 
 __all__ = ["Data", "design", "fit", "gauge"]
@@ -34,6 +36,7 @@ def fit(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     robust: bool = False,
     starts: int = 1,
@@ -70,7 +73,10 @@ def fit(
     against : mapping of str to str, optional
         Other models of the same data: presets or files, and what is free in them.
     speed_error, tof_error, ratio_error : float, optional
-        Standard errors in m/s, s and 1 where the table has none.
+        Standard errors in m/s, s and 1 where the table has none; ``speed_error=0`` says that
+        speeds are exact.
+    error_shots : int, optional
+        Shots a row from whose scatter the standard errors come: widens them for that.
     use : iterable of {"incident", "reflected", "wall-ratio", "returning-ratio"}
         Which observables of a table are fitted.
     accuracy : float
@@ -90,6 +96,11 @@ def fit(
     progress : bool, bar or function, optional
         True draws tqdm's bar; a bar's ``update``, or a function, is told how many curves of
         the model were tried since the last time (of recordings: signals of single shots).
+
+    Warns
+    -----
+    ExperimentWarning
+        Speeds without errors, which are taken as exactly known.
 
     Returns
     -------
@@ -115,7 +126,7 @@ def fit(
     rivals = {model: given if isinstance(given, str) else ",".join(given) for model, given in (against or {}).items()}
     told = words(
         case=case, use=use, method=method, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed,
-        speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, robust=robust,
+        speed_error=speed_error, tof_error=tof_error, ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, robust=robust,
         starts=starts, steps=steps, direct=direct, seed=seed, threads=threads,
     )  # fmt: skip
     told += options.listed("free", free)
@@ -132,6 +143,8 @@ def fit(
 
 def fitted(found: dict[str, Any]) -> Fitted:
     """A fit from what the library tells of it."""
+    if (assumed := found.get("assumed")) is not None:
+        warnings.warn(assumed, ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     columns = {key: [row[key] for row in rows] for key in (rows[0] if rows else {})}
     return Fitted(
@@ -165,6 +178,7 @@ def design(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,
@@ -174,7 +188,7 @@ def design(
     Parameters
     ----------
     data, model, free, case, use, start, bounds, prior, scale, fixed, speed_error, tof_error, \
-ratio_error, accuracy, threads, progress
+ratio_error, error_shots, accuracy, threads, progress
         As for `fit` of a table: numbers in SI.
     target : str or iterable of str, optional
         Parameters to tighten, as the fit names them; all when absent.
@@ -209,7 +223,7 @@ ratio_error, accuracy, threads, progress
     listed = speeds if isinstance(speeds, str) or speeds is None else ",".join(map(options.text, speeds))
     told = words(
         case=case, use=use, start=start, bounds=bounds, prior=prior, scale=scale, fixed=fixed, speed_error=speed_error,
-        tof_error=tof_error, ratio_error=ratio_error, accuracy=accuracy, threads=threads,
+        tof_error=tof_error, ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, threads=threads,
     )  # fmt: skip
     told += [*options.listed("free", free), *options.listed("target", target), *options.words(speeds=listed, picks=picks)]
     told += options.listed("preloads", [options.text(force) for force in preloads] or ["none"])
@@ -235,6 +249,7 @@ def gauge(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
+    error_shots: int | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,
@@ -257,7 +272,7 @@ def gauge(
         whole curve, which incident times tell if speeds are known well.
     oils : path, optional
         Table (CSV) of further oils.
-    wet_case, dry_case, use, speed_error, tof_error, ratio_error, accuracy, threads, progress
+    wet_case, dry_case, use, speed_error, tof_error, ratio_error, error_shots, accuracy, threads, progress
         As for `fit`; cases of each table of its own.
 
     Returns
@@ -282,7 +297,7 @@ def gauge(
     told = [
         *options.words(
             wet_case=wet_case, dry_case=dry_case, speed_error=speed_error, tof_error=tof_error,
-            ratio_error=ratio_error, accuracy=accuracy, form=form, threads=threads,
+            ratio_error=ratio_error, error_shots=error_shots, accuracy=accuracy, form=form, threads=threads,
         ),
         *options.listed("use", use), *options.listed("dry-free", dry_free),
         *options.listed("own", own),

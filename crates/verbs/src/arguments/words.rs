@@ -49,12 +49,14 @@ impl Words {
             speed_error,
             tof_error,
             ratio_error,
+            error_shots,
         } = measured;
         self.maybe("case", case.as_ref())
             .listed("use", observables.iter().map(name))
             .maybe("speed-error", *speed_error)
             .maybe("tof-error", *tof_error)
             .maybe("ratio-error", *ratio_error)
+            .maybe("error-shots", *error_shots)
     }
 
     fn modelled(self, modelled: &Modelled) -> Self {

@@ -39,6 +39,8 @@ pub fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
         arguments.measured.ratio_error.is_some(),
         why,
     )?;
+    let shots = arguments.measured.error_shots;
+    refuse("--error-shots", shots.is_some(), why)?;
     of_any(arguments)
 }
 

@@ -7,7 +7,7 @@ mod results;
 mod rivals;
 mod tables;
 
-pub use more::{CHAIN, More, Sampled, saved};
+pub use more::{CHAIN, Curves, More, Sampled, saved};
 pub use results::{inferred, joined, json, rows_json};
 pub use rivals::{Lost, Rival, Rivals};
 pub use tables::{Table, of_any as tables_of_any, tables};
@@ -16,7 +16,7 @@ use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{user, wanted};
 use hertzchain_infer::{
-    Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
+    Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
 };
 
@@ -52,8 +52,23 @@ pub struct Fitted {
     pub curve: FittedCurve,
     /// Largest relative error of the model's times of flight there.
     pub accuracy: f64,
+    /// What would settle what the data leave open, if they leave anything open.
+    pub advice: Option<Advice>,
     /// Other models of the same data.
     pub rivals: Option<Rivals>,
+}
+
+impl Inferred {
+    /// Standard error of a parameter by the covariance; infinite where the data leave
+    /// the parameter open, however finite a linear analysis may be.
+    #[must_use]
+    pub fn standard_error(&self, at: usize) -> f64 {
+        let sd = self.covariance.sd[at];
+        match self.identifiability.leaves_open(at, sd) {
+            true => f64::INFINITY,
+            false => sd,
+        }
+    }
 }
 
 /// The best fit, as asked.
@@ -99,7 +114,12 @@ pub fn fitted_elsewhere(
     heeded::of_table(arguments)?;
     let fit = best(computed, arguments)?;
     let covariance = Covariance::new(computed.parameters(), &fit);
-    let more = more::more_of(computed, (&fit, &covariance), None, arguments)?;
+    let more = more::more_of(
+        computed,
+        (&fit, &covariance),
+        Curves::Computed(None),
+        arguments,
+    )?;
     told(problem, (fit, covariance, more), arguments)
 }
 
@@ -111,13 +131,16 @@ fn told(
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
+    let identifiability = Identifiability::new(problem.parameters(), &fit, label);
+    let open = !identifiability.confused.is_empty();
     Ok(Fitted {
+        advice: open.then(|| problem.would_separate(&fit)),
         rivals: rivals::rivals(&problem, &fit, arguments)?,
         curve: problem.fitted_curve(&fit, &covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
         inferred: Inferred {
             parameters: problem.parameters().to_vec(),
-            identifiability: Identifiability::new(problem.parameters(), &fit, label),
+            identifiability,
             goodness: Goodness::new(problem.parameters(), &fit),
             more,
             covariance,

@@ -31,9 +31,17 @@ pub struct Sampled {
     pub chain: Chain,
     /// Its posterior, if it has converged.
     pub posterior: Result<Posterior, Unconverged>,
-    /// Largest error of interpolated curves in standard errors; `None` where
-    /// every curve was computed.
-    pub surrogate_error: Option<f64>,
+    /// Whether curves were interpolated.
+    pub curves: Curves,
+}
+
+/// Where a posterior's curves come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curves {
+    /// From others around the best fit, right to so many standard errors.
+    Interpolated(f64),
+    /// Every one was computed, for this reason if interpolation was wanted.
+    Computed(Option<String>),
 }
 
 /// As the method asks, by interpolated curves where that is as good.
@@ -43,25 +51,32 @@ pub fn more(
     covariance: &Covariance,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
-    let surrogate = match (arguments.method, arguments.direct) {
-        (Method::Posterior, false) => Surrogate::new(problem, fit, covariance).ok(),
-        _ => None,
-    };
-    match surrogate.filter(|surrogate| surrogate.error <= SURROGATE_ERROR) {
-        None => more_of(problem, (fit, covariance), None, arguments),
-        Some(found) => more_of(&found, (fit, covariance), Some(found.error), arguments),
+    let found = (fit, covariance);
+    if arguments.method != Method::Posterior || arguments.direct {
+        return more_of(problem, found, Curves::Computed(None), arguments);
     }
+    let why = match Surrogate::new(problem, fit, covariance) {
+        Ok(surrogate) if surrogate.error <= SURROGATE_ERROR => {
+            let curves = Curves::Interpolated(surrogate.error);
+            return more_of(&surrogate, found, curves, arguments);
+        }
+        Ok(surrogate) => format!(
+            "interpolated ones would be off by {:.2} standard errors",
+            surrogate.error
+        ),
+        Err(error) => error.to_string(),
+    };
+    more_of(problem, found, Curves::Computed(Some(why)), arguments)
 }
 
-/// As the method asks, of any problem; `surrogate_error` tells how far its model
-/// is from the computed one.
+/// As the method asks, of any problem; `curves` tells where its curves come from.
 ///
 /// # Errors
 /// What is in the way.
 pub fn more_of(
     problem: &dyn Problem,
     (fit, covariance): (&Fit, &Covariance),
-    surrogate_error: Option<f64>,
+    curves: Curves,
     arguments: &Arguments,
 ) -> Result<More, Failure> {
     match arguments.method {
@@ -85,7 +100,7 @@ pub fn more_of(
             Ok(More::Sampled(Box::new(Sampled {
                 chain,
                 posterior,
-                surrogate_error,
+                curves,
             })))
         }
     }

@@ -1,6 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{Inferred, best, heeded, inferred, joined, more};
+use super::{Curves, Inferred, best, heeded, inferred, joined, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
@@ -173,7 +173,12 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
         parameters: parameters.to_vec(),
         identifiability: Identifiability::new(parameters, &fit, label),
         goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
-        more: more::more_of(&problem, (&fit, &covariance), None, arguments)?,
+        more: more::more_of(
+            &problem,
+            (&fit, &covariance),
+            Curves::Computed(None),
+            arguments,
+        )?,
         covariance,
         fit,
     };

@@ -1,30 +1,44 @@
 //! A fit as JSON, in SI.
 
-use super::more::More;
+use super::more::{Curves, More};
 use super::rivals::{Rival, Rivals};
 use super::{Fitted, Inferred};
 use crate::arguments::infer::Fit as Arguments;
-use hertzchain_infer::{Comparison, End, Observable, Parameter, Prior, Profile};
+use crate::inference::assumed;
+use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
 #[must_use]
 pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
     let data = fitted.problem.data();
-    let confused = !fitted.inferred.identifiability.confused.is_empty();
     let own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
         "model": fitted.problem.model().experiment().name(),
         "model_accuracy": fitted.accuracy,
+        "assumed": assumed(data, &arguments.measured),
         "instruction_set": fitted.problem.model().set.name(),
         "fingerprint": fitted.problem.fingerprint().to_string(),
-        "would_separate": match confused {
-            true => fitted.problem.would_separate(),
-            false => Vec::new(),
-        },
+        "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
+        "prospects": fitted.advice.as_ref().map(prospects),
         "comparison": fitted.rivals.as_ref().map(comparison),
     });
     joined(own, inferred(&fitted.inferred, arguments))
+}
+
+/// What further data would determine.
+fn prospects(advice: &Advice) -> Value {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let one = |prospect: &Prospect| {
+        json!({
+            "measure": prospect.measure,
+            "determined": prospect.determined,
+            "worst_relative_standard_error": finite(prospect.worst),
+            "standard_errors": prospect.sd.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+        })
+    };
+    let all = std::iter::once(&advice.now).chain(&advice.prospects);
+    all.chain(&advice.together).map(one).collect()
 }
 
 /// The entries of two objects in one.
@@ -83,7 +97,8 @@ fn parameters(fitted: &Inferred) -> Value {
             "name": parameter.name,
             "unit": parameter.unit,
             "value": fitted.fit.point[at],
-            "standard_error": finite(fitted.covariance.sd[at]),
+            "standard_error": finite(fitted.standard_error(at)),
+            "determined": fitted.standard_error(at).is_finite(),
             "at_bound": fitted.fit.is_bound(at),
             "start": parameter.start,
             "lower": finite(parameter.lower),
@@ -142,11 +157,16 @@ fn posterior(fitted: &Inferred) -> Value {
     let More::Sampled(sampled) = &fitted.more else {
         return Value::Null;
     };
+    let (error, why) = match &sampled.curves {
+        Curves::Interpolated(error) => (Some(error), None),
+        Curves::Computed(why) => (None, why.as_ref()),
+    };
     let mut all = json!({
         "walkers": sampled.chain.walkers(),
         "steps": sampled.chain.steps(),
         "acceptance": sampled.chain.acceptance(),
-        "surrogate_error": sampled.surrogate_error,
+        "surrogate_error": error,
+        "no_surrogate": why,
     });
     match &sampled.posterior {
         Err(unconverged) => all["unconverged"] = json!(unconverged.to_string()),

@@ -82,13 +82,15 @@ fn summary(fitted: &Inferred) -> String {
 }
 
 fn parameters(fitted: &Inferred) -> String {
-    let titles = "name,unit,value,standard_error,at_bound,start,lower,upper,scale";
-    let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 9] {
+    let titles = "name,unit,value,standard_error,determined,at_bound,start,lower,upper,scale";
+    let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 10] {
+        let sd = fitted.standard_error(at);
         [
             parameter.name.clone().into(),
             parameter.unit.clone().into(),
             fitted.fit.point[at].into(),
-            fitted.covariance.sd[at].into(),
+            sd.into(),
+            sd.is_finite().into(),
             fitted.fit.is_bound(at).into(),
             parameter.start.into(),
             parameter.lower.into(),

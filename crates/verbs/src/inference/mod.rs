@@ -94,10 +94,43 @@ pub fn parsed(
             speed_m_s: measured.speed_error,
             time_s: measured.tof_error,
             ratio: measured.ratio_error,
+            shots: measured.error_shots,
         },
     };
     Data::parse(name, text, &selection).map_err(user)
 }
+
+/// What is assumed of data that do not say all: for a warning.
+#[must_use]
+pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
+    let lines = data.lines_of_exact_speeds();
+    let which = match lines.len() {
+        0 => return None,
+        _ if measured.speed_error == Some(0.0) => return None,
+        all if all == data.rows.len() => "all lines".to_owned(),
+        1 => format!("line {}", lines[0]),
+        _ => format!("lines {}", listed(&lines)),
+    };
+    Some(format!(
+        "{}, {which}: speeds without an error, or with one of 0, are taken as exactly known; standard \
+         errors are too small if they are not. Add a column `speed_error_m_s` or --speed-error \
+         (--speed-error 0 says that they are exact)",
+        data.file
+    ))
+}
+
+/// Numbers with commas, the first dozen of them.
+fn listed(lines: &[u64]) -> String {
+    let shown = lines.iter().take(LISTED).map(u64::to_string);
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    match lines.len().saturating_sub(LISTED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+/// Lines that a warning names.
+const LISTED: usize = 12;
 
 fn of(what: What) -> Observable {
     match what {

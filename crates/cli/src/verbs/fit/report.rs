@@ -3,8 +3,10 @@
 use crate::format::{self, digits};
 use crate::print::heading;
 use crate::words::{chi_square_text, doubt, estimate, percent};
-use hertzchain_infer::{Comparison, End, Goodness, Observable, Parameter, Problem, Profile};
-use hertzchain_verbs::fit::{Fitted, Inferred, More, Rivals, Sampled};
+use hertzchain_infer::{
+    Advice, Comparison, End, Goodness, Observable, Parameter, Problem, Profile,
+};
+use hertzchain_verbs::fit::{Curves, Fitted, Inferred, More, Rivals, Sampled};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -27,7 +29,10 @@ pub fn text(fitted: &Fitted) -> String {
     );
     text += &described(&fitted.inferred, &fitted.problem);
     text += &accuracy(fitted);
-    text += &determined(&fitted.inferred, &|| fitted.problem.would_separate());
+    let advice = fitted.advice.as_ref();
+    text += &determined(&fitted.inferred, &|| {
+        advice.map_or(Vec::new(), Advice::words)
+    });
     text += &more(&fitted.inferred);
     text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
     text + &beware(&fitted.inferred)
@@ -68,7 +73,7 @@ pub fn beware(fitted: &Inferred) -> String {
 pub fn values(fitted: &Inferred) -> String {
     let parameters = fitted.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
-        let (value, sd) = (fitted.fit.point[at], fitted.covariance.sd[at]);
+        let (value, sd) = (fitted.fit.point[at], fitted.standard_error(at));
         (parameter.name.clone(), estimate(parameter, value, sd))
     };
     format::pairs(&parameters.map(row).collect::<Vec<_>>())
@@ -194,11 +199,12 @@ fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
 
 fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
     let chain = &sampled.chain;
-    let how = match sampled.surrogate_error {
-        None => "every curve computed".to_owned(),
-        Some(error) => format!(
+    let how = match &sampled.curves {
+        Curves::Computed(None) => "every curve computed".to_owned(),
+        Curves::Computed(Some(why)) => format!("every curve computed, as {why}"),
+        Curves::Interpolated(error) => format!(
             "curves interpolated, right to {} standard errors",
-            digits(error, 2)
+            digits(*error, 2)
         ),
     };
     let mut text = format!(

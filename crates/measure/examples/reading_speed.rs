@@ -1,5 +1,5 @@
 //! How fast recordings become times of flight: `cargo run --release -p hertzchain-measure
-//! --example throughput [MEGABYTES] [THREADS]`.
+//! --example reading_speed [MEGABYTES] [THREADS]`.
 //!
 //! Writes one recording of 16-bit samples at 1 MS/s, 100,000 a shot as those of a
 //! campaign, without compression as NPY, WAV and HDF5, and measures each from the file to
