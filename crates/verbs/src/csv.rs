@@ -1,10 +1,11 @@
 //! Tables as text (CSV), as every result file has them.
 
 use crate::table::cell;
+use csv::{Writer, WriterBuilder};
 
 /// A table under way: a line of titles, then lines of as many cells.
-#[derive(Clone, Debug)]
-pub struct Csv(String);
+#[derive(Debug)]
+pub struct Csv(Writer<Vec<u8>>);
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,15 +56,11 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 }
 
 impl Cell {
-    fn text(&self) -> String {
+    fn text(self) -> String {
         match self {
-            Self::Empty => String::new(),
-            Self::Number(number) if !number.is_finite() => String::new(),
-            Self::Number(number) => cell(*number),
-            Self::Words(words) if words.contains([',', '"', '\n', '\r']) => {
-                format!("\"{}\"", words.replace('"', "\"\""))
-            }
-            Self::Words(words) => words.clone(),
+            Self::Number(number) if number.is_finite() => cell(number),
+            Self::Words(words) => words,
+            Self::Number(_) | Self::Empty => String::new(),
         }
     }
 }
@@ -72,15 +69,17 @@ impl Csv {
     /// A table with these titles.
     #[must_use]
     pub fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
-        Self(String::new()).with(titles)
+        // Lines of any length, so that writing to memory has no way to fail.
+        let writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
+        Self(writer).with(titles)
     }
 
     /// The same with a line more.
     #[must_use]
     pub fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
         let cells = cells.into_iter().map(|cell| cell.into().text());
-        self.0 += &cells.collect::<Vec<_>>().join(",");
-        self.0.push('\n');
+        let written = self.0.write_record(cells);
+        debug_assert!(written.is_ok(), "{written:?}");
         self
     }
 
@@ -98,7 +97,9 @@ impl Csv {
     /// As text.
     #[must_use]
     pub fn text(self) -> String {
-        self.0
+        // Memory takes all there is, and cells are text: neither of both can fail.
+        let bytes = self.0.into_inner().unwrap_or_default();
+        String::from_utf8(bytes).unwrap_or_default()
     }
 }
 
