@@ -88,8 +88,8 @@ const RATES_CALLED: &[&str] = &[
 impl Header {
     /// Reads the lines before the first row, and what stands beside the first rows.
     pub fn of(beginning: &str, dialect: &Dialect) -> Self {
-        let (names, units) = titles(beginning, dialect);
         let rows = sampled(beginning, dialect);
+        let (names, units) = titles(beginning, dialect, rising(&rows, 0) == Some(1.0));
         let title = |column: usize| names.get(column).map_or("", String::as_str);
         let unit = |column: usize| {
             let own = bracketed(title(column)).or_else(|| units.get(column).cloned());
@@ -161,12 +161,26 @@ fn rising(rows: &[Vec<f64>], column: usize) -> Option<f64> {
     (values.len() > 2 && step > 0.0 && values.iter().enumerate().all(even)).then_some(step)
 }
 
+/// A line without the mark of a comment before it. Where the first column counts, a
+/// mark that stands for itself may be its title.
+fn unmarked<'a>(line: &'a str, dialect: &Dialect, counts: bool) -> &'a str {
+    let Some(rest) = line.trim_start().strip_prefix(['#', '%']) else {
+        return line;
+    };
+    let alone = rest.trim_start_matches(' ').starts_with(dialect.delimiter);
+    let spaced = dialect.delimiter == ' ' && rest.starts_with(' ');
+    match alone || (counts && spaced) {
+        true => line,
+        false => rest.trim_start_matches(['#', '%', ' ']),
+    }
+}
+
 /// Names and units: the last lines before the numbers that have as many fields.
-fn titles(beginning: &str, dialect: &Dialect) -> (Vec<String>, Vec<String>) {
+fn titles(beginning: &str, dialect: &Dialect, counts: bool) -> (Vec<String>, Vec<String>) {
     let wide = dialect.columns.last().map_or(0, |last| last + 1);
     let lines = beginning.lines().take(dialect.first_row);
     let split = |line: &str| -> Vec<String> {
-        let fields = fields(line, dialect.delimiter);
+        let fields = fields(unmarked(line, dialect, counts), dialect.delimiter);
         fields.into_iter().map(|field| field.into_owned()).collect()
     };
     let mut lines: Vec<Vec<String>> = lines
@@ -301,6 +315,36 @@ mod tests {
         assert_eq!((strange.time, strange.channels), (Some((0, None)), vec![1]));
         let counted = header("0,5.5\n1,7.5\n2,1.5\n3,3.5\n");
         assert_eq!((counted.time, counted.channels), (None, vec![1]));
+    }
+
+    #[test]
+    fn the_mark_of_a_comment_is_no_title() {
+        for text in [
+            "# t v\n0.5 1\n1 2\n1.5 4\n",
+            "# t,v\n0.5,1\n1,2\n1.5,4\n",
+            "#t;v\n0.5;1\n1;2\n1.5;4\n",
+            "% recorded\n% t v\n0.5 1\n1 2\n1.5 4\n",
+        ] {
+            let found = header(text);
+            assert_eq!(found.time.map(|time| time.0), Some(0), "{text}");
+            assert_eq!(
+                (found.names, found.channels),
+                (vec!["v".to_owned()], vec![1])
+            );
+        }
+        // A line of words is none of titles; times are told by their even steps.
+        let worded = header("# recorded\n0.5 1\n1 2\n1.5 4\n");
+        assert_eq!(worded.time, Some((0, None)));
+        let channels = header("# summed other\n0.5 1\n0.1 2\n1.5 4\n");
+        assert_eq!(channels.names, ["summed", "other"]);
+        // But a mark over numbers from 1 on is one.
+        for text in ["# a\n1 0.5\n2 0.1\n3 0.9\n", "#,a\n1,0.5\n2,0.1\n3,0.9\n"] {
+            let counted = header(text);
+            assert_eq!(
+                (counted.names, counted.channels),
+                (vec!["a".to_owned()], vec![1])
+            );
+        }
     }
 
     #[test]
