@@ -51,7 +51,11 @@ impl Shot {
         };
         let measured = hertzchain_signal::measure(channels, record.interval_s, &measuring);
         let (flight, doubts) = match measured {
-            Ok(Measured { found, flight }) => (flight, found.doubts),
+            Ok(Measured { found, flight }) => {
+                let relative = record.interval_error_s / record.interval_s;
+                let widened = flight.map(|flight| flight.with_interval_error(relative));
+                (widened, found.doubts)
+            }
             Err(error) => (Err(error), Vec::new()),
         };
         Self {

@@ -107,7 +107,7 @@ pub struct Picked {
 pub struct Moved {
     /// How far in s what lies under the pulse in a summed channel may have moved it, with its sign.
     pub under_s: f64,
-    /// What the samples leave open of the pulse's shape, in s.
+    /// What the samples leave open of the pulse's shape, in s; and of the interval between them.
     pub shape_s: f64,
 }
 
