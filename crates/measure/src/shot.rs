@@ -97,12 +97,11 @@ impl Shot {
     }
 
     /// Whether its times may be of something else than the wave: a clipped
-    /// pulse, or pulses that may have been taken for one another or be of
-    /// several shots.
+    /// pulse, or pulses of which one may be lost or that may have been taken for one another
+    /// or be of several shots.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
-        let grave = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_) | Doubt::Order);
-        self.holds_several || self.doubts.iter().any(grave)
+        self.holds_several || self.doubts.iter().any(Doubt::is_grave)
     }
 
     /// What is doubtful, as it is told to people.
