@@ -5,7 +5,7 @@ use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
 use hertzchain_infer::gauge::{Chains, known_oils, oils};
-use hertzchain_infer::{CurveProblem, Data, Problem};
+use hertzchain_infer::{CurveProblem, Data};
 use hertzchain_verbs::arguments::infer::{Design, Fit, Gauge, Measured};
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
