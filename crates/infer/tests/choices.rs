@@ -340,8 +340,10 @@ fn designs_say_what_would_determine_the_undetermined() {
     ));
 }
 
+type Product = Curve<fn(&[f64], f64) -> f64>;
+
 /// y = a b² x: nothing else than the product is ever measured.
-fn product() -> (Curve<fn(&[f64], f64) -> f64>, Fit) {
+fn product() -> (Product, Fit) {
     let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
     let model: fn(&[f64], f64) -> f64 = |p: &[f64], x: f64| p[0] * p[1] * p[1] * x;
     let data = Curve::drawn(free, &spaced(1.0, 2.0, 9), 1e-3, &[1.0, 1.0], 1, model);
