@@ -19,6 +19,8 @@ pub(super) fn chunks<const W: usize>(count: usize, lanes: usize) -> usize {
 pub(super) struct Column<N, const W: usize> {
     values: Aligned<N>,
     stride: usize,
+    /// All its numbers are 0.
+    pub is_zero: bool,
 }
 
 impl<N: Number<W>, const W: usize> Column<N, W> {
@@ -45,6 +47,7 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
         let equal = all.windows(2).all(|pair| pair[0] == pair[1]);
         Self {
             stride: usize::from(!equal),
+            is_zero: values.iter().all(|&value| value == N::default()),
             values,
         }
     }
