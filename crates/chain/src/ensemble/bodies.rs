@@ -177,10 +177,9 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
         x: chunks_of_mut(&mut motion.x, awake.clone()),
         v: chunks_of_mut(&mut motion.v, awake.clone()),
     };
-    match (motion.inverse_mass.uniform(), &motion.external) {
-        // That of bead 1 everywhere: the unit.
-        (Some(_), None) => bodies.step(simd, scaled, |_, net| net),
-        (None, None) => {
+    match (motion.inverse_mass.is_all(1.0), &motion.external) {
+        (true, None) => bodies.step(simd, scaled, |_, net| net),
+        (false, None) => {
             let mass = &motion.inverse_mass.reader().all()[awake];
             bodies.step(simd, scaled, |i, net| net * load(&mass[i]));
         }

@@ -150,7 +150,7 @@ fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
         touch.root.mul_add(rooted, plain)
     };
     // Loops of their own, so that what most steps need is all that they do.
-    let plain = place.offset_m.is_zero && !place.starting;
+    let plain = place.offset_m.is_all(0.0) && !place.starting;
     match (plain, place.fresh) {
         (true, true) => {
             for (i, force) in force.iter_mut().enumerate() {

@@ -134,8 +134,8 @@ fearless_simd::kernel!(
     #[inline(always)]
     fn double_roots(avx512: Avx512, d: [f64; 8], positive: u8) -> [f64; 8] {
         use std::arch::x86_64::{
-            _mm512_castpd_si512, _mm512_castsi512_pd, _mm512_mask_rsqrt14_pd,
-            _mm512_sub_epi64, _mm512_set1_epi64,
+            _mm512_castpd_si512, _mm512_castsi512_pd, _mm512_mask_rsqrt14_pd, _mm512_set1_epi64,
+            _mm512_sub_epi64,
         };
         let d: f64x8<Avx512> = d.simd_into(avx512);
         // Where d is 0 any seed will do: d times it is 0, and so is the root.
@@ -160,8 +160,8 @@ fearless_simd::kernel!(
     #[inline(always)]
     fn single_roots(avx512: Avx512, d: [f32; 16], positive: u16) -> [f32; 16] {
         use std::arch::x86_64::{
-            _mm512_castps_si512, _mm512_castsi512_ps, _mm512_mask_rsqrt14_ps,
-            _mm512_sub_epi32, _mm512_set1_epi32,
+            _mm512_castps_si512, _mm512_castsi512_ps, _mm512_mask_rsqrt14_ps, _mm512_set1_epi32,
+            _mm512_sub_epi32,
         };
         let d: f32x16<Avx512> = d.simd_into(avx512);
         let one = f32x16::splat(avx512, 1.0);
