@@ -133,42 +133,51 @@ fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     let first = chunks.start;
     let force = force[first * W..chunks.end * W].as_chunks_mut::<W>().0;
     let sides = Sides::new(place, first, force.len());
+    // Loops of their own, so that what most steps need is all that they do.
+    let plain = place.offset_m.is_all(0.0) && !place.starting;
+    match (plain, place.fresh) {
+        (true, true) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                sum::<T, S, N, W>(simd, &k(first + i), sides.plain_touch(simd, i))
+                    .store_array(force);
+            }
+        }
+        (_, true) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i)).store_array(force);
+            }
+        }
+        (_, false) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                let before = N::Wide::<S>::load_array_ref(simd, force);
+                let more = sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i));
+                (before + more).store_array(force);
+            }
+        }
+    }
+}
+
+/// Force of a chunk of contacts.
+#[inline(always)]
+fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
+    simd: S,
+    k: &[N::Wide<S>],
+    touch: Touch<N::Wide<S>>,
+) -> N::Wide<S> {
+    let contact = Closed {
+        overlap: touch.overlap,
+        root: touch.root,
+        rate: touch.rate,
+        largest: touch.overlap,
+    };
     // Minus 0 changes no sum and no sign: the compiler leaves it out.
     let none = N::Wide::<S>::simd_from(simd, N::of(-0.0));
     let nothing = Split {
         rooted: none,
         plain: none,
     };
-    let sum = |i: usize, touch: Touch<N::Wide<S>>| {
-        let contact = Closed {
-            overlap: touch.overlap,
-            root: touch.root,
-            rate: touch.rate,
-            largest: touch.overlap,
-        };
-        let Split { rooted, plain } = T::add_to(nothing, &k(first + i), contact);
-        touch.root.mul_add(rooted, plain)
-    };
-    // Loops of their own, so that what most steps need is all that they do.
-    let plain = place.offset_m.is_all(0.0) && !place.starting;
-    match (plain, place.fresh) {
-        (true, true) => {
-            for (i, force) in force.iter_mut().enumerate() {
-                sum(i, sides.plain_touch(simd, i)).store_array(force);
-            }
-        }
-        (_, true) => {
-            for (i, force) in force.iter_mut().enumerate() {
-                sum(i, sides.touch(simd, i)).store_array(force);
-            }
-        }
-        (_, false) => {
-            for (i, force) in force.iter_mut().enumerate() {
-                let before = N::Wide::<S>::load_array_ref(simd, force);
-                (before + sum(i, sides.touch(simd, i))).store_array(force);
-            }
-        }
-    }
+    let Split { rooted, plain } = T::add_to(nothing, k, contact);
+    touch.root.mul_add(rooted, plain)
 }
 
 impl<T: Sum, N: Number<W>, const W: usize> Sweep<N, W> for Fused<T, N, W> {
