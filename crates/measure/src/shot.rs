@@ -51,7 +51,11 @@ impl Shot {
         };
         let measured = hertzchain_signal::measure(channels, record.interval_s, &measuring);
         let (flight, doubts) = match measured {
-            Ok(Measured { found, flight }) => (flight, found.doubts),
+            Ok(Measured { found, flight }) => {
+                let relative = record.interval_error_s / record.interval_s;
+                let widened = flight.map(|flight| flight.with_interval_error(relative));
+                (widened, found.doubts)
+            }
             Err(error) => (Err(error), Vec::new()),
         };
         Self {
@@ -93,12 +97,11 @@ impl Shot {
     }
 
     /// Whether its times may be of something else than the wave: a clipped
-    /// pulse, or pulses that may have been taken for one another or be of
-    /// several shots.
+    /// pulse, or pulses of which one may be lost or that may have been taken for one another
+    /// or be of several shots.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
-        let grave = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_) | Doubt::Order);
-        self.holds_several || self.doubts.iter().any(grave)
+        self.holds_several || self.doubts.iter().any(Doubt::is_grave)
     }
 
     /// What is doubtful, as it is told to people.

@@ -26,7 +26,7 @@ mod table;
 mod tdms;
 mod wav;
 
-pub use beside::beside;
+pub use beside::{beside, remove_left_behind};
 pub use error::RecordError;
 pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};

@@ -13,6 +13,8 @@ pub struct Record {
     pub shot: Option<u64>,
     /// Time between samples in s.
     pub interval_s: f64,
+    /// Standard error of that, if its file tells it by times of few digits.
+    pub interval_error_s: f64,
     /// The channels, all of the same length: one that sums both sensors, or two.
     pub channels: Vec<Channel>,
     /// Speed that the striker was told, in m/s, if the file says.
@@ -49,6 +51,7 @@ impl Record {
             file: file.to_owned(),
             shot: None,
             interval_s,
+            interval_error_s: 0.0,
             channels,
             programmed_speed_m_s: None,
             speed_m_s: None,

@@ -7,3 +7,4 @@ mod formats;
 mod long_rows;
 mod series;
 mod tdms;
+mod times;

@@ -42,6 +42,17 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
     }
 }
 
+/// What one of the last digit of a number is worth: 1e-5 of 0.00012, 1e-9 of 1.5e-8.
+pub(super) fn last_digit(text: &str, decimal_comma: bool) -> f64 {
+    let sign = if decimal_comma { ',' } else { '.' };
+    let (digits, power) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let behind = digits
+        .split_once(sign)
+        .map_or(0, |(_, behind)| behind.len());
+    let power: i32 = power.parse().unwrap_or(0);
+    10.0_f64.powi(power.saturating_sub(i32::try_from(behind).unwrap_or(i32::MAX)))
+}
+
 /// A number at the beginning of a text and what follows: "1.5 MS/s".
 pub(super) fn leading_number(text: &str, decimal_comma: bool) -> Option<(f64, &str)> {
     let text = text.trim_start_matches([' ', ':', '=', '"', ';', ',', '\t']);
@@ -75,6 +86,20 @@ mod tests {
         assert_eq!(number("1,5", false), None);
         assert!(number("NaN", false).unwrap().is_nan());
         assert_eq!(number("Volt", false), None);
+    }
+
+    #[test]
+    fn a_last_digit_is_worth_what_its_place_says() {
+        for (text, comma, expected) in [
+            ("0.00012", false, 1e-5),
+            ("-1,5E-03", true, 1e-4),
+            ("17", false, 1.0),
+            ("2e-6", false, 1e-6),
+        ] {
+            let worth = last_digit(text, comma);
+            // Rounding of a power of ten.
+            assert!((worth / expected - 1.0).abs() < 1e-12, "{text}: {worth}");
+        }
     }
 
     #[test]

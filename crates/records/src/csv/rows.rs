@@ -1,13 +1,14 @@
 //! Rows into records, line by line.
 
 use super::dialect::{Dialect, text};
-use super::field::{fields, number};
-use super::times;
-use crate::channels;
+use super::field::{fields, last_digit, number};
+use super::times::{self, Printed, Returns};
+use crate::channels::{self, Interval};
 use crate::cut::{MOST_SAMPLES, from_sample};
 use crate::error::{RecordError, name};
 use crate::options::{Parts, ReadOptions};
 use crate::record::{Channel, Record, Samples};
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -22,8 +23,10 @@ pub(super) struct Plan {
     pub columns: Vec<usize>,
     /// Column of times and their unit in s.
     pub time: Option<(usize, f64)>,
+    /// In s between samples, that a line beside the numbers states.
+    pub stated_s: Option<f64>,
     /// Between samples; of the last segment where times are written.
-    pub interval_s: f64,
+    pub interval: Interval,
     /// Lines that, seen again, separate segments.
     pub separators: Vec<String>,
     pub options: ReadOptions,
@@ -44,6 +47,8 @@ pub(super) struct Rows {
     shots: u64,
     /// Samples of the segment under way that were given before.
     passed: usize,
+    /// Of times that the given rate makes irrelevant.
+    returns: Returns,
     block: Block,
     ready: VecDeque<Result<Record, RecordError>>,
 }
@@ -51,13 +56,13 @@ pub(super) struct Rows {
 /// Rows since the last separator.
 #[derive(Default)]
 struct Block {
-    times_s: Vec<f64>,
+    times: Vec<Printed>,
     columns: Vec<Vec<f64>>,
 }
 
 /// What a line is.
 enum Line {
-    Row(Vec<f64>),
+    Row(Option<Printed>, Vec<f64>),
     Separator,
     Bad(String),
     End,
@@ -80,6 +85,7 @@ impl Rows {
             lost: false,
             shots: 0,
             passed: 0,
+            returns: Returns::default(),
             block: Block::default(),
             ready: VecDeque::new(),
         })
@@ -102,11 +108,14 @@ impl Rows {
         let dialect = &self.plan.dialect;
         let fields = fields(line, dialect.delimiter);
         let value = |column: &usize| number(fields.get(*column)?, dialect.decimal_comma);
-        let time = self.plan.time.map(|time| time.0);
-        let values: Option<Vec<f64>> = time.iter().chain(&self.plan.columns).map(value).collect();
         let blank = fields.iter().all(|field| field.is_empty());
-        match values {
-            Some(values) => Line::Row(values),
+        let time = match self.plan.time {
+            Some((column, unit_s)) => self.time(fields.get(column), unit_s).map(Some),
+            None => Some(None),
+        };
+        let values = self.plan.columns.iter().map(value);
+        match time.zip(values.collect()) {
+            Some((time, values)) => Line::Row(time, values),
             None if blank || self.plan.separators.iter().any(|known| known == line) => {
                 Line::Separator
             }
@@ -121,11 +130,27 @@ impl Rows {
         }
     }
 
+    /// A time and its last digit; where the rate is told and trusted it may be anything.
+    fn time(&self, field: Option<&Cow<'_, str>>, unit_s: f64) -> Option<Printed> {
+        let comma = self.plan.dialect.decimal_comma;
+        let read = field.and_then(|field| Some((number(field, comma)?, last_digit(field, comma))));
+        let nothing = || {
+            self.plan
+                .options
+                .rate_is_trusted()
+                .then_some((f64::NAN, 0.0))
+        };
+        read.or_else(nothing).map(|(time, last)| Printed {
+            s: time * unit_s,
+            unit_s: last * unit_s,
+        })
+    }
+
     /// Reads on until something is ready or the file is at its end.
     fn advance(&mut self) {
         match self.line() {
-            Line::Row(_) if self.lost => {}
-            Line::Row(values) => self.row(&values),
+            Line::Row(..) if self.lost => {}
+            Line::Row(time, values) => self.row(time, &values),
             Line::Separator => {
                 self.close(true);
                 self.lost = false;
@@ -145,16 +170,16 @@ impl Rows {
         }
     }
 
-    fn row(&mut self, values: &[f64]) {
-        let mut values = values;
-        if let Some((_, unit_s)) = self.plan.time {
-            let (time, rest) = values.split_first().unwrap_or((&f64::NAN, &[]));
-            let time_s = time * unit_s;
-            if self.block.times_s.last().is_some_and(|last| time_s < *last) {
+    fn row(&mut self, time: Option<Printed>, values: &[f64]) {
+        if let Some(time) = time {
+            let begins = match self.plan.options.rate_is_trusted() {
+                true => self.returns.begins(time.s),
+                false => self.block.times.last().is_some_and(|last| time.s < last.s),
+            };
+            if begins {
                 self.close(true);
             }
-            self.block.times_s.push(time_s);
-            values = rest;
+            self.block.times.push(time);
         }
         self.block.columns.resize_with(values.len(), Vec::new);
         for (column, value) in self.block.columns.iter_mut().zip(values) {
@@ -179,8 +204,8 @@ impl Rows {
         let whole = 0..block.len();
         let segments = match self.plan.time {
             _ if block.len() == 0 => Vec::new(),
-            Some(_) => times::segments(&block.times_s),
-            None => std::iter::once(whole).collect(),
+            Some(_) if !self.plan.options.rate_is_trusted() => times::segments(&block.times),
+            _ => std::iter::once(whole).collect(),
         };
         for (number, range) in segments.into_iter().enumerate() {
             if number > 0 || self.passed == 0 {
@@ -205,10 +230,8 @@ impl Rows {
             shot => format!("{}, segment {shot}", name(&self.file)),
         };
         let source = from_sample(segment, self.passed as u64);
-        let interval_s = match block.times_s.get(range.clone()) {
-            Some(times) if self.plan.time.is_some() => self.interval_s(&source, times)?,
-            _ => self.plan.interval_s,
-        };
+        let times = block.times.get(range.clone()).unwrap_or_default();
+        let interval = self.interval(&source, times)?;
         let channels = self.plan.names.iter().zip(&block.columns);
         let channel = |(name, column): (&String, &Vec<f64>)| Channel {
             name: name.clone(),
@@ -217,26 +240,38 @@ impl Rows {
         Ok(Record {
             shot: Some(self.shots),
             first_sample: self.passed as u64,
-            notes: self.plan.notes.clone(),
+            interval_error_s: interval.error_s,
+            notes: self
+                .plan
+                .notes
+                .iter()
+                .cloned()
+                .chain(interval.note)
+                .collect(),
             ..Record::new(
                 source,
                 &self.file,
-                interval_s,
+                interval.s,
                 channels.map(channel).collect(),
             )
         })
     }
 
     /// A piece that goes on is as the piece before it.
-    fn interval_s(&mut self, source: &str, times_s: &[f64]) -> Result<f64, RecordError> {
-        if self.passed == 0 {
-            let stated_s = times::interval_s(source, times_s)?;
-            self.plan.interval_s =
-                channels::interval_s(&self.file, Some(stated_s), &self.plan.options)?;
-        } else if times_s.len() > 1 {
-            times::interval_s(source, times_s)?;
+    fn interval(&mut self, source: &str, times: &[Printed]) -> Result<Interval, RecordError> {
+        let options = &self.plan.options;
+        let given = options.rate_hz.filter(|_| options.trust_rate);
+        if let Some(rate_hz) = given {
+            return Ok(Interval::of(rate_hz.recip()));
         }
-        Ok(self.plan.interval_s)
+        if self.plan.time.is_some() && self.passed == 0 {
+            let told = times::interval(source, times)?;
+            self.plan.interval =
+                channels::from_times(&self.file, &told, self.plan.stated_s, options)?;
+        } else if times.len() > 1 {
+            times::interval(source, times)?;
+        }
+        Ok(self.plan.interval.clone())
     }
 }
 
