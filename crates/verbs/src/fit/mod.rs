@@ -1,12 +1,14 @@
 //! `fit`: times of flight to parameters.
 
 mod heeded;
+mod limits;
 mod more;
 pub mod pulses;
 mod results;
 mod rivals;
 mod tables;
 
+pub use limits::{Limit, Limits};
 pub use more::{CHAIN, Curves, More, Sampled, saved};
 pub use results::{inferred, joined, json, rows_json};
 pub use rivals::{Lost, Rival, Rivals};
@@ -40,6 +42,8 @@ pub struct Inferred {
     pub identifiability: Identifiability,
     /// Uncertainty beyond the covariance.
     pub more: More,
+    /// Of parameters at bounds.
+    pub limits: Limits,
 }
 
 /// Everything about a fit of a curve.
@@ -68,6 +72,13 @@ impl Inferred {
             true => f64::INFINITY,
             false => sd,
         }
+    }
+
+    /// How far from its bound a parameter may be, if it lies there.
+    #[must_use]
+    pub fn limit(&self, at: usize) -> Option<&Limit> {
+        let limits = self.limits.as_ref().ok()?;
+        limits.iter().find(|limit| limit.parameter == at)
     }
 }
 
@@ -132,7 +143,8 @@ fn told(
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
     let identifiability = Identifiability::new(problem.parameters(), &fit, label);
-    let open = !identifiability.confused.is_empty();
+    let open = !identifiability.confused.is_empty() && fit.ending.converged();
+    let limits = limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?;
     Ok(Fitted {
         advice: open.then(|| problem.would_separate(&fit)),
         rivals: rivals::rivals(&problem, &fit, arguments)?,
@@ -143,6 +155,7 @@ fn told(
             identifiability,
             goodness: Goodness::new(problem.parameters(), &fit),
             more,
+            limits,
             covariance,
             fit,
         },
