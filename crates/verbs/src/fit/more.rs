@@ -56,7 +56,7 @@ pub fn more(
         return more_of(problem, found, Curves::Computed(None), arguments);
     }
     let why = match Surrogate::new(problem, fit, covariance) {
-        Ok(surrogate) if surrogate.error <= SURROGATE_ERROR => {
+        Ok(surrogate) if surrogate.error <= Surrogate::ALLOWED => {
             let curves = Curves::Interpolated(surrogate.error);
             return more_of(&surrogate, found, curves, arguments);
         }
@@ -105,9 +105,6 @@ pub fn more_of(
         }
     }
 }
-
-/// Interpolated curves may be off by so many standard errors.
-const SURROGATE_ERROR: f64 = 0.1;
 
 /// A new chain, or the one that lies in the output folder.
 fn started(
