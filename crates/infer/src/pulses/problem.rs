@@ -6,7 +6,7 @@ use crate::curve::{Model, Shooting, Speeds};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
 use hertzchain_chain::Sensor;
-use hertzchain_study::{Shot, count_done, shoot};
+use hertzchain_study::{Fingerprint, Inputs, Shot, count_done, shoot};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
@@ -137,6 +137,30 @@ impl PulseProblem {
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Of everything that residuals follow from: the experiment as it is understood,
+    /// amplifier among it, its free numbers, the records, accuracy and instruction set, this
+    /// build of the program; not where the records lie.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        let model = &self.model;
+        let all = Inputs::of("pulse problem")
+            .text("experiment", &model.experiment().understood())
+            .text("free", &format!("{:?}", model.numbers()))
+            .text("parameters", &format!("{:?}", self.parameters))
+            .text("set", model.set.name())
+            .numbers("accuracy", &[model.accuracy]);
+        self.records.iter().fold(all, |all, record| {
+            let speed = record.speed_m_s;
+            let speeds = [speed.value, speed.sigma, record.programmed_m_s];
+            let times = [record.interval_s, record.start_s, record.passing_s];
+            let all = all.numbers("speeds", &speeds).numbers("times", &times);
+            let all = all.count("width", record.width as u64);
+            let all = all.numbers("noise", &record.sigma_v);
+            let channels = record.means_v.iter();
+            channels.fold(all, |all, means_v| all.numbers("means", means_v))
+        })
     }
 
     /// Numbers fitted to single records: offsets, moments and errors of speeds.

@@ -2,12 +2,14 @@
 
 mod heeded;
 mod more;
+mod partial;
 pub mod pulses;
 mod results;
 mod rivals;
 mod tables;
 
-pub use more::{CHAIN, Curves, More, Sampled, saved};
+pub use more::{CHAIN, Curves, More, Sampled, leave, saved};
+pub use partial::{PARTIAL, begun, finished};
 pub use results::{inferred, joined, json, rows_json};
 pub use rivals::{Lost, Rival, Rivals};
 pub use tables::{Table, of_any as tables_of_any, tables};
@@ -15,6 +17,7 @@ pub use tables::{Table, of_any as tables_of_any, tables};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{user, wanted};
+use partial::Remembered;
 use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
@@ -94,9 +97,11 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 /// What is in the way of a fit.
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
-    let fit = best(&problem, arguments)?;
+    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
-    let more = more::more(&problem, &fit, &covariance, arguments)?;
+    let more = more::more((&problem, &kept), (&fit, &covariance), arguments)?;
+    kept.sound()?;
     told(problem, (fit, covariance, more), arguments)
 }
 
@@ -112,14 +117,16 @@ pub fn fitted_elsewhere(
     arguments: &Arguments,
 ) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
-    let fit = best(computed, arguments)?;
+    let kept = Remembered::new(computed, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(
-        computed,
+        (computed, &kept),
         (&fit, &covariance),
         Curves::Computed(None),
         arguments,
     )?;
+    kept.sound()?;
     told(problem, (fit, covariance, more), arguments)
 }
 

@@ -1,5 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
+use super::partial::Remembered;
 use super::{Curves, Inferred, best, heeded, inferred, joined, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
@@ -165,7 +166,8 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
     let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
     let problem = inference::pulses(problem, &arguments.freed)?;
-    let fit = best(&problem, arguments)?;
+    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);
@@ -174,7 +176,7 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
         identifiability: Identifiability::new(parameters, &fit, label),
         goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
         more: more::more_of(
-            &problem,
+            (&problem, &kept),
             (&fit, &covariance),
             Curves::Computed(None),
             arguments,
@@ -182,6 +184,7 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
         covariance,
         fit,
     };
+    kept.sound()?;
     Ok(Pulsed {
         problem,
         inferred: found,
