@@ -235,7 +235,9 @@ fn a_fit_and_its_profiles_that_are_killed_go_on_to_the_bits_of_one_that_was_not(
     let fit = |out: &str, more: &[&str]| {
         let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
         program
-            .args(["fit", &data, "-p", "dry", "--free", "eta,B", "--starts", "3"])
+            .args([
+                "fit", &data, "-p", "dry", "--free", "eta,B", "--starts", "3",
+            ])
             .args(["--method", "profile", "--accuracy", "1e-7", "--seed", "5"])
             .args(ERRORS)
             .arg("--out")

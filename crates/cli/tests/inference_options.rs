@@ -134,7 +134,10 @@ fn options_that_would_say_nothing_are_refused_at_once() {
             "a robust loss is none",
         ),
         (&["--rate", "1MHz"], "--rate is for recordings"),
-        (&["--resume", "--out", &nowhere], "holds nothing of one: leave it out"),
+        (
+            &["--resume", "--out", &nowhere],
+            "holds nothing of one: leave it out",
+        ),
     ] {
         let message = refused(&with_errors(&[&fit[..], options].concat()));
         assert!(message.contains(words), "{options:?}: {message}");

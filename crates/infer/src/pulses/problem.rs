@@ -151,7 +151,7 @@ impl PulseProblem {
             .text("parameters", &format!("{:?}", self.parameters))
             .text("set", model.set.name())
             .numbers("accuracy", &[model.accuracy]);
-        self.records.iter().fold(all, |all, record| {
+        let record = |all: Inputs, record: &Pulses| {
             let speed = record.speed_m_s;
             let speeds = [speed.value, speed.sigma, record.programmed_m_s];
             let times = [record.interval_s, record.start_s, record.passing_s];
@@ -160,7 +160,8 @@ impl PulseProblem {
             let all = all.numbers("noise", &record.sigma_v);
             let channels = record.means_v.iter();
             channels.fold(all, |all, means_v| all.numbers("means", means_v))
-        })
+        };
+        self.records.iter().fold(all, record).fingerprint()
     }
 
     /// Numbers fitted to single records: offsets, moments and errors of speeds.

@@ -17,11 +17,11 @@ pub use tables::{Table, of_any as tables_of_any, tables};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{user, wanted};
-use partial::Remembered;
 use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
 };
+use partial::Remembered;
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
 const OUTLIER: f64 = 1.345;

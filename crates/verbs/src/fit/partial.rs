@@ -254,7 +254,10 @@ impl Problem for Remembered<'_> {
         };
         let lock = || kept.lock().unwrap_or_else(PoisonError::into_inner);
         let recalled = lock().recalled(points);
-        let wanted = points.iter().zip(&recalled).filter(|(_, own)| own.is_none());
+        let wanted = points
+            .iter()
+            .zip(&recalled)
+            .filter(|(_, own)| own.is_none());
         let wanted: Vec<Vec<f64>> = wanted.map(|(point, _)| point.clone()).collect();
         count_done(points.len() - wanted.len());
         let computed = self.problem.residuals(&wanted);
@@ -326,8 +329,7 @@ mod tests {
         let of = |bytes: &[u8]| Fingerprint::of_bytes(bytes);
         let square = Square::new();
         let first = {
-            let kept =
-                Remembered::new(&square, || of(b"square"), &arguments(&out, false)).unwrap();
+            let kept = Remembered::new(&square, || of(b"square"), &arguments(&out, false)).unwrap();
             let found = kept.residuals(&points);
             // What a second's delay, or a wish to stop, does.
             kept.kept.as_ref().unwrap().lock().unwrap().save();

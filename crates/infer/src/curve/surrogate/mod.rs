@@ -28,6 +28,13 @@ const REACH: f64 = 6.0;
 /// multiplies their errors.
 const FINER: f64 = 0.1;
 
+/// Error at which no better polynomial is looked for, in standard errors: half of what is
+/// allowed, as trials are few in so much room.
+const AIM: f64 = 0.5 * Surrogate::ALLOWED;
+
+/// Of so many speeds one may be computed.
+const ROUGH_ONE_IN: usize = 4;
+
 /// Why there is no surrogate; the model itself still does.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -55,6 +62,8 @@ pub enum SurrogateError {
 pub struct Surrogate {
     problem: CurveProblem,
     form: Form,
+    /// Numbers of the speeds whose predictions are computed.
+    rough: Vec<usize>,
     /// Largest difference of any residual from the model's own, in standard
     /// errors, at points spread over what is covered.
     pub error: f64,
@@ -118,18 +127,22 @@ impl Surrogate {
         let finer = finer(problem);
         let grid = Grid::within(reach, &finer, fit, covariance)?;
         let trials = grid.trials();
-        let form = Form::Grid(grid);
-        let exact = finer.all_curves(&trials);
-        let error = worst(&finer, &form, &trials, exact)?;
-        Ok(Self {
+        let mut surrogate = Self {
             problem: finer,
-            form,
-            error,
-        })
+            form: Form::Grid(grid),
+            rough: Vec::new(),
+            error: f64::INFINITY,
+        };
+        let exact = surrogate.problem.all_curves(&trials).into_iter();
+        let exact: Result<Vec<_>, _> = exact.collect();
+        let exact = exact.map_err(SurrogateError::ModelFails)?;
+        surrogate.error = surrogate.worst(trials.iter().zip(&exact))?;
+        Ok(surrogate)
     }
 
     /// Around a fit, as many standard errors in every direction of the covariance, by
-    /// polynomials of rising degree until one is right.
+    /// polynomials of rising degree until one is right. Speeds at which none is, where the model
+    /// jumps, are computed, if they are few.
     ///
     /// # Errors
     /// See [`SurrogateError`].
@@ -139,26 +152,45 @@ impl Surrogate {
         covariance: &Covariance,
     ) -> Result<Self, SurrogateError> {
         let finer = finer(problem);
+        let few = finer.all_speeds_m_s().len() / ROUGH_ONE_IN;
         let mut study = polynomial::Study::new(REACH, &finer, fit, covariance)?;
         let mut best: Option<Self> = None;
         while let Some(polynomial) = study.next(&finer)? {
-            let form = Form::Polynomial(polynomial);
-            let (trials, exact) = study.trials();
-            let error = worst(&finer, &form, trials, exact.to_vec())?;
-            if best.as_ref().is_none_or(|best| error < best.error) {
-                let problem = finer.clone();
-                best = Some(Self {
-                    problem,
-                    form,
-                    error,
-                });
+            let rough = study.rough(&finer, &polynomial, AIM);
+            let mut found = Self {
+                problem: finer.clone(),
+                form: Form::Polynomial(polynomial),
+                rough: if rough.len() > few { Vec::new() } else { rough },
+                error: f64::INFINITY,
+            };
+            found.error = found.worst(study.trials())?;
+            let idle = best.as_ref().is_some_and(|best| !found.beats(best));
+            let right = found.error <= AIM && found.rough.is_empty();
+            if !idle {
+                best = Some(found);
             }
-            // Half of what is allowed: trials are few in so much room.
-            if error <= 0.5 * Self::ALLOWED {
+            let good = best.as_ref().is_some_and(|best| best.error <= AIM);
+            if right || idle && good {
                 break;
             }
         }
         best.ok_or(SurrogateError::TooMany(fit.point.len()))
+    }
+
+    /// Whether it is right where another is not, or with fewer speeds computed.
+    fn beats(&self, other: &Self) -> bool {
+        let right = |one: &Self| one.error <= AIM;
+        match right(self) && right(other) {
+            true => self.rough.len() < other.rough.len(),
+            false => self.error < other.error,
+        }
+    }
+
+    /// Speeds in m/s whose times are computed at every point, as the model jumps there.
+    #[must_use]
+    pub fn computed_speeds_m_s(&self) -> Vec<f64> {
+        let speeds = self.problem.all_speeds_m_s();
+        self.rough.iter().map(|at| speeds[*at]).collect()
     }
 
     /// The same curves against other measured values at the same speeds.
@@ -195,26 +227,48 @@ fn side(
     Ok((0.5 * (lower + upper), 0.5 * (upper - lower)))
 }
 
-/// Largest difference of residuals from the model's own.
-fn worst(
-    problem: &CurveProblem,
-    form: &Form,
-    points: &[Vec<f64>],
-    exact: Vec<Result<Vec<Predicted>, ModelError>>,
-) -> Result<f64, SurrogateError> {
-    let residuals = |curve: &[Predicted]| {
-        let found = problem.residuals_of(curve);
-        found.map_err(SurrogateError::ModelFails)
-    };
-    let mut worst: f64 = 0.0;
-    for (point, exact) in points.iter().zip(exact) {
-        let exact = residuals(&exact.map_err(SurrogateError::ModelFails)?)?;
-        let own = form.curve(point).ok_or(SurrogateError::NoRoom)?;
-        let own = residuals(&own)?;
-        let pairs = own.standardised.iter().zip(&exact.standardised);
-        worst = pairs.map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
+impl Surrogate {
+    /// Largest difference of residuals from the model's own at points with its curves.
+    fn worst<'a>(
+        &self,
+        trials: impl Iterator<Item = (&'a Vec<f64>, &'a Vec<Predicted>)>,
+    ) -> Result<f64, SurrogateError> {
+        let residuals = |curve: &[Predicted]| {
+            let found = self.problem.residuals_of(curve);
+            found.map_err(SurrogateError::ModelFails)
+        };
+        let mut worst: f64 = 0.0;
+        for (point, exact) in trials {
+            let mut own = self.form.curve(point).ok_or(SurrogateError::NoRoom)?;
+            self.rough.iter().for_each(|at| own[*at] = exact[*at]);
+            let (own, exact) = (residuals(&own)?, residuals(exact)?);
+            let pairs = own.standardised.iter().zip(&exact.standardised);
+            worst = pairs.map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
+        }
+        Ok(worst)
     }
-    Ok(worst)
+
+    /// Residuals of points that are covered, from their interpolated curves.
+    fn covered(
+        &self,
+        points: &[Vec<f64>],
+        mut curves: Vec<Vec<Predicted>>,
+    ) -> Vec<Result<Residuals, ModelError>> {
+        if self.rough.is_empty() {
+            count_done(points.len());
+            let of = |curve: &Vec<Predicted>| self.problem.residuals_of(curve);
+            return curves.par_iter().map(of).collect();
+        }
+        // Those that are computed count themselves.
+        let computed = self.problem.curves_at(points, &self.rough).into_iter();
+        let of = |(curve, computed): (&mut Vec<Predicted>, Result<Vec<Predicted>, _>)| {
+            for (at, predicted) in self.rough.iter().zip(computed?) {
+                curve[*at] = predicted;
+            }
+            self.problem.residuals_of(curve)
+        };
+        curves.iter_mut().zip(computed).map(of).collect()
+    }
 }
 
 impl Problem for Surrogate {
@@ -227,21 +281,26 @@ impl Problem for Surrogate {
     }
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
-        let inside = |point: &Vec<f64>| {
-            let curve = self.form.curve(point)?;
-            Some(self.problem.residuals_of(&curve))
+        let curves: Vec<Option<Vec<Predicted>>> = (points.par_iter())
+            .map(|point| self.form.curve(point))
+            .collect();
+        let chosen = |inside: bool| {
+            let pairs = points.iter().zip(&curves);
+            let own = pairs.filter(move |(_, curve)| curve.is_some() == inside);
+            own.map(|(point, _)| point.clone()).collect::<Vec<_>>()
         };
-        let inside: Vec<_> = points.par_iter().map(inside).collect();
-        // Side by side, as they are dear.
-        let beyond = points.iter().zip(&inside).filter(|(_, own)| own.is_none());
-        let beyond: Vec<Vec<f64>> = beyond.map(|(point, _)| point.clone()).collect();
-        // Those that are computed count themselves.
-        count_done(points.len() - beyond.len());
+        // Each kind side by side, as they are dear.
+        let (within, beyond) = (chosen(true), chosen(false));
+        let inside: Vec<bool> = curves.iter().map(Option::is_some).collect();
+        let curves = curves.into_iter().flatten().collect();
+        let mut covered = self.covered(&within, curves).into_iter();
         let mut computed = self.problem.residuals(&beyond).into_iter();
         let none = || Err(ModelError("no residuals were computed".into()));
-        let all = inside.into_iter();
-        all.map(|own| own.unwrap_or_else(|| computed.next().unwrap_or_else(none)))
-            .collect()
+        let all = inside.into_iter().map(|inside| match inside {
+            true => covered.next(),
+            false => computed.next(),
+        });
+        all.map(|found| found.unwrap_or_else(none)).collect()
     }
 
     fn residual_label(&self, index: usize) -> String {

@@ -5,8 +5,8 @@ use super::ball::Ball;
 use crate::chance::Chance;
 use crate::curve::{CurveProblem, Predicted};
 use crate::linear::least_squares;
-use crate::problem::ModelError;
 use crate::{Covariance, Fit};
+use rayon::prelude::*;
 
 /// Parameters that it bears: those of which a cubic has no more terms than are
 /// allowed.
@@ -59,7 +59,7 @@ pub(super) struct Study {
     points: Vec<Vec<f64>>,
     curves: Vec<Vec<Predicted>>,
     trials: Vec<Vec<f64>>,
-    exact: Vec<Result<Vec<Predicted>, ModelError>>,
+    exact: Vec<Vec<Predicted>>,
 }
 
 impl Study {
@@ -80,7 +80,7 @@ impl Study {
         let trial = |_| ball.draw(&mut chance, even);
         let trials: Vec<Vec<f64>> = (0..TRIALS).map(trial).collect::<Result<_, _>>()?;
         Ok(Self {
-            exact: problem.all_curves(&trials),
+            exact: computed(problem, &trials)?,
             ball,
             chance,
             degree: FIRST_DEGREE,
@@ -90,10 +90,30 @@ impl Study {
         })
     }
 
-    /// Where polynomials are tried, and the model there.
-    #[expect(clippy::type_complexity, reason = "two slices")]
-    pub(super) fn trials(&self) -> (&[Vec<f64>], &[Result<Vec<Predicted>, ModelError>]) {
-        (&self.trials, &self.exact)
+    /// Where polynomials are tried, with the model's curves there.
+    pub(super) fn trials(&self) -> impl Iterator<Item = (&Vec<f64>, &Vec<Predicted>)> {
+        self.trials.iter().zip(&self.exact)
+    }
+
+    /// Numbers of the speeds at which a polynomial differs by more than so many errors from any
+    /// curve, tried or fitted: there the model jumps, from one maximum of a split pulse to
+    /// another for instance.
+    pub(super) fn rough(
+        &self,
+        problem: &CurveProblem,
+        polynomial: &Polynomial,
+        most: f64,
+    ) -> Vec<usize> {
+        let fitted = self.points.iter().zip(&self.curves);
+        let all: Vec<_> = self.trials().chain(fitted).collect();
+        let differences = |(point, exact): &(&Vec<f64>, &Vec<Predicted>)| {
+            let own = polynomial.curve(point);
+            own.map(|own| problem.differences(&own, exact))
+        };
+        let found: Vec<Vec<f64>> = all.par_iter().filter_map(differences).collect();
+        let speeds = found.first().map_or(0, Vec::len);
+        let rough = |at: &usize| found.iter().any(|of| of[*at] > most);
+        (0..speeds).filter(rough).collect()
     }
 
     /// The polynomial of the next degree, if it has not too many terms.
@@ -118,13 +138,19 @@ impl Study {
         let inside = |u: f64| u.sqrt();
         let draw = |_| self.ball.draw(&mut self.chance, inside);
         let points: Vec<Vec<f64>> = more.map(draw).collect::<Result<_, _>>()?;
-        for curve in problem.all_curves(&points) {
-            let curve = curve.map_err(SurrogateError::ModelFails)?;
-            self.curves.push(curve);
-        }
+        self.curves.extend(computed(problem, &points)?);
         self.points.extend(points);
         Ok(())
     }
+}
+
+fn computed(
+    problem: &CurveProblem,
+    points: &[Vec<f64>],
+) -> Result<Vec<Vec<Predicted>>, SurrogateError> {
+    let curves = problem.all_curves(points).into_iter();
+    let all: Result<_, _> = curves.collect();
+    all.map_err(SurrogateError::ModelFails)
 }
 
 impl Polynomial {
