@@ -38,8 +38,9 @@ pub struct Sampled {
 /// Where a posterior's curves come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curves {
-    /// From others around the best fit, right to so many standard errors.
-    Interpolated(f64),
+    /// From others around the best fit, right to so many standard errors; but for these speeds
+    /// in m/s, where the model jumps.
+    Interpolated(f64, Vec<f64>),
     /// Every one was computed, for this reason if interpolation was wanted.
     Computed(Option<String>),
 }
@@ -55,8 +56,9 @@ pub fn more(
         return more_of((problem, kept), found, Curves::Computed(None), arguments);
     }
     let why = match Surrogate::new(problem, found.0, found.1) {
-        Ok(surrogate) if surrogate.error <= Surrogate::ALLOWED => {
-            let curves = Curves::Interpolated(surrogate.error);
+        Ok(surrogate) if surrogate.is_right() => {
+            let speeds_m_s = surrogate.computed_speeds_m_s();
+            let curves = Curves::Interpolated(surrogate.error, speeds_m_s);
             return more_of((&surrogate, kept), found, curves, arguments);
         }
         Ok(surrogate) => format!(

@@ -162,9 +162,10 @@ fn respond(numbers: &Numbers) -> Respond {
 /// # Errors
 /// What is in the way of a fit; where no record is left, why.
 pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
-    let refused = recorded.refused;
+    let mut refused = recorded.refused;
     let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
+    refused.extend(problem.left_out().iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
     let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
     let fit = best(&kept, arguments)?;

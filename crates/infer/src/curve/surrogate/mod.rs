@@ -29,7 +29,7 @@ const REACH: f64 = 6.0;
 const FINER: f64 = 0.1;
 
 /// Error at which no better polynomial is looked for, in standard errors: half of what is
-/// allowed, as trials are few in so much room.
+/// allowed.
 const AIM: f64 = 0.5 * Surrogate::ALLOWED;
 
 /// Of so many speeds one may be computed.
@@ -108,7 +108,7 @@ impl Surrogate {
         let few = fit.point.len() <= grid::MOST_PARAMETERS;
         let gridded = few.then(|| Self::within(REACH, problem, fit, covariance));
         match gridded {
-            Some(Ok(surrogate)) if surrogate.error <= Self::ALLOWED => Ok(surrogate),
+            Some(Ok(surrogate)) if surrogate.is_right() => Ok(surrogate),
             _ => Self::by_least_squares(problem, fit, covariance),
         }
     }
@@ -156,7 +156,7 @@ impl Surrogate {
         let mut study = polynomial::Study::new(REACH, &finer, fit, covariance)?;
         let mut best: Option<Self> = None;
         while let Some(polynomial) = study.next(&finer)? {
-            let rough = study.rough(&finer, &polynomial, AIM);
+            let rough = study.rough(&finer, &polynomial, Self::ALLOWED);
             let mut found = Self {
                 problem: finer.clone(),
                 form: Form::Polynomial(polynomial),
@@ -169,7 +169,7 @@ impl Surrogate {
             if !idle {
                 best = Some(found);
             }
-            let good = best.as_ref().is_some_and(|best| best.error <= AIM);
+            let good = best.as_ref().is_some_and(Self::is_right);
             if right || idle && good {
                 break;
             }
@@ -179,11 +179,16 @@ impl Surrogate {
 
     /// Whether it is right where another is not, or with fewer speeds computed.
     fn beats(&self, other: &Self) -> bool {
-        let right = |one: &Self| one.error <= AIM;
-        match right(self) && right(other) {
+        match self.is_right() && other.is_right() {
             true => self.rough.len() < other.rough.len(),
             false => self.error < other.error,
         }
+    }
+
+    /// Whether it may stand for the model.
+    #[must_use]
+    pub fn is_right(&self) -> bool {
+        self.error <= Self::ALLOWED
     }
 
     /// Speeds in m/s whose times are computed at every point, as the model jumps there.
