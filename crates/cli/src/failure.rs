@@ -2,12 +2,12 @@
 //! for ours.
 
 use hertzchain_experiment::Warning;
-use hertzchain_infer::Data;
-use hertzchain_verbs::arguments::infer::Measured;
+use hertzchain_infer::{Data, Model};
+use hertzchain_verbs::arguments::infer::{Assignment, Measured};
 use hertzchain_verbs::failure;
 pub use hertzchain_verbs::failure::{Failure, of_speed};
 use hertzchain_verbs::given::Given;
-use hertzchain_verbs::inference::assumed;
+use hertzchain_verbs::inference::{assumed, kept};
 use hertzchain_verbs::input::option;
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -35,6 +35,13 @@ pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
 pub fn print_assumed(data: &Data, measured: &Measured) {
     if let Some(assumed) = assumed(data, measured) {
         eprintln!("warning: {assumed}");
+    }
+}
+
+/// Numbers that are kept while their unit changes.
+pub fn print_kept(model: &Model, sets: &[Assignment]) {
+    for kept in kept(model, sets) {
+        eprintln!("warning: {kept}");
     }
 }
 

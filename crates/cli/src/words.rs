@@ -57,7 +57,7 @@ pub fn percent(share: f64) -> String {
 /// Why a fit ended where it did, if that is worth a warning.
 pub fn doubt(ending: &Ending) -> Option<String> {
     match ending {
-        Ending::Minimum | Ending::Floor { .. } => None,
+        Ending::Minimum | Ending::Floor { .. } | Ending::Open { .. } => None,
         Ending::Stuck { expected_fall } => Some(format!(
             "the fit is stuck where chi-square/2 should still fall by {expected_fall:.1e}: start elsewhere (--start, --starts)"
         )),

@@ -364,6 +364,21 @@ fn a_design_ranks_what_to_measure() {
     let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
     assert!(text.contains("Not determined so far"), "{text}");
     assert!(text.contains("free K and A instead"), "{text}");
+    // Nor is noise ranked: two combinations can be determined, and the third by nothing.
+    let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
+    let names = serde_json::json!(["combination 1", "combination 2"]);
+    assert_eq!(found["parameters"], names);
+    let told = found["hopeless"].to_string();
+    for words in [
+        "nu up 1.00 % with",
+        "So Y, nor nu, nor eta by itself can't be tightened",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // A start from where no minimum is found tells nothing.
+    let far = ["design", &data, "--free", "Y,eta,B", "--start", "B=1e5"];
+    let told = refused(&with_errors(&far));
+    assert!(told.contains("found no minimum"), "{told}");
 }
 
 const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";

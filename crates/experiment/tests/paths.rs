@@ -196,3 +196,31 @@ fn a_case_that_was_chosen_stays_when_numbers_are_set() {
     assert_eq!(laws(&slower), laws(&gear));
     assert_ne!(laws(&slower), laws(&paper.case("dry").unwrap().unwrap()));
 }
+
+#[test]
+fn the_number_of_a_stiffness_is_kept_in_the_unit_of_an_exponent_that_is_set_alone() {
+    let row = preset("exponent-section").unwrap();
+    let stiffness = "contacts[1].laws.elastic_power.stiffness";
+    let followers = row.followers("exponent").unwrap();
+    assert_eq!(followers.len(), 1);
+    assert_eq!(
+        (followers[0].path.as_str(), followers[0].unit.as_str()),
+        (stiffness, "N/m^2")
+    );
+    assert_eq!(row.followers(stiffness).unwrap(), []);
+    let set = row.set(&[("exponent", 1.9)]).unwrap();
+    let written = row.set_text(&[("exponent", "1.9")]).unwrap();
+    for changed in [&set, &written] {
+        assert_eq!(changed.get("exponent").unwrap(), 1.9);
+        let place = changed.place(stiffness).unwrap();
+        assert_eq!(
+            (place.value, place.unit.as_str()),
+            (Some(2.5e12), "N/m^1.9")
+        );
+    }
+    // Both at once: the text is checked against the exponent that is to be.
+    let both = [("exponent", "1.9"), (stiffness, "3e12 N/m^1.9")];
+    assert_eq!(row.set_text(&both).unwrap().get(stiffness).unwrap(), 3e12);
+    let wrong = [("exponent", "1.9"), (stiffness, "3e12 N/m^2")];
+    assert!(row.set_text(&wrong).is_err());
+}

@@ -102,10 +102,10 @@ pub(crate) fn sized(parameters: &[Parameter], point: &[f64]) -> Vec<Parameter> {
 }
 
 /// Component of a unit direction that moves a parameter.
-const MOVED: f64 = 1e-4;
+pub(crate) const MOVED: f64 = 1e-4;
 
 /// Whether a singular value leaves its combination open.
-fn is_weak(value: f64, floor: f64) -> bool {
+pub(crate) fn is_weak(value: f64, floor: f64) -> bool {
     value * UNDETERMINED <= 1.0 || value <= floor
 }
 
@@ -131,6 +131,11 @@ pub(crate) struct Determined {
 
 impl Scaled {
     pub(crate) fn of(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
+        Self::doubting(parameters, jacobian, EXTRAPOLATED)
+    }
+
+    /// The same, columns wrong by so large a share of the disagreement of both step sizes.
+    pub(crate) fn doubting(parameters: &[Parameter], jacobian: &Jacobian, share: f64) -> Self {
         let column = |(column, of): (&Vec<f64>, &Parameter)| -> Vec<f64> {
             let data = column.iter().take(jacobian.data_rows);
             data.map(|x| x * of.scale).collect()
@@ -138,9 +143,33 @@ impl Scaled {
         let pairs = jacobian.columns.iter().zip(parameters);
         let columns: Vec<Vec<f64>> = pairs.map(column).collect();
         let errors = (columns.iter().zip(&jacobian.disagreement))
-            .map(|(column, d)| norm(column) * (ROUNDING + EXTRAPOLATED * d))
+            .map(|(column, d)| norm(column) * (ROUNDING + share * d))
             .collect();
         Self { columns, errors }
+    }
+
+    /// With the priors' rows, too.
+    pub(crate) fn with_priors(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
+        let rows = jacobian.columns.first().map_or(0, Vec::len);
+        let whole = Jacobian {
+            data_rows: rows,
+            ..jacobian.clone()
+        };
+        Self::of(parameters, &whole)
+    }
+
+    /// Of rows in 1/(unit of θ), whose columns may be wrong by `doubts`; none if that is empty.
+    pub(crate) fn of_rows(parameters: &[Parameter], rows: &[Vec<f64>], doubts: &[f64]) -> Self {
+        let sizes = parameters.iter().map(|p| p.scale).enumerate();
+        let column = |(k, size): (usize, f64)| rows.iter().map(|row| row[k] * size).collect();
+        let columns: Vec<Vec<f64>> = sizes.clone().map(column).collect();
+        let doubt = |k: usize| doubts.get(k).copied().unwrap_or(0.0);
+        let errors = sizes.zip(&columns);
+        let errors = errors.map(|((k, size), column)| doubt(k) * size + ROUNDING * norm(column));
+        Self {
+            errors: errors.collect(),
+            columns,
+        }
     }
 
     /// Together with the rows of another.
@@ -154,7 +183,7 @@ impl Scaled {
     }
 
     /// Singular values, and up to where they cannot be told from 0.
-    fn taken_apart(&self) -> (Svd, f64) {
+    pub(crate) fn taken_apart(&self) -> (Svd, f64) {
         (svd(&self.columns), norm(&self.errors))
     }
 
@@ -189,11 +218,7 @@ fn confusion(
 ) -> Confusion {
     let in_units = direction.iter().zip(parameters).map(|(d, p)| d * p.scale);
     let in_units: Vec<f64> = in_units.collect();
-    let share = |k: usize| in_units[k] / whole(parameters, fit, k);
-    let largest = (0..in_units.len()).max_by(|i, j| share(*i).abs().total_cmp(&share(*j).abs()));
-    // One percent upward of the parameter that changes most.
-    let size = largest.map_or(0.0, |k| 0.01 / share(k));
-    let change: Vec<f64> = in_units.iter().map(|x| x * size).collect();
+    let change = of_one_percent(parameters, fit, &in_units);
     let mut effect = combine(&fit.jacobian.columns, &change);
     effect.truncate(fit.jacobian.data_rows);
     Confusion {
@@ -212,13 +237,28 @@ fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
     }
 }
 
-fn words(
-    parameters: &[Parameter],
-    fit: &Fit,
-    change: &[f64],
-    (effect, standard_error): (&[f64], f64),
-    label: &impl Fn(usize) -> String,
-) -> String {
+/// A direction, in units of sizes, as changes of parameters: the largest is one percent of
+/// its value.
+pub(crate) fn in_words(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> String {
+    let in_units: Vec<f64> = direction
+        .iter()
+        .zip(sized)
+        .map(|(d, p)| d * p.scale)
+        .collect();
+    changes(sized, fit, &of_one_percent(sized, fit, &in_units))
+}
+
+/// The same change of parameters in their units, so large that the largest is one percent
+/// upward of its value.
+fn of_one_percent(parameters: &[Parameter], fit: &Fit, change: &[f64]) -> Vec<f64> {
+    let share = |k: usize| change[k] / whole(parameters, fit, k);
+    let largest = (0..change.len()).max_by(|i, j| share(*i).abs().total_cmp(&share(*j).abs()));
+    let size = largest.map_or(0.0, |k| 0.01 / share(k));
+    change.iter().map(|x| x * size).collect()
+}
+
+/// Changes in percent, the largest first.
+fn changes(parameters: &[Parameter], fit: &Fit, change: &[f64]) -> String {
     let percent = |k: usize| 100.0 * change[k] / whole(parameters, fit, k);
     let mut order: Vec<usize> = (0..change.len()).collect();
     order.retain(|k| percent(*k).abs() >= NAMED);
@@ -227,7 +267,16 @@ fn words(
         let way = if change[*k] > 0.0 { "up" } else { "down" };
         format!("{} {way} {:.2} %", parameters[*k].name, percent(*k).abs())
     };
-    let parts: Vec<String> = order.iter().map(part).collect();
+    order.iter().map(part).collect::<Vec<_>>().join(" with ")
+}
+
+fn words(
+    parameters: &[Parameter],
+    fit: &Fit,
+    change: &[f64],
+    (effect, standard_error): (&[f64], f64),
+    label: &impl Fn(usize) -> String,
+) -> String {
     let numbered = effect.iter().copied().enumerate();
     let most = numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let (row, most) = most.unwrap_or((0, 0.0));
@@ -238,7 +287,7 @@ fn words(
     };
     format!(
         "{} changes no measured number by more than {:.1e} of its standard deviation ({}), {known}",
-        parts.join(" with "),
+        changes(parameters, fit, change),
         most.abs(),
         label(row)
     )

@@ -34,10 +34,10 @@ pub use curve::{
     WayError, ways,
 };
 pub use data::{
-    Data, DataError, DataRow, Defaults, FEWEST_SHOTS, Observable, Place, Selection, widening,
-    wrong_speed,
+    Data, DataError, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Place, Scatter,
+    Selection, widening, wrong_speed,
 };
-pub use design::{Candidate, Design, DesignError, Expected, design};
+pub use design::{Aim, Candidate, Design, DesignError, Expected, design};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES, same_number};
 pub use goodness::{Goodness, Runs, runs};
 pub use identify::{Confusion, Identifiability, UNDETERMINED};

@@ -7,8 +7,9 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Candidate, CompareError, Compared, Covariance, Criteria, DesignError, Fit, FitError, Fitting,
-    Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate, design, fit,
+    Aim, Candidate, CompareError, Compared, Covariance, Criteria, DesignError, Ending, Fit,
+    FitError, Fitting, Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate,
+    design, fit,
 };
 
 fn fitted(problem: &dyn Problem) -> Fit {
@@ -250,6 +251,7 @@ fn candidate(name: &str, x: f64, cost: f64) -> Candidate {
     Candidate {
         name: name.into(),
         rows: vec![vec![-1.0 / 0.2, -x / 0.2]],
+        doubts: Vec::new(),
         cost,
     }
 }
@@ -305,11 +307,13 @@ fn designs_say_what_would_determine_the_undetermined() {
     let alone = Candidate {
         name: "a alone".into(),
         rows: vec![vec![10.0, 0.0]],
+        doubts: Vec::new(),
         cost: 1.0,
     };
     let more = Candidate {
         name: "more".into(),
         rows: vec![vec![50.0, 50.0]],
+        doubts: Vec::new(),
         cost: 1.0,
     };
     let told = design(&data.parameters, &found, &[more, alone.clone()], &[0, 1], 1).unwrap();
@@ -334,4 +338,57 @@ fn designs_say_what_would_determine_the_undetermined() {
         refused(&[free], &[0]),
         DesignError::Candidate { .. }
     ));
+}
+
+type Product = Curve<fn(&[f64], f64) -> f64>;
+
+/// y = a b² x: nothing else than the product is ever measured.
+fn product() -> (Product, Fit) {
+    let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
+    let model: fn(&[f64], f64) -> f64 = |p: &[f64], x: f64| p[0] * p[1] * p[1] * x;
+    let data = Curve::drawn(free, &spaced(1.0, 2.0, 9), 1e-3, &[1.0, 1.0], 1, model);
+    let found = fitted(&data);
+    (data, found)
+}
+
+#[test]
+fn a_design_ranks_for_what_can_be_determined_where_parameters_can_not() {
+    let (data, found) = product();
+    let (a, b) = (found.point[0], found.point[1]);
+    // What is left of noise in derivatives says nothing, whatever its size.
+    let noisy = |name: &str, size: f64| Candidate {
+        name: name.into(),
+        rows: vec![vec![size * b * b, 2.0 * size * a * b * (1.0 + 1e-6)]],
+        doubts: vec![4e-6 * size; 2],
+        cost: 1.0,
+    };
+    let candidates = [noisy("near", 1e5), noisy("far", 3e7)];
+    let told = design(&data.parameters, &found, &candidates, &[0, 1], 2).unwrap();
+    assert_eq!(told.hopeless, [0, 1]);
+    assert_eq!(told.open, ["a up 1.00 % with b down 0.50 %"]);
+    let words = "b up 1.00 % with a up 0.50 %".to_owned();
+    assert_eq!(told.aims, [Aim::Combination(words)]);
+    assert_eq!(told.ranked[0].candidate, 1);
+    // (a + 2b)/√5 to 1/(√5 · 3e7), the data's share of that and a, b off 1 left out.
+    let exact = 1.0 / (5.0_f64.sqrt() * 3e7);
+    assert!(
+        (told.ranked[0].after[0] / exact - 1.0).abs() < 5e-3,
+        "{told:?}"
+    );
+    assert!(told.before[0].is_finite());
+}
+
+#[test]
+fn a_design_around_no_minimum_is_refused() {
+    let (data, found) = product();
+    let stuck = Fit {
+        ending: Ending::Stuck { expected_fall: 9.0 },
+        ..found
+    };
+    let alone = candidate("alone", 1.0, 1.0);
+    let refused = design(&data.parameters, &stuck, &[alone], &[0], 1).unwrap_err();
+    assert!(
+        refused.to_string().contains("found no minimum"),
+        "{refused}"
+    );
 }

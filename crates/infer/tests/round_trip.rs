@@ -3,7 +3,8 @@
 use crate::common::{Noise, Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Covariance, Criteria, Fitting, Goodness, Identifiability, Observable, Problem, Surrogate, fit,
+    Covariance, Criteria, Data, Fitting, Goodness, Identifiability, Observable, Predicted, Problem,
+    Surrogate, fit,
 };
 use hertzchain_signal::coverage;
 
@@ -32,33 +33,60 @@ fn the_dry_pair_comes_back_within_its_errors_from_a_start_far_off() {
     assert!(best.jacobian.worst_disagreement() < 0.01);
 }
 
-#[test]
-fn intervals_by_covariance_hold_the_truth_as_often_as_they_say() {
-    // A surrogate stands for the model; its error is a small part of σ.
+/// How many of its standard errors each of η and B is off in repeated measurements. A
+/// surrogate stands for the model; its error is a small part of σ.
+fn pulls(sets: u64, measured: impl Fn(&Truth, u64) -> Data) -> [Vec<f64>; 2] {
     let dry = preset("dry").unwrap();
     let truth = Truth::of(&dry, &speeds_m_s(12));
     let model = model(&dry, &["eta", "B"]);
-    let mut pulls: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
     let first = problem(&model, truth.measured(0));
     let best = fit(&first, &Fitting::default()).unwrap();
     let around = Covariance::new(first.parameters(), &best);
     let surrogate = Surrogate::new(&first, &best, &around).unwrap();
     assert!(surrogate.error < 0.1, "{}", surrogate.error);
-    for seed in 0..150 {
-        let repeated = surrogate.with_data(truth.measured(1000 + seed)).unwrap();
+    let mut pulls: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    for seed in 0..sets {
+        let repeated = surrogate.with_data(measured(&truth, 1000 + seed)).unwrap();
         let best = fit(&repeated, &Fitting::default()).unwrap();
         let covariance = Covariance::new(repeated.parameters(), &best);
         for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
             pulls[at].push((best.point[at] - exact) / covariance.sd[at]);
         }
     }
-    for pulls in &pulls {
+    pulls
+}
+
+/// How far the share of pulls within so many standard errors is off a normal one's, in
+/// binomial standard errors.
+fn off(pulls: &[f64], factor: f64, share: f64) -> f64 {
+    let error = (share * (1.0 - share) / pulls.len() as f64).sqrt();
+    (coverage(pulls, factor).unwrap().share - share) / error
+}
+
+#[test]
+fn intervals_by_covariance_hold_the_truth_as_often_as_they_say() {
+    for pulls in &pulls(150, Truth::measured) {
         for (factor, share) in [(1.0, 0.6827), (1.96, 0.95)] {
-            let held = coverage(pulls, factor).unwrap().share;
-            // Three binomial standard errors of 150 trials.
-            let error = (share * (1.0 - share) / 150.0_f64).sqrt();
-            assert!((held - share).abs() < 3.0 * error, "{factor}: {held}");
+            let off = off(pulls, factor, share);
+            assert!(off.abs() < 3.0, "{factor}: {off}");
         }
+    }
+}
+
+#[test]
+fn so_do_those_of_errors_from_the_scatter_of_twenty_shots() {
+    let told = pulls(600, |truth, seed| truth.measured_by_shots(seed, true));
+    let untold = pulls(600, |truth, seed| truth.measured_by_shots(seed, false));
+    for (told, untold) in told.iter().zip(&untold) {
+        for (factor, share) in [(1.0, 0.6827), (1.96, 0.95)] {
+            let off = off(told, factor, share);
+            assert!(off.abs() < 3.0, "{factor}: {off}");
+        }
+        // The same data sets: taken as known, errors are too small in nearly all of them.
+        let squares = |pulls: &[f64]| pulls.iter().map(|pull| pull * pull).sum::<f64>();
+        let ratio = (squares(untold) / squares(told)).sqrt();
+        // Between one error a row, √(19/15), and two that are alike, √(38/34).
+        assert!((1.05..1.13).contains(&ratio), "{ratio}");
     }
 }
 
@@ -85,11 +113,30 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let parameters = three.numbers().parameters(&[0.5]);
     // One speed tells two numbers: three can't even be asked for.
     let few = hertzchain_infer::CurveProblem::new(three.clone(), data.clone(), parameters);
-    assert!(
-        few.unwrap_err()
-            .to_string()
-            .contains("2 measured values for 3 free")
-    );
+    let told = few.unwrap_err().to_string();
+    for words in [
+        "2 measured values for 3 free",
+        "enter only through K and A",
+        "--free K,A",
+        "K = 8.7926e9 N/m^1.5, A = 3.3853e-7 s",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // Those of the example, by hand from both equations of the materials.
+    let other = preset("hertz-viscoelastic").unwrap();
+    let [young, eta] = ["Y = ", "eta = "].map(|key| {
+        let rest = told.rsplit(key).next().unwrap();
+        rest.split(' ').next().unwrap().parse::<f64>().unwrap()
+    });
+    let other = other.set(&[
+        ("young_modulus", young),
+        ("poisson_ratio", 0.32),
+        ("shear_viscosity", eta),
+    ]);
+    let [curve, same] = [&viscoelastic, &other.unwrap()].map(|of| Truth::of(of, &[0.5]).curve);
+    let incident = |curve: &[Predicted]| curve[0][0].unwrap();
+    // Five digits are shown, of which times of flight depend on the 2/5th power.
+    assert!((incident(&curve) / incident(&same) - 1.0).abs() < 1e-4);
     // Nor do more speeds tell three.
     let data = Truth::of(&viscoelastic, &speeds_m_s(8)).measured(3);
     let three = problem(&three, data.clone());

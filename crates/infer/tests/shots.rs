@@ -2,7 +2,7 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Covariance, Data, Defaults, FEWEST_SHOTS, Fitting, Parameter, Selection, fit, widening,
+    Covariance, Data, DataError, Defaults, Fitting, Parameter, Scatter, Selection, fit, widening,
 };
 use hertzchain_signal::coverage;
 
@@ -30,7 +30,7 @@ fn measured(seed: u64) -> Line {
 
 #[test]
 fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_else() {
-    let widened = widening(SHOTS as u32).unwrap();
+    let widened = widening(1.0, (SHOTS - 1) as f64);
     let pulls = (0..SETS).map(|seed| {
         let line = measured(seed);
         let found = fit(&line, &Fitting::default()).unwrap();
@@ -49,27 +49,66 @@ fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_els
     }
 }
 
-#[test]
-fn errors_of_a_table_are_widened_where_its_shots_are_told() {
-    let text =
-        "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.5,1e-3,7e-4,1e-7\n";
-    let read = |shots: Option<u32>| {
-        let defaults = Defaults {
-            shots,
-            ..Defaults::default()
-        };
-        let selection = Selection {
-            defaults,
-            ..Selection::default()
-        };
-        let data = Data::parse("a.csv", text, &selection).unwrap();
-        let row = &data.rows[0];
-        (row.speed_m_s.sigma, row.values[0].unwrap().sigma)
+fn read(text: &str, scatter: Scatter) -> Result<Data, DataError> {
+    let defaults = Defaults {
+        scatter,
+        ..Defaults::default()
     };
-    assert_eq!(read(None), (1e-3, 1e-7));
-    let factor = (19.0_f64 / 15.0).sqrt();
-    assert_eq!(read(Some(20)), (factor * 1e-3, factor * 1e-7));
-    assert_eq!(widening(FEWEST_SHOTS - 1), None);
+    let selection = Selection {
+        defaults,
+        ..Selection::default()
+    };
+    Data::parse("a.csv", text, &selection)
+}
+
+/// Degrees of freedom of a table's first row: of the speed's error and the incident time's.
+fn freedom(text: &str, scatter: Scatter) -> (f64, f64) {
+    let row = read(text, scatter).unwrap().rows.remove(0);
+    (row.freedom.speed, row.freedom.values[0])
+}
+
+#[test]
+fn the_shots_of_each_row_are_read_by_themselves() {
+    let known = f64::INFINITY;
+    let plain =
+        "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.5,1e-3,7e-4,1e-7\n";
+    assert_eq!(freedom(plain, Scatter::AsTold), (known, known));
+    assert_eq!(freedom(plain, Scatter::Of(20)), (19.0, 19.0));
+    let shots = "speed_m_s,speed_error_m_s,shots,tof_incident_s,tof_incident_s_error\n";
+    let of_20 = format!("{shots}0.5,1e-3,20,7e-4,1e-7\n0.7,1e-3,8,6e-4,1e-7\n");
+    assert_eq!(freedom(&of_20, Scatter::AsTold), (19.0, 19.0));
+    assert_eq!(freedom(&of_20, Scatter::Known), (known, known));
+    let data = read(&of_20, Scatter::AsTold).unwrap();
+    assert_eq!(data.rows[1].freedom.speed, 7.0);
+    // An error that the table does not give comes from no shots of its.
+    let bare = format!("{shots}0.5,,20,7e-4,1e-7\n");
+    assert_eq!(freedom(&bare, Scatter::AsTold), (known, 19.0));
+    // One shot has no scatter.
+    let one = format!("{shots}0.5,1e-3,1,7e-4,1e-7\n");
+    assert_eq!(freedom(&one, Scatter::AsTold), (known, known));
+    let few = format!("{shots}0.5,1e-3,4,7e-4,1e-7\n0.7,1e-3,20,6e-4,1e-7\n");
+    let data = read(&few, Scatter::AsTold).unwrap();
+    assert_eq!(data.lines_of_few_shots(), [2]);
+    let wrong = read(&format!("{shots}0.5,1e-3,2.5,7e-4,1e-7\n"), Scatter::AsTold);
+    let told = wrong.unwrap_err().to_string();
+    assert_eq!(
+        told,
+        "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one from 1"
+    );
+}
+
+#[test]
+fn what_shots_share_does_not_scatter() {
+    let text = "speed_m_s,speed_error_m_s,shots,tof_incident_s,tof_incident_s_error,tof_incident_s_count,\
+                tof_incident_shared_s,tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error\n\
+                0.5,1e-3,20,7e-4,9e-8,17,8e-8,7e-4,1e-7\n";
+    let (speed, time) = freedom(text, Scatter::AsTold);
+    assert_eq!(speed, 19.0);
+    // Of 1e-7 squared (8e-8)² are shared: 16 degrees for the other 0.36 of it.
+    assert!(
+        (time / (16.0 / 0.36_f64.powi(2)) - 1.0).abs() < 1e-12,
+        "{time}"
+    ); // rounding
 }
 
 #[test]

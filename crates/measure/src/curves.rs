@@ -14,7 +14,7 @@ pub struct Grouping {
     pub gap_m_s: f64,
     /// The case that others are divided by.
     pub reference: String,
-    /// Whether clipped shots and those of doubtful order count.
+    /// Whether clipped shots, those of doubtful order and those of which a pulse may be lost count.
     pub keep_dubious: bool,
 }
 

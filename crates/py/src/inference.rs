@@ -5,7 +5,7 @@ use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
 use hertzchain_infer::gauge::{Chains, known_oils, oils};
-use hertzchain_infer::{CurveProblem, Data, Problem};
+use hertzchain_infer::{CurveProblem, Data};
 use hertzchain_verbs::arguments::infer::{Design, Fit, Gauge, Measured};
 use hertzchain_verbs::arguments::parsed;
 use hertzchain_verbs::failure::Failure;
@@ -174,10 +174,7 @@ pub fn design<'py>(
         let problem: CurveProblem = problem(model, data, &arguments.freed)?;
         let targets = designing::targets(&problem, &arguments)?;
         let found = designing::designed(&problem, &targets, &speeds, &arguments)?;
-        let mut told = designing::json(&problem, &found);
-        let unit = |at: &usize| problem.parameters()[*at].unit.clone();
-        told["units"] = targets.iter().map(unit).collect();
-        Ok(told)
+        Ok(designing::json(&problem, &found))
     })?;
     json::object(py, &found)
 }

@@ -41,15 +41,16 @@ pub fn campaign<'py>(
     let part = part.map_err(|error: hertzchain_rig::ShardError| {
         Failed::from(Failure::User(error.to_string()))
     })?;
-    let (done, seed) = Job::pooled(progress, threads).run(py, |stop| {
+    let (done, seed, warnings) = Job::pooled(progress, threads).run(py, |stop| {
         let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
+        let warnings = hertzchain_rig::outlook(&plan).map_err(failure)?;
         let watch = |progress: hertzchain_rig::Progress| {
             if progress.fired > 0 {
                 stop.count(1);
             }
         };
         let done = hertzchain_rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
-        Ok((done, plan.seed))
+        Ok((done, plan.seed, warnings))
     })?;
     let told = PyDict::new(py);
     told.set_item("kept", done.kept)?;
@@ -58,6 +59,7 @@ pub fn campaign<'py>(
     told.set_item("bytes", done.bytes)?;
     told.set_item("failed", done.failed)?;
     told.set_item("seed", seed)?;
+    told.set_item("warnings", warnings)?;
     Ok(told)
 }
 

@@ -107,6 +107,17 @@ pub enum RecordError {
         /// The usual step in s.
         usual_s: f64,
     },
+    /// Times of too few digits.
+    #[error(
+        "{file}: its times go by steps of {:.3} µs, too coarse to tell how fast it was sampled; give the \
+         rate, such as --rate 1MHz", .even_to_s * 1e6
+    )]
+    CoarseTimes {
+        /// Which file.
+        file: String,
+        /// What one of their last digit is in s.
+        even_to_s: f64,
+    },
     /// No channel of that name.
     #[error("{file}: has no channel {wanted:?}; it has {there}")]
     NoChannel {

@@ -13,6 +13,7 @@ mod channels;
 mod check;
 mod csv;
 mod cut;
+mod encoding;
 mod error;
 mod format;
 mod hdf5;
@@ -26,7 +27,7 @@ mod table;
 mod tdms;
 mod wav;
 
-pub use beside::beside;
+pub use beside::{beside, remove_left_behind};
 pub use error::RecordError;
 pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};

@@ -18,6 +18,13 @@ pub struct ReadOptions {
     pub rows: Rows,
 }
 
+impl ReadOptions {
+    /// Whether a rate is given that counts whatever a file says.
+    pub(crate) fn rate_is_trusted(&self) -> bool {
+        self.trust_rate && self.rate_hz.is_some()
+    }
+}
+
 /// How records are divided that are longer than a shot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parts {

@@ -38,7 +38,7 @@ pub struct Done {
 
 /// Runs the series of a part that a folder does not have yet, and calls
 /// `watch` after every shot. Those that it has are opened and compared with what
-/// this campaign would write.
+/// this campaign would write. What a killed run has left under way is removed.
 ///
 /// Files depend on neither the number of threads nor the order of series; a
 /// run that is broken off and begun again ends with the same bytes. A series that
@@ -54,6 +54,7 @@ pub fn campaign(
     watch: &(dyn Fn(Progress) + Sync),
 ) -> Result<Done, RigError> {
     let folder = Folder::open(out, plan)?;
+    folder.clear(plan);
     let dealt = plan.series.iter().enumerate();
     let part: Vec<&Series> = dealt
         .filter(|(at, _)| shard.holds(*at))

@@ -7,9 +7,10 @@
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
 use hertzchain_experiment::Experiment;
-use hertzchain_records::beside;
+use hertzchain_records::{beside, remove_left_behind};
 use hertzchain_study::reproduce::commit;
 use hertzchain_study::{Fingerprint, Inputs};
+use std::collections::HashSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -72,6 +73,12 @@ impl Folder {
         Ok(folder)
     }
 
+    /// Removes what a killed run has left of recordings under way.
+    pub fn clear(&self, plan: &Plan) {
+        let names: HashSet<String> = plan.series.iter().map(file_name).collect();
+        remove_left_behind(&self.path, |file| names.contains(file));
+    }
+
     /// A folder that has recordings of this campaign; nothing is written.
     ///
     /// # Errors
@@ -99,7 +106,7 @@ impl Folder {
     /// The file of a series.
     #[must_use]
     pub fn file(&self, series: &Series) -> PathBuf {
-        self.path.join(format!("{}.h5", series.name))
+        self.path.join(file_name(series))
     }
 
     /// Whether a series is finished.
@@ -107,6 +114,10 @@ impl Folder {
     pub fn has(&self, series: &Series) -> bool {
         self.file(series).is_file()
     }
+}
+
+fn file_name(series: &Series) -> String {
+    format!("{}.h5", series.name)
 }
 
 /// What stands before the seed in the file that tells a campaign.

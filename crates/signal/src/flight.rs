@@ -29,7 +29,30 @@ pub struct Flight {
     pub picks: Picks,
 }
 
+impl Flight {
+    /// The same with a sampling interval whose relative standard error is this: times of
+    /// flight are wrong by as much, all of one recording alike.
+    #[must_use]
+    pub fn with_interval_error(mut self, relative: f64) -> Self {
+        let picks = &mut self.picks;
+        self.incident_s.widen(relative, &mut picks.passing);
+        if let (Some(reflected_s), Some(back)) = (&mut self.reflected_s, &mut picks.returning) {
+            reflected_s.widen(relative, back);
+            self.covariance_s2 += self.incident_s.value * reflected_s.value * relative * relative;
+        }
+        self
+    }
+}
+
 impl Estimate {
+    /// Adds a relative error that all alike shots share; the pulse that no other time has
+    /// tells of it.
+    fn widen(&mut self, relative: f64, shared_by: &mut Picked) {
+        let more = relative * self.value;
+        self.sigma = self.sigma.hypot(more);
+        shared_by.moved.shape_s = shared_by.moved.shape_s.hypot(more);
+    }
+
     /// Quotient of two independent numbers, errors to first order.
     #[must_use]
     pub fn over(self, other: Self) -> Self {

@@ -64,6 +64,11 @@ pub fn measure(
         }
     };
     let mut found = conditioned_pulses(channels, recorded, finding)?;
+    if let Some(low_pass) = measuring.low_pass {
+        // How far a clipped top's corners reach.
+        let reach = 0.5 / (low_pass.cutoff_hz * interval_s);
+        found.spread_clipped(reach.ceil() as usize);
+    }
     let rails = match measuring.conditions() {
         true => [None; 2],
         false => finding.rails_of(channels),

@@ -202,7 +202,7 @@ fn missing_pulses_are_named() {
         ..Scene::default()
     };
     scene.pulses[2].1 = 0.0;
-    let found = find(&scene.summed());
+    let found = of_row(&scene);
     assert_eq!(found.doubts, [Doubt::Missing(Place::Returning)]);
     scene.pulses[1].1 = 0.0;
     let found = find(&scene.summed());
@@ -211,6 +211,93 @@ fn missing_pulses_are_named() {
         Doubt::Missing(Place::Returning),
     ];
     assert_eq!(found.doubts, both);
+}
+
+/// With the paper's row known.
+fn of_row(scene: &Scene) -> Found {
+    let finding = Finding {
+        beads: Some((40, 7)),
+        ..Finding::default()
+    };
+    pulses(Channels::Summed(&scene.summed()), &finding).unwrap()
+}
+
+#[test]
+fn a_lost_passing_pulse_is_named_where_the_row_is_known_and_doubted_where_not() {
+    for samples in [2700, 4000] {
+        let mut scene = Scene {
+            noise: 1e-3,
+            samples,
+            ..Scene::default()
+        };
+        scene.pulses[0].1 = 0.0;
+        let found = of_row(&scene);
+        assert!(found.doubts.contains(&Doubt::Missing(Place::Passing)));
+        assert!(found.passing.is_none());
+        let at = [found.wall, found.returning].map(|pulse| pulse.unwrap().at.abs_diff(0));
+        assert!(
+            at[0].abs_diff(1500) < 3 && at[1].abs_diff(2281) < 3,
+            "{at:?}"
+        );
+        let found = find(&scene.summed());
+        assert!(found.doubts.contains(&Doubt::Lost), "{:?}", found.doubts);
+    }
+}
+
+#[test]
+fn a_lost_pulse_of_the_wall_is_told_from_a_lost_passing_one() {
+    let mut scene = Scene {
+        noise: 1e-3,
+        samples: 6000,
+        ..Scene::default()
+    };
+    // 16.2 widths to the wall, as in a row of Hertz beads.
+    scene.pulses = [
+        (800e-6, 1.0, 45e-6),
+        (0.0, 0.0, 1.0),
+        (2300e-6, 0.35, 50e-6),
+    ];
+    let found = of_row(&scene);
+    assert!(
+        found.doubts.contains(&Doubt::Missing(Place::Wall)),
+        "{:?}",
+        found.doubts
+    );
+    assert!(find(&scene.summed()).doubts.contains(&Doubt::Lost));
+}
+
+#[test]
+fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() {
+    let mut scene = Scene {
+        noise: 1e-3,
+        samples: 5000,
+        ..Scene::default()
+    };
+    // The wall's, the return, and the wall's again after 47 beads for 33.
+    scene.pulses = [
+        (800e-6, 1.6, 40e-6),
+        (1570e-6, 0.47, 50e-6),
+        (2680e-6, 0.4, 55e-6),
+    ];
+    for found in [find(&scene.summed()), of_row(&scene)] {
+        assert!(found.doubts.contains(&Doubt::Order), "{:?}", found.doubts);
+    }
+    // Without the low second pulse, the ways' times alone tell in a known row.
+    scene.pulses[1].1 = 1.2;
+    assert!(of_row(&scene).doubts.contains(&Doubt::Order));
+}
+
+#[test]
+fn two_pulses_without_a_third_are_no_shot_unless_the_record_ends_before_it() {
+    let mut scene = Scene {
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    scene.pulses[2].1 = 0.0;
+    assert_eq!(find(&scene.summed()).doubts, [Doubt::Lost]);
+    scene.samples = 2000;
+    let doubts = find(&scene.summed()).doubts;
+    assert!(!doubts.iter().any(Doubt::is_grave), "{doubts:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
 use crate::inference::user;
 use hertzchain_infer::{
-    Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
+    Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
     Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
 };
 use hertzchain_study::parse_speeds;
@@ -17,6 +17,10 @@ pub struct Designed {
     pub candidates: Vec<Candidate>,
     /// What each would tell.
     pub design: Design,
+    /// What is tightened, by name.
+    pub names: Vec<String>,
+    /// Their units.
+    pub units: Vec<String>,
     /// Combinations of the parameters that the data so far leave open, in words.
     pub undetermined: Vec<String>,
     /// What would settle them, if there are any.
@@ -120,6 +124,8 @@ pub fn designed(
         .map_err(user)?;
     let picks = arguments.picks;
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
+    let aims = found.aims.iter().enumerate();
+    let (names, units) = aims.map(|(at, aim)| called(problem, at, aim)).unzip();
     let label = |at: usize| problem.residual_label(at);
     let identified = Identifiability::new(problem.parameters(), &fit, label);
     let advice = match identified.confused.is_empty() {
@@ -131,8 +137,50 @@ pub fn designed(
         advice,
         candidates,
         design: found,
+        names,
+        units,
         undetermined: open.map(|confusion| confusion.words).collect(),
     })
+}
+
+/// What an aim, the `at`th, is called, and its unit.
+fn called(problem: &CurveProblem, at: usize, aim: &Aim) -> (String, String) {
+    match aim {
+        Aim::Parameter(k) => {
+            let parameter = &problem.parameters()[*k];
+            (parameter.name.clone(), parameter.unit.clone())
+        }
+        Aim::Combination(_) => (format!("combination {}", at + 1), String::new()),
+    }
+}
+
+impl Designed {
+    /// What can't be tightened, and what is in its place, one sentence a line.
+    #[must_use]
+    pub fn hopeless(&self, problem: &CurveProblem) -> Vec<String> {
+        let open = self.design.open.iter().map(|words| {
+            format!("Nothing that could be measured determines this combination: {words}")
+        });
+        let mut told: Vec<String> = open.collect();
+        let names = self.design.hopeless.iter();
+        let names: Vec<&str> = names
+            .map(|k| problem.parameters()[*k].name.as_str())
+            .collect();
+        if !names.is_empty() {
+            told.push(format!(
+                "So {} by itself can't be tightened",
+                names.join(", nor ")
+            ));
+        }
+        for (name, aim) in self.names.iter().zip(&self.design.aims) {
+            if let Aim::Combination(words) = aim {
+                told.push(format!(
+                    "Ranked is what tightens {name}, {words}, in shares of the parameters' sizes"
+                ));
+            }
+        }
+        told
+    }
 }
 
 /// Everything, in SI.
@@ -150,29 +198,30 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
         })
     };
     json!({
-        "parameters": found.targets.iter().map(|at| problem.parameters()[*at].name.clone()).collect::<Vec<_>>(),
+        "parameters": designed.names,
+        "units": designed.units,
         "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
         "ranked": found.ranked.iter().map(one).collect::<Value>(),
         "series": found.greedy.iter().map(one).collect::<Value>(),
         "undetermined": designed.undetermined,
+        "hopeless": designed.hopeless(problem),
     })
 }
 
 /// Every table: files' names and what stands in them.
 #[must_use]
-pub fn tables(problem: &CurveProblem, designed: &Designed) -> Vec<(&'static str, String)> {
+pub fn tables(designed: &Designed) -> Vec<(&'static str, String)> {
     let found = &designed.design;
     vec![
-        ("design.csv", ranked(problem, designed, &found.ranked)),
-        ("series.csv", ranked(problem, designed, &found.greedy)),
-        ("now.csv", now(problem, designed)),
+        ("design.csv", ranked(designed, &found.ranked)),
+        ("series.csv", ranked(designed, &found.greedy)),
+        ("now.csv", now(designed)),
     ]
 }
 
 /// One line a candidate, best first.
-fn ranked(problem: &CurveProblem, designed: &Designed, ranked: &[Expected]) -> String {
-    let targets = designed.design.targets.iter();
-    let names = targets.map(|at| format!("{}_error", problem.parameters()[*at].name));
+fn ranked(designed: &Designed, ranked: &[Expected]) -> String {
+    let names = designed.names.iter().map(|name| format!("{name}_error"));
     let titles = std::iter::once("measure".to_owned()).chain(names);
     let told = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
     let table = Csv::new(titles.chain(told));
@@ -187,18 +236,13 @@ fn ranked(problem: &CurveProblem, designed: &Designed, ranked: &[Expected]) -> S
     table.with_all(ranked, line).text()
 }
 
-/// One line a parameter that is to be tightened: its standard error so far.
-fn now(problem: &CurveProblem, designed: &Designed) -> String {
-    let found = &designed.design;
-    let line = |(at, sd): (&usize, &f64)| -> [Cell; 3] {
-        let parameter = &problem.parameters()[*at];
-        [
-            parameter.name.clone().into(),
-            parameter.unit.clone().into(),
-            (*sd).into(),
-        ]
+/// One line a parameter or combination that is to be tightened: its standard error so far.
+fn now(designed: &Designed) -> String {
+    let line = |((name, unit), sd): ((&String, &String), &f64)| -> [Cell; 3] {
+        [name.clone().into(), unit.clone().into(), (*sd).into()]
     };
-    let lines = found.targets.iter().zip(&found.before);
+    let named = designed.names.iter().zip(&designed.units);
+    let lines = named.zip(&designed.design.before);
     Csv::new(["name", "unit", "standard_error"])
         .with_all(lines, line)
         .text()

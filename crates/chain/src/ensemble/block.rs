@@ -2,7 +2,7 @@
 
 use super::aligned::Aligned;
 use super::behind::Behind;
-use super::bodies::{Motion, Scaled};
+use super::bodies::{Motion, Pace, Scaled, unit_per_kg};
 use super::changes::{Changes, Opening};
 use super::column::{Column, chunks};
 use super::edge::{Edge, Leading};
@@ -48,10 +48,7 @@ pub(super) struct Block<'a, N, const W: usize> {
     lanes: usize,
     set: InstructionSet,
     schedule: &'a Schedule,
-    /// Full step of each lane in s.
-    step_s: [f64; W],
-    /// How much a step of each lane is ahead of the exact motion.
-    ahead: [f64; W],
+    paces: [Pace; W],
     weights: Scaled<N, W>,
     motion: Motion<N, W>,
     offset_m: Column<N, W>,
@@ -112,28 +109,34 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             .flat_map(|system| system.static_force_n.iter());
         let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
-        let offset_m = Column::new(bodies, shared, f64::NEG_INFINITY, |c, lane| {
-            let offset = chains[lane].offset_m.get(c).copied();
-            offset.unwrap_or(f64::NEG_INFINITY)
+        let offset_m = Column::new(first.contacts(), shared, f64::NEG_INFINITY, |c, lane| {
+            chains[lane].offset_m[c]
         });
-        let step_s: [f64; W] = std::array::from_fn(|lane| step_s[lane % lanes]);
         let scales: [_; W] = std::array::from_fn(|lane| systems[lane % lanes].scales());
         let slightest_m = scales.map(|scales| N::slightest_m(scales.speed_m_s * scales.time_s));
-        let ahead = std::array::from_fn(|lane| ahead_of(step_s[lane] / scales[lane].time_s));
-        let inverse = |j: usize, lane: usize| chains[lane].inverse_mass[j];
+        let paces = std::array::from_fn(|lane| Pace {
+            step_s: step_s[lane % lanes],
+            ahead: ahead_of(step_s[lane % lanes] / scales[lane].time_s),
+            unit_per_kg: unit_per_kg(systems[lane % lanes]),
+        });
+        let fixed = systems.iter().all(|system| system.ends_fixed());
+        let moving = bodies - usize::from(fixed);
+        let window = Window::new((lanes, chains), (&x, &v), moving, whole_chain);
+        let inverse_mass = Column::new(moving, shared, 0.0, |j, lane| {
+            chains[lane].inverse_mass[j] / unit_per_kg(chains[lane])
+        });
         let mut block = Self {
             edges: Vec::with_capacity(RESERVED),
             changes: follow_changes.then(|| Changes::new(chunks::<W>(bodies, lanes))),
-            window: Window::new((lanes, chains), (&x, &v), whole_chain),
-            motion: Motion::new(x, v, Column::new(bodies, shared, 0.0, inverse), acts),
-            weights: Scaled::new(schedule.row(0), &step_s, &ahead),
+            window,
+            motion: Motion::new(x, v, inverse_mass, acts),
+            weights: Scaled::new(schedule.row(0), &paces),
             at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
             sections: (0..first.sections.len())
                 .map(|i| section((systems, chains), i))
                 .collect(),
             force_n: Aligned::of(N::default(), flat + W),
-            step_s,
-            ahead,
+            paces,
             offset_m,
             slightest_m,
             systems,
@@ -184,7 +187,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             self.push(external);
         }
         if self.steps <= self.schedule.last_row() {
-            self.weights = Scaled::new(self.schedule.row(self.steps), &self.step_s, &self.ahead);
+            self.weights = Scaled::new(self.schedule.row(self.steps), &self.paces);
         }
         self.motion
             .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
@@ -238,7 +241,9 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
     /// Lets sleep what stays as it is for a number of steps.
     pub fn look(&mut self, steps: usize) {
-        let ahead_s = self.step_s.map(|h| N::of((steps + 1) as f64 * h));
+        let ahead_s = self
+            .paces
+            .map(|pace| N::of((steps + 1) as f64 * pace.step_s));
         self.window.look(self.set, places!(self), &ahead_s);
     }
 
@@ -291,7 +296,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         if !system.has_contact(contact) {
             return None;
         }
-        let h = self.step_s[lane];
+        let h = self.paces[lane].step_s;
         let [x, v] = [&self.motion.x, &self.motion.v]
             .map(|values| [values[at], values[at + lanes]].map(Into::<f64>::into));
         let bodies = self.sides(contact);
@@ -318,7 +323,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let [left, right] = bodies.map(|body| system.inverse_mass[body]);
         let kick = leading.size() * h * left.max(right);
         let matters = kick > SLIGHT * system.scales().speed_m_s;
-        let weights = (self.schedule.steady(), self.ahead[lane]);
+        let weights = (self.schedule.steady(), self.paces[lane].ahead);
         matters.then(|| Edge::ending(&leading, 1.0 - since / h, weights))
     }
 
@@ -336,7 +341,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// Gives the last step what an edge of some age made it lack.
     fn mend(&mut self, at: usize, edge: &Edge, age: usize) {
         let (contact, lane) = (at / self.lanes, at % self.lanes);
-        let h = self.step_s[lane];
+        let h = self.paces[lane].step_s;
         let [sped, moved] = [edge.lacking[age][0] * h, edge.lacking[age][1] * h * h];
         for (body, sign) in self.sides(contact).into_iter().zip([-1.0, 1.0]) {
             let push = sign * self.systems[lane].inverse_mass[body];
@@ -377,7 +382,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             };
             for body in 0..bodies {
                 let at = body * self.lanes + lane;
-                external[at] = N::of(system.pushed(body, self.motion.x[at].into()));
+                let pushed = system.pushed(body, self.motion.x[at].into());
+                external[at] = N::of(pushed / self.paces[lane].unit_per_kg);
             }
         }
         self.motion.external = Some(external);
@@ -424,7 +430,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         ));
         std::array::from_fn(|lane| {
             let own = (lane..W).step_by(self.lanes).map(|at| worst[at].into());
-            self.step_s[lane] * own.fold(0.0, larger_or_nan)
+            let pace = self.paces[lane];
+            pace.step_s * pace.unit_per_kg * own.fold(0.0, larger_or_nan)
         })
     }
 

@@ -6,6 +6,7 @@ use super::column::Column;
 use super::number::Number;
 use super::weights::{EARLIER, USED, Weights};
 use super::window::Window;
+use crate::system::System;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
@@ -15,16 +16,35 @@ pub(super) struct Motion<N, const W: usize> {
     /// Predicted positions and velocities, with a chunk to spare.
     pub x: Aligned<N>,
     pub v: Aligned<N>,
-    /// Accelerations of the last steps: the newest at `newest`, older ones
-    /// after it, round the ring.
+    /// Accelerations of the last steps in units of [`unit_per_kg`]: the newest
+    /// at `newest`, older ones after it, round the ring.
     accelerations: [Aligned<N>; USED],
     newest: usize,
-    pub inverse_mass: Column<N, W>,
-    /// Accelerations by what is not a contact, if anything is.
+    /// Inverse masses in that unit.
+    inverse_mass: Column<N, W>,
+    /// Accelerations by what is not a contact, in that unit, if anything is.
     pub external: Option<Aligned<N>>,
 }
 
-/// Weights times powers of each lane's step.
+/// The inverse mass that accelerations are multiples of, in 1/kg: bead 1's, so
+/// that a row of equal balls accelerates by as much as its forces tell, and no
+/// sweep multiplies by a mass. Weights hold it instead.
+pub(super) fn unit_per_kg(system: &System) -> f64 {
+    system.inverse_mass[1]
+}
+
+/// How far a lane steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    /// Full step in s.
+    pub step_s: f64,
+    /// How much a step is [ahead of](super::weights::ahead_of) the exact motion.
+    pub ahead: f64,
+    /// [`unit_per_kg`].
+    pub unit_per_kg: f64,
+}
+
+/// Weights times powers of each lane's step and its unit of accelerations.
 #[derive(Clone, Debug)]
 pub(super) struct Scaled<N, const W: usize> {
     drift: [N; W],
@@ -33,16 +53,22 @@ pub(super) struct Scaled<N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
-    /// For lanes of some steps in s, each by so much [ahead of](super::weights::ahead_of) the exact motion.
-    pub fn new(weights: &Weights, step_s: &[f64; W], ahead: &[f64; W]) -> Self {
-        let velocity = ahead.map(|ahead| weights.velocity(ahead));
-        let scaled = |of: &dyn Fn(usize) -> f64| std::array::from_fn(|lane| N::of(of(lane)));
+    pub fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
+        let none = [N::default(); W];
+        let (mut velocity, mut position) = ([none; USED], [none; USED]);
+        for (lane, pace) in paces.iter().enumerate() {
+            let sped = pace.step_s * pace.unit_per_kg;
+            let moved = pace.step_s * sped;
+            let weighted = weights.velocity(pace.ahead);
+            for k in 0..USED {
+                velocity[k][lane] = N::of(sped * weighted[k]);
+                position[k][lane] = N::of(moved * weights.position[k]);
+            }
+        }
         Self {
-            drift: scaled(&|lane| step_s[lane] * weights.drift),
-            velocity: std::array::from_fn(|k| scaled(&|lane| step_s[lane] * velocity[lane][k])),
-            position: weights
-                .position
-                .map(|weight| scaled(&|lane| step_s[lane] * step_s[lane] * weight)),
+            drift: paces.map(|pace| N::of(pace.step_s * weights.drift)),
+            velocity,
+            position,
         }
     }
 }
@@ -151,13 +177,9 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
         x: chunks_of_mut(&mut motion.x, awake.clone()),
         v: chunks_of_mut(&mut motion.v, awake.clone()),
     };
-    // What is the same for all bodies stays in a register.
-    match (motion.inverse_mass.uniform(), &motion.external) {
-        (Some(mass), None) => {
-            let mass = load(mass);
-            bodies.step(simd, scaled, |_, net| net * mass);
-        }
-        (None, None) => {
+    match (motion.inverse_mass.is_all(1.0), &motion.external) {
+        (true, None) => bodies.step(simd, scaled, |_, net| net),
+        (false, None) => {
             let mass = &motion.inverse_mass.reader().all()[awake];
             bodies.step(simd, scaled, |i, net| net * load(&mass[i]));
         }

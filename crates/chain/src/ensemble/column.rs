@@ -19,6 +19,8 @@ pub(super) fn chunks<const W: usize>(count: usize, lanes: usize) -> usize {
 pub(super) struct Column<N, const W: usize> {
     values: Aligned<N>,
     stride: usize,
+    /// What all its numbers are, if they are one.
+    only: Option<N>,
 }
 
 impl<N: Number<W>, const W: usize> Column<N, W> {
@@ -45,6 +47,10 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
         let equal = all.windows(2).all(|pair| pair[0] == pair[1]);
         Self {
             stride: usize::from(!equal),
+            only: values
+                .first()
+                .copied()
+                .filter(|first| values.iter().all(|v| v == first)),
             values,
         }
     }
@@ -57,6 +63,12 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
             .0
             .first()
             .filter(|_| self.stride == 0)
+    }
+
+    /// Whether all its numbers are this one.
+    #[inline(always)]
+    pub fn is_all(&self, value: f64) -> bool {
+        self.only == Some(N::of(value))
     }
 
     /// A reader of chunks.
@@ -77,7 +89,7 @@ pub(super) struct Reader<'a, N, const W: usize> {
 }
 
 impl<'a, N, const W: usize> Reader<'a, N, W> {
-    /// All chunks of a column whose chunks are not equal.
+    /// All its chunks.
     #[inline(always)]
     pub fn all(&self) -> &'a [[N; W]] {
         self.chunks

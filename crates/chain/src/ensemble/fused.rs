@@ -9,7 +9,9 @@ use super::number::Number;
 use super::section::{Place, Sweep};
 use super::touch::{Sides, Touch};
 use crate::instruction_set::InstructionSet;
-use crate::laws::{Arithmetic, Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Wide};
+use crate::laws::{
+    Arithmetic, Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Split, Wide,
+};
 use fearless_simd::{dispatch, prelude::*};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -22,8 +24,8 @@ pub(super) trait Sum: Send + Sync + 'static {
     /// Coefficients of all terms.
     const COEFFICIENTS: usize;
 
-    /// The force of as many contacts as a number stands for.
-    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N;
+    /// Adds the forces of as many contacts as a number stands for.
+    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N>;
 }
 
 /// A sum of one.
@@ -33,8 +35,8 @@ impl<T: Wide<C>, const C: usize> Sum for One<T, C> {
     const COEFFICIENTS: usize = C;
 
     #[inline(always)]
-    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N {
-        T::wide_force(std::array::from_fn(|j| k[j]), contact)
+    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N> {
+        T::add_to(sum, std::array::from_fn(|j| k[j]), contact)
     }
 }
 
@@ -42,9 +44,9 @@ impl<A: Sum, B: Sum> Sum for (A, B) {
     const COEFFICIENTS: usize = A::COEFFICIENTS + B::COEFFICIENTS;
 
     #[inline(always)]
-    fn force<N: Arithmetic>(k: &[N], contact: Closed<N>) -> N {
+    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N> {
         let (a, b) = k.split_at(A::COEFFICIENTS);
-        A::force(a, contact) + B::force(b, contact)
+        B::add_to(A::add_to(sum, a, contact), b, contact)
     }
 }
 
@@ -128,29 +130,54 @@ fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     force: &mut [N],
     k: impl Fn(usize) -> [N::Wide<S>; MOST],
 ) {
-    let (first, fresh) = (chunks.start, place.fresh);
+    let first = chunks.start;
     let force = force[first * W..chunks.end * W].as_chunks_mut::<W>().0;
     let sides = Sides::new(place, first, force.len());
-    for (i, force) in force.iter_mut().enumerate() {
-        let Touch {
-            overlap,
-            root,
-            rate,
-            ..
-        } = sides.touch(simd, i);
-        let contact = Closed {
-            overlap,
-            root,
-            rate,
-            largest: overlap,
-        };
-        let sum = T::force(&k(first + i), contact);
-        let sum = match fresh {
-            true => sum,
-            false => N::Wide::<S>::load_array_ref(simd, force) + sum,
-        };
-        sum.store_array(force);
+    // Loops of their own, so that what most steps need is all that they do.
+    let plain = place.offset_m.is_all(0.0) && !place.starting;
+    match (plain, place.fresh) {
+        (true, true) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                sum::<T, S, N, W>(simd, &k(first + i), sides.plain_touch(simd, i))
+                    .store_array(force);
+            }
+        }
+        (_, true) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i)).store_array(force);
+            }
+        }
+        (_, false) => {
+            for (i, force) in force.iter_mut().enumerate() {
+                let before = N::Wide::<S>::load_array_ref(simd, force);
+                let more = sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i));
+                (before + more).store_array(force);
+            }
+        }
     }
+}
+
+/// Force of a chunk of contacts.
+#[inline(always)]
+fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
+    simd: S,
+    k: &[N::Wide<S>],
+    touch: Touch<N::Wide<S>>,
+) -> N::Wide<S> {
+    let contact = Closed {
+        overlap: touch.overlap,
+        root: touch.root,
+        rate: touch.rate,
+        largest: touch.overlap,
+    };
+    // Minus 0 changes no sum and no sign: the compiler leaves it out.
+    let none = N::Wide::<S>::simd_from(simd, N::of(-0.0));
+    let nothing = Split {
+        rooted: none,
+        plain: none,
+    };
+    let Split { rooted, plain } = T::add_to(nothing, k, contact);
+    touch.root.mul_add(rooted, plain)
 }
 
 impl<T: Sum, N: Number<W>, const W: usize> Sweep<N, W> for Fused<T, N, W> {

@@ -1,6 +1,7 @@
 //! What lanes are made of: double precision, eight numbers to a cache line, or
 //! single, sixteen.
 
+use crate::laws::Arithmetic;
 use crate::system::FLUSH;
 use fearless_simd::{SimdFloatElement, f32x16, f64x8, prelude::*};
 use std::fmt::Debug;
@@ -23,7 +24,7 @@ pub(super) trait Number<const W: usize>:
     + 'static
 {
     /// A chunk of them.
-    type Wide<S: Simd>: SimdFloat<S, Element = Self, Array = [Self; W]>;
+    type Wide<S: Simd>: SimdFloat<S, Element = Self, Array = [Self; W]> + Arithmetic;
 
     /// Half the distance from 1 to the next number.
     const ROUNDING: f64;
@@ -43,6 +44,20 @@ pub(super) trait Number<const W: usize>:
 
     /// √d of numbers that are 0 or normal, where bits say that they are not 0.
     fn roots<S: Simd>(simd: S, d: Self::Wide<S>, positive: u64) -> Self::Wide<S>;
+}
+
+impl<S: Simd> Arithmetic for f64x8<S> {
+    #[inline(always)]
+    fn times_plus(self, factor: Self, rest: Self) -> Self {
+        self.mul_add(factor, rest)
+    }
+}
+
+impl<S: Simd> Arithmetic for f32x16<S> {
+    #[inline(always)]
+    fn times_plus(self, factor: Self, rest: Self) -> Self {
+        self.mul_add(factor, rest)
+    }
 }
 
 impl Number<8> for f64 {
@@ -118,13 +133,21 @@ impl Number<16> for f32 {
 fearless_simd::kernel!(
     #[inline(always)]
     fn double_roots(avx512: Avx512, d: [f64; 8], positive: u8) -> [f64; 8] {
-        use std::arch::x86_64::_mm512_maskz_rsqrt14_pd;
+        use std::arch::x86_64::{
+            _mm512_castpd_si512, _mm512_castsi512_pd, _mm512_mask_rsqrt14_pd, _mm512_set1_epi64,
+            _mm512_sub_epi64,
+        };
         let d: f64x8<Avx512> = d.simd_into(avx512);
-        // Where d is 0 the seed is 0, and so is the root.
-        let seed = _mm512_maskz_rsqrt14_pd(positive, d.into());
+        // Where d is 0 any seed will do: d times it is 0, and so is the root.
+        let one = f64x8::splat(avx512, 1.0);
+        let seed = _mm512_mask_rsqrt14_pd(one.into(), positive, d.into());
+        // Halved by its exponent: no multiplication, of which there are many.
+        let bits = _mm512_castpd_si512(seed);
+        let halved = _mm512_sub_epi64(bits, _mm512_set1_epi64(1 << 52));
         let seed: f64x8<Avx512> = seed.simd_into(avx512);
+        let reciprocal: f64x8<Avx512> = _mm512_castsi512_pd(halved).simd_into(avx512);
         let half = f64x8::splat(avx512, 0.5);
-        let (root, reciprocal) = (d * seed, half * seed);
+        let root = d * seed;
         let error = (-root).mul_add(reciprocal, half);
         let root = root.mul_add(error, root);
         let residual = (-root).mul_add(root, d);
@@ -136,12 +159,19 @@ fearless_simd::kernel!(
 fearless_simd::kernel!(
     #[inline(always)]
     fn single_roots(avx512: Avx512, d: [f32; 16], positive: u16) -> [f32; 16] {
-        use std::arch::x86_64::_mm512_maskz_rsqrt14_ps;
+        use std::arch::x86_64::{
+            _mm512_castps_si512, _mm512_castsi512_ps, _mm512_mask_rsqrt14_ps, _mm512_set1_epi32,
+            _mm512_sub_epi32,
+        };
         let d: f32x16<Avx512> = d.simd_into(avx512);
-        let seed = _mm512_maskz_rsqrt14_ps(positive, d.into());
+        let one = f32x16::splat(avx512, 1.0);
+        let seed = _mm512_mask_rsqrt14_ps(one.into(), positive, d.into());
+        let bits = _mm512_castps_si512(seed);
+        let halved = _mm512_sub_epi32(bits, _mm512_set1_epi32(1 << 23));
         let seed: f32x16<Avx512> = seed.simd_into(avx512);
+        let reciprocal: f32x16<Avx512> = _mm512_castsi512_ps(halved).simd_into(avx512);
         let half = f32x16::splat(avx512, 0.5);
-        let (root, reciprocal) = (d * seed, half * seed);
+        let root = d * seed;
         let error = (-root).mul_add(reciprocal, half);
         root.mul_add(error, root).into()
     }

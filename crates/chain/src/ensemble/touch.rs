@@ -53,13 +53,33 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     #[inline(always)]
     pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-        let zero = N::Wide::<S>::simd_from(simd, N::default());
         let apart = load(&self.x[1][i]) - load(&self.x[0][i]);
         let depth = load(self.offset_m.at(self.first + i)) - apart;
+        self.touch_at(simd, i, depth, self.starting)
+    }
+
+    /// The same in a chain without gaps and loads that has been set in motion.
+    #[inline(always)]
+    pub fn plain_touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let depth = load(&self.x[0][i]) - load(&self.x[1][i]);
+        self.touch_at(simd, i, depth, false)
+    }
+
+    #[inline(always)]
+    fn touch_at<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        depth: N::Wide<S>,
+        starting: bool,
+    ) -> Touch<N::Wide<S>> {
+        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
+        let zero = N::Wide::<S>::simd_from(simd, N::default());
         let across = load(&self.v[0][i]) - load(&self.v[1][i]);
         let deep = depth.simd_gt(load(&self.slightest_m));
         let overlap = deep.select(depth, zero);
-        let closed = match self.starting {
+        let closed = match starting {
             true => deep | (depth.simd_ge(zero) & across.simd_gt(zero)),
             false => deep,
         };

@@ -67,12 +67,14 @@ pub(super) struct Window {
 }
 
 impl Window {
+    /// Of chains whose first `moving` bodies can move, from where those are.
     pub fn new<N: Number<W>, const W: usize>(
         (lanes, systems): (usize, &[&System]),
         (x, v): (&[N], &[N]),
+        moving: usize,
         whole_chain: bool,
     ) -> Self {
-        let all = chunks::<W>(systems[0].bodies(), lanes);
+        let all = chunks::<W>(moving, lanes);
         let with_contacts = chunks::<W>(systems[0].contacts(), lanes);
         let rest = N::default();
         let moves = |at: &usize| x[*at] != rest || v[*at] != rest;

@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
 use crate::material::Pair;
 
 /// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ while in contact.
@@ -36,13 +36,13 @@ impl Term<1> for DampingCubic {
     }
 
     fn force(k: &[f64; 1], contact: Closed) -> f64 {
-        Self::wide_force(*k, contact)
+        k[0] * contact.rate * contact.rate * contact.rate
     }
 }
 
 impl Wide<1> for DampingCubic {
     #[inline(always)]
-    fn wide_force<N: Arithmetic>([coefficient]: [N; 1], contact: Closed<N>) -> N {
-        coefficient * contact.rate * contact.rate * contact.rate
+    fn add_to<N: Arithmetic>(sum: Split<N>, [coefficient]: [N; 1], contact: Closed<N>) -> Split<N> {
+        sum.add_plain(coefficient * contact.rate, contact.rate * contact.rate)
     }
 }

@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
 use crate::material::{Material, Pair};
 
 /// Viscoelastic spheres [Goldobin2015]: F = (3/2) A K √δ δ̇.
@@ -51,13 +51,13 @@ impl Term<1> for DampingViscoelastic {
     }
 
     fn force(k: &[f64; 1], contact: Closed) -> f64 {
-        Self::wide_force(*k, contact)
+        k[0] * contact.root * contact.rate
     }
 }
 
 impl Wide<1> for DampingViscoelastic {
     #[inline(always)]
-    fn wide_force<N: Arithmetic>([damping]: [N; 1], contact: Closed<N>) -> N {
-        damping * contact.root * contact.rate
+    fn add_to<N: Arithmetic>(sum: Split<N>, [damping]: [N; 1], contact: Closed<N>) -> Split<N> {
+        sum.add_rooted(damping, contact.rate)
     }
 }

@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Term, Wide};
+use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
 use crate::material::Pair;
 
 /// Elastic spheres [Hertz1881]: F = K δ^{3/2}, K in N/m^{3/2}.
@@ -37,7 +37,7 @@ impl Term<1> for ElasticHertz {
     }
 
     fn force(k: &[f64; 1], contact: Closed) -> f64 {
-        Self::wide_force(*k, contact)
+        k[0] * contact.overlap * contact.root
     }
 
     fn energy(&[stiffness]: &[f64; 1], overlap: f64, _largest: f64) -> f64 {
@@ -47,7 +47,7 @@ impl Term<1> for ElasticHertz {
 
 impl Wide<1> for ElasticHertz {
     #[inline(always)]
-    fn wide_force<N: Arithmetic>([stiffness]: [N; 1], contact: Closed<N>) -> N {
-        stiffness * contact.overlap * contact.root
+    fn add_to<N: Arithmetic>(sum: Split<N>, [stiffness]: [N; 1], contact: Closed<N>) -> Split<N> {
+        sum.add_rooted(stiffness, contact.overlap)
     }
 }

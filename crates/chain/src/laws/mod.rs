@@ -31,7 +31,7 @@ pub use elastic_plastic_thornton::ElasticPlasticThornton;
 pub use elastic_power::ElasticPower;
 pub use term::{
     Arithmetic, Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source,
-    Term, Wide, law, row,
+    Split, Term, Wide, law, row,
 };
 
 /// Every contact law, in the order in which the tools list them.

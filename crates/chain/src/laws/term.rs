@@ -138,17 +138,50 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     }
 }
 
-/// What sums and products can be made of: a number, or a register of them.
-pub trait Arithmetic: Copy + Add<Output = Self> + Mul<Output = Self> {}
+/// What products and sums can be made of: a register of numbers.
+pub trait Arithmetic: Copy + Add<Output = Self> + Mul<Output = Self> {
+    /// `self` · `factor` + `rest`, rounded once where the machine can.
+    fn times_plus(self, factor: Self, rest: Self) -> Self;
+}
 
-impl<N: Copy + Add<Output = N> + Mul<Output = N>> Arithmetic for N {}
+/// A force that is summed law by law: √δ · `rooted` + `plain`. Products are
+/// added without being formed first, and √δ multiplies once for all laws.
+#[derive(Clone, Copy, Debug)]
+pub struct Split<N> {
+    /// What √δ multiplies.
+    pub rooted: N,
+    /// The rest.
+    pub plain: N,
+}
 
-/// A law whose force is sums and products alone, so that the same line serves
-/// whole registers in either precision. Nothing needs it but the fastest path
-/// of the ensemble loop.
+impl<N: Arithmetic> Split<N> {
+    /// With `one` · `other` · √δ more.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_rooted(self, one: N, other: N) -> Self {
+        Self {
+            rooted: one.times_plus(other, self.rooted),
+            ..self
+        }
+    }
+
+    /// With `one` · `other` more.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_plain(self, one: N, other: N) -> Self {
+        Self {
+            plain: one.times_plus(other, self.plain),
+            ..self
+        }
+    }
+}
+
+/// A law whose force is sums and products alone, said once more for whole
+/// registers in either precision. Nothing needs it but the fastest path of the
+/// ensemble loop.
 pub trait Wide<const C: usize>: Term<C> {
-    /// Force in N, positive when it pushes the bodies apart.
-    fn wide_force<N: Arithmetic>(k: [N; C], contact: Closed<N>) -> N;
+    /// Adds the force in N, positive when it pushes the bodies apart.
+    fn add_to<N: Arithmetic>(sum: Split<N>, k: [N; C], contact: Closed<N>) -> Split<N>;
 }
 
 /// Coefficients of one law over consecutive contacts: column `j` holds

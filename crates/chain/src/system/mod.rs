@@ -185,6 +185,12 @@ impl System {
             && (self.pendulum_per_s2 > 0.0) == (other.pendulum_per_s2 > 0.0)
     }
 
+    /// Whether the last body can never move.
+    pub(crate) fn ends_fixed(&self) -> bool {
+        let last = self.bodies() - 1;
+        !self.periodic && self.inverse_mass[last] == 0.0 && self.velocity_m_s[last] == 0.0
+    }
+
     /// Whether two chains are one, set in motion in two ways: what does not
     /// move is the same in both.
     pub(crate) fn is_chain_of(&self, other: &Self) -> bool {

@@ -1,6 +1,6 @@
 //! The size of speeds, times and forces in a shot, known before it begins.
 
-use super::statics::turning_time;
+use super::statics::shorter_time;
 use super::{Scales, System};
 use crate::material::Pair;
 
@@ -35,19 +35,13 @@ pub(super) fn kinds(system: &System, pairs: &[Option<Pair>]) -> Vec<(usize, Pair
 
 /// Shortest turning time of all contacts.
 fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f64 {
-    kinds
-        .iter()
-        .map(|(c, pair)| statics_time(system, *c, pair.mass_kg, speed_m_s))
-        .fold(f64::INFINITY, f64::min)
-}
-
-fn statics_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
-    let mass = if mass_kg.is_finite() {
-        mass_kg
-    } else {
-        system.mass_kg[1]
-    };
-    turning_time(system, contact, mass, speed_m_s)
+    kinds.iter().fold(f64::INFINITY, |shortest, (c, pair)| {
+        let mass_kg = match pair.mass_kg.is_finite() {
+            true => pair.mass_kg,
+            false => system.mass_kg[1],
+        };
+        shorter_time(system, *c, (mass_kg, speed_m_s), shortest)
+    })
 }
 
 fn characteristic_speed(system: &System) -> f64 {

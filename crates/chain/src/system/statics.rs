@@ -96,18 +96,28 @@ pub(super) fn static_overlap(
     })
 }
 
-/// Time in s, overlap over speed, in which a pair that meets at a speed is
-/// stopped by the elastic terms; under preload no longer than 1/ω of the pair.
-pub(super) fn turning_time(system: &System, contact: usize, mass_kg: f64, speed_m_s: f64) -> f64 {
+/// Time in s, overlap over speed, in which a pair of some mass that meets at a
+/// speed is stopped by the elastic terms, if that is shorter than a time known;
+/// under preload no longer than 1/ω of the pair.
+pub(super) fn shorter_time(
+    system: &System,
+    contact: usize,
+    (mass_kg, speed_m_s): (f64, f64),
+    known_s: f64,
+) -> f64 {
     let kinetic = 0.5 * mass_kg * speed_m_s * speed_m_s;
     let energy = |overlap| system.stored_energy(contact, overlap);
-    // A scale: a thousandth is near enough.
-    let turning =
-        invert(energy, kinetic, 1e-3).map_or(f64::INFINITY, |overlap| overlap / speed_m_s);
+    // What has not stopped it by then takes longer, and need not be found.
+    let turning = match energy(known_s * speed_m_s) <= kinetic {
+        true => known_s,
+        // A scale: a thousandth is near enough.
+        false => invert(energy, kinetic, 1e-3).map_or(known_s, |overlap| overlap / speed_m_s),
+    };
+    let shorter = turning.min(known_s);
     let preloaded = system.static_contact(contact).stiffness_n_m;
     if preloaded > 0.0 {
-        turning.min((mass_kg / preloaded).sqrt())
+        shorter.min((mass_kg / preloaded).sqrt())
     } else {
-        turning
+        shorter
     }
 }

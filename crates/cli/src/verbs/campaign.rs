@@ -3,7 +3,7 @@
 use crate::arguments::Campaign as Arguments;
 use crate::failure::Failure;
 use crate::print::print;
-use hertzchain_rig::{Done, Plan, Progress, RigError, campaign};
+use hertzchain_rig::{Done, Plan, Progress, RigError, campaign, outlook};
 use hertzchain_verbs::input;
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
@@ -18,6 +18,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let experiment = input::open(&arguments.input)?;
     let plan = Plan::new(&experiment, arguments.seed).map_err(failure)?;
+    for warning in outlook(&plan).map_err(failure)? {
+        eprintln!("warning: {warning}");
+    }
     let threads = arguments.threads.unwrap_or(0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;

@@ -1,10 +1,10 @@
 //! `hertzchain design`: what to measure next.
 
-use crate::failure::{Failure, print_assumed};
+use crate::failure::{Failure, print_assumed, print_kept};
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
-use hertzchain_infer::{CurveProblem, Expected, Problem};
+use hertzchain_infer::{CurveProblem, Expected};
 use hertzchain_verbs::arguments::infer::Design as Arguments;
 use hertzchain_verbs::design::Designed;
 use hertzchain_verbs::{design, inference};
@@ -19,6 +19,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     print_assumed(&data, &arguments.measured);
+    print_kept(&model, &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
@@ -32,7 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.tables(&design::tables(&problem, &designed))?;
+        folder.tables(&design::tables(&designed))?;
         eprint!("Written:\n{}", folder.list());
         Ok(())
     })
@@ -40,11 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let (candidates, found) = (&designed.candidates, &designed.design);
-    let names: Vec<&str> = found
-        .targets
-        .iter()
-        .map(|at| problem.parameters()[*at].name.as_str())
-        .collect();
+    let names = &designed.names;
     let now = names
         .iter()
         .zip(&found.before)
@@ -72,7 +69,7 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     format!(
         "Now: {}\n{}\n{}\n{}\n{}\n{}",
         now.join(", "),
-        beware(designed),
+        beware(problem, designed),
         heading("One measurement more, best first"),
         format::table(&head, &best),
         heading("A series, each the best after those before it"),
@@ -81,7 +78,7 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
 }
 
 /// What standard errors of open combinations are worth, and what would close them.
-fn beware(designed: &Designed) -> String {
+fn beware(problem: &CurveProblem, designed: &Designed) -> String {
     let undetermined = &designed.undetermined;
     if undetermined.is_empty() {
         return String::new();
@@ -91,9 +88,12 @@ fn beware(designed: &Designed) -> String {
         .map(|words| format!("  Not determined so far: {words}.\n"));
     let advice = designed.advice.iter();
     let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
+    let hopeless = designed.hopeless(problem).into_iter();
+    let hopeless = hopeless.map(|told| format!("  {told}.\n"));
     format!(
-        "Beware: the errors of parameters that the data leave open, and what is said of them below, mean little.\n{}{}",
+        "Beware: the data so far leave combinations of the parameters open.\n{}{}{}",
         open.collect::<String>(),
+        hopeless.collect::<String>(),
         advice.collect::<String>()
     )
 }

@@ -5,7 +5,7 @@ mod pulses;
 mod report;
 mod uncertainty;
 
-use crate::failure::{Failure, print_assumed};
+use crate::failure::{Failure, print_assumed, print_kept};
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_infer::{CurveProblem, Problem, Surrogate};
@@ -23,6 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     print_assumed(&data, &arguments.measured);
+    print_kept(&model, &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;

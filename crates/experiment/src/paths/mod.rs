@@ -110,6 +110,19 @@ impl Experiment {
         Ok(find(&slots, path)?.clone().place(self.units()))
     }
 
+    /// Numbers of the file whose unit depends on that at a path, with their units:
+    /// the stiffness k of F = k δ^n in N/m^n, where the path is that of n.
+    ///
+    /// # Errors
+    /// An unknown or ambiguous path.
+    pub fn followers(&self, path: &str) -> Result<Vec<Place>, PathError> {
+        let slots = self.slots();
+        let steering = find(&slots, path)?;
+        let followers = slots.iter().filter(|slot| slot.follows(steering));
+        let places = followers.map(|slot| slot.clone().place(self.units()));
+        Ok(places.filter(|place| place.value.is_some()).collect())
+    }
+
     /// The value of a named number in SI.
     ///
     /// # Errors
@@ -124,6 +137,10 @@ impl Experiment {
     }
 
     /// This experiment with named numbers set, in SI.
+    ///
+    /// Where the unit of one number depends on another, as that of the stiffness of
+    /// F = k δ^n does on n, setting n alone keeps the number of k, in N/m^n of the
+    /// new n: the force at an overlap of 1 m stays.
     ///
     /// ```
     /// let dry = hertzchain_experiment::preset("dry")?;
@@ -220,10 +237,33 @@ impl Experiment {
     ) -> Result<Self, PathError> {
         let slots = self.slots();
         let mut tree = self.tree().clone();
+        let mut found = Vec::new();
         for (path, value) in values {
-            assign(&mut tree, &find(&slots, path)?.steps, value);
+            found.push((find(&slots, path)?, value));
+        }
+        for (slot, _) in &found {
+            self.keep_numbers(&slots, slot, &mut tree);
+        }
+        for (slot, value) in found {
+            assign(&mut tree, &slot.steps, value);
         }
         Ok(self.with_tree(tree)?)
+    }
+
+    /// Before a number is changed on which units of its law depend, as N/m^n does on
+    /// n: what the file gives in them was checked against the file's own number, and
+    /// is kept as a plain number in SI, in the unit that is to be.
+    fn keep_numbers(&self, slots: &[Slot<'_>], changed: &Slot<'_>, tree: &mut Node) {
+        for follower in slots.iter().filter(|slot| slot.follows(changed)) {
+            if let Some(si) = follower.value(self.units()) {
+                let number = Number {
+                    value: si.value,
+                    half_digit: si.half_digit,
+                    from_code: true,
+                };
+                assign(tree, &follower.steps, Value::Number(number));
+            }
+        }
     }
 }
 

@@ -17,9 +17,21 @@ pub(super) struct Slot<'a> {
     /// `None` where the file gives nothing.
     pub(super) node: Option<&'a Node>,
     pub(super) is_count: bool,
+    /// The unit with the names of parameters in the places of their values; empty
+    /// where it depends on none.
+    form: &'static str,
 }
 
 impl Slot<'_> {
+    /// Whether the unit of this parameter depends on that other one of its law.
+    pub(super) fn follows(&self, other: &Self) -> bool {
+        let [own, others] = [&self.path, &other.path].map(|path| path.rsplit_once('.'));
+        let (Some((law, _)), Some((same, name))) = (own, others) else {
+            return false;
+        };
+        law == same && self.form.contains(&format!("{{{name}}}"))
+    }
+
     /// This place, for those who know nothing of trees.
     pub(super) fn place(self, units: Units) -> Place {
         Place {
@@ -163,11 +175,15 @@ impl<'a> Walk<'a> {
             let unit = laws::unit(parameter, row, member, self.units);
             let name = parameter.name;
             self.push(unit.into(), member.get(name), false, &at.key(name));
+            if let (true, Some(slot)) = (parameter.unit.contains('{'), self.slots.last_mut()) {
+                slot.form = parameter.unit;
+            }
         }
     }
 
     fn push(&mut self, unit: Cow<'static, str>, node: Option<&'a Node>, count: bool, way: &Way) {
         self.slots.push(Slot {
+            form: "",
             path: way.path.clone(),
             steps: way.steps.clone(),
             unit,

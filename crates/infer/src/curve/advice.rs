@@ -2,12 +2,13 @@
 //! Jacobian.
 
 use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pushed};
+use super::contacts::three_for_two;
 use super::model::Model;
 use super::problem::CurveProblem;
 use crate::data::{Data, Observable};
 use crate::free::Form;
 use crate::identify::{Determined, Scaled, sized};
-use crate::least_squares::{Merit, jacobian};
+use crate::least_squares::{JUMPING, Merit, jacobian};
 use crate::{Fit, Loss, ModelError, Parameter, Prior, Problem};
 use hertzchain_signal::Estimate;
 
@@ -252,7 +253,7 @@ impl CurveProblem {
         let flat = |of: Parameter| of.with_prior(Prior::Flat);
         let sized = sized(self.parameters(), &fit.point).into_iter();
         let parameters: Vec<Parameter> = sized.map(flat).collect();
-        let problem = Self::part(model, data).with_parameters(parameters);
+        let problem = Self::part(model.for_slopes(), data).with_parameters(parameters);
         let merit = Merit::new(&problem, Loss::Squares);
         let found = problem
             .residuals(std::slice::from_ref(&fit.point))
@@ -260,38 +261,17 @@ impl CurveProblem {
         let at = merit.value(&fit.point, &found)?;
         let here = (fit.point.as_slice(), &at);
         let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
-        Ok(Scaled::of(problem.parameters(), &jacobian))
+        Ok(Scaled::doubting(problem.parameters(), &jacobian, JUMPING))
     }
 
     fn instead(&self) -> String {
-        self.three_for_two().unwrap_or_else(|| {
+        three_for_two(self.model()).unwrap_or_else(|| {
             let names: Vec<&str> = self.parameters().iter().map(|p| p.name.as_str()).collect();
             format!(
                 "keep some of {} fixed, or say what is known of them (--prior)",
                 names.join(", ")
             )
         })
-    }
-
-    /// Young modulus, Poisson ratio and viscosity of one material enter
-    /// through two numbers of its contacts alone.
-    fn three_for_two(&self) -> Option<String> {
-        let numbers = self.model().numbers().as_slice();
-        let constant = numbers.iter().filter(|n| n.form() != Form::EachSpeed);
-        let owners: Vec<(&str, &str)> = constant
-            .filter_map(|number| number.material_number())
-            .collect();
-        let all = |owner: &str| {
-            ["young_modulus", "poisson_ratio", "shear_viscosity"]
-                .iter()
-                .all(|number| owners.contains(&(owner, number)))
-        };
-        let (owner, _) = owners.iter().find(|(owner, _)| all(owner))?;
-        Some(format!(
-            "Young modulus, Poisson ratio and viscosity of `{owner}` enter only through K and A of \
-             its contacts, three numbers for two: free K and A instead (--free K,A), or keep one of \
-             the three fixed"
-        ))
     }
 }
 

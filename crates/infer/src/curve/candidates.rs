@@ -2,9 +2,11 @@
 
 use super::model::{Model, Speeds};
 use super::problem::CurveProblem;
-use crate::data::{Data, DataRow, Observable};
+use crate::data::{Data, DataRow, Freedom, Observable};
 use crate::free::Form;
-use crate::{Candidate, Fit, ModelError, Problem};
+use crate::least_squares::{JUMPING, Merit, jacobian};
+use crate::linear::norm;
+use crate::{Candidate, Fit, Loss, ModelError, Problem};
 use hertzchain_experiment::reading::PreloadReading;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_signal::Estimate;
@@ -268,35 +270,34 @@ fn of_way(
     errors: &ExpectedErrors,
 ) -> Result<Vec<Candidate>, ModelError> {
     let data = expected(&model, fit, way, speeds_m_s, errors)?;
-    let problem = CurveProblem::part(model, data);
-    let sides = (0..fit.point.len()).flat_map(|at| [(at, 1.0), (at, -1.0)]);
-    let moved = |(at, sign): (usize, f64)| {
-        let mut point = fit.point.clone();
-        point[at] += sign * fit.jacobian.steps[at];
-        point
-    };
-    let points: Vec<Vec<f64>> = sides.map(moved).collect();
-    let found = problem.residuals(&points);
-    let found: Vec<Vec<f64>> = found
-        .into_iter()
-        .map(|residuals| Ok(residuals?.standardised))
-        .collect::<Result<_, ModelError>>()?;
-    let slope = |residual: usize| -> Vec<f64> {
-        let of = |at: usize| {
-            let difference = found[2 * at][residual] - found[2 * at + 1][residual];
-            difference / (2.0 * fit.jacobian.steps[at])
-        };
-        (0..fit.point.len()).map(of).collect()
-    };
+    let problem = CurveProblem::part(model.for_slopes(), data);
+    let merit = Merit::new(&problem, Loss::Squares);
+    let found = problem
+        .residuals(std::slice::from_ref(&fit.point))
+        .remove(0);
+    let at = merit.value(&fit.point, &found)?;
+    let here = (fit.point.as_slice(), &at);
+    let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
     let measured = problem.measured();
     let candidate = |(row, speed): (usize, &f64)| {
-        let own = measured
-            .iter()
-            .enumerate()
-            .filter(|(_, (of, _))| *of == row);
+        let own = measured.iter().enumerate();
+        let own: Vec<usize> = own
+            .filter(|(_, (of, _))| *of == row)
+            .map(|(at, _)| at)
+            .collect();
+        let columns = || jacobian.columns.iter();
+        let length =
+            |column: &Vec<f64>| norm(&own.iter().map(|at| column[*at]).collect::<Vec<_>>());
+        let doubts = columns().zip(&jacobian.disagreement);
         Candidate {
             name: format!("{speed:.3} m/s: {}", way.name),
-            rows: own.map(|(residual, _)| slope(residual)).collect(),
+            rows: own
+                .iter()
+                .map(|at| columns().map(|column| column[*at]).collect())
+                .collect(),
+            doubts: doubts
+                .map(|(column, disagreement)| JUMPING * disagreement * length(column))
+                .collect(),
             cost: way.cost,
         }
     };
@@ -331,6 +332,7 @@ pub(super) fn expected(
                 sigma: errors.speed_m_s,
             },
             values: Observable::ALL.map(value),
+            freedom: Freedom::KNOWN,
         }
     };
     Ok(Data {

@@ -4,6 +4,7 @@
 mod advice;
 mod band;
 mod candidates;
+mod contacts;
 mod joint;
 mod model;
 mod problem;

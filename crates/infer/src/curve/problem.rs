@@ -1,8 +1,9 @@
 //! Measured curves against a model's.
 
+use super::contacts::three_for_two;
 use super::model::{Model, Predicted, Speeds};
 use super::stencil::Stencil;
-use super::whiten::whiten;
+use super::whiten::{Errors, whiten};
 use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
@@ -33,8 +34,7 @@ pub struct CurveProblem {
 pub enum CurveError {
     /// Fewer numbers than unknowns.
     #[error(
-        "{file} has {values} measured values for {parameters} free parameters ({names}): free \
-         fewer, or add speeds or reflected times of flight"
+        "{file} has {values} measured values for {parameters} free parameters ({names}): {advice}"
     )]
     TooFew {
         /// Where the data come from.
@@ -45,6 +45,8 @@ pub enum CurveError {
         parameters: usize,
         /// Their names.
         names: String,
+        /// What to free or to add instead.
+        advice: String,
     },
     /// No parameter.
     #[error("no parameter is free: name some, such as eta,B")]
@@ -72,6 +74,9 @@ impl CurveProblem {
                 file: data.file,
                 parameters: parameters.len(),
                 names: names.join(", "),
+                advice: three_for_two(&model).unwrap_or_else(|| {
+                    "free fewer, or add speeds or reflected times of flight".to_owned()
+                }),
             });
         }
         Ok(Self::unchecked(model, data, parameters))
@@ -227,7 +232,8 @@ impl CurveProblem {
     ) -> Result<Vec<(f64, f64)>, ModelError> {
         let stencil = &self.stencils[row];
         let own = stencil.own();
-        let [mut misses, mut sigmas, mut moved] = [Vec::new(), Vec::new(), Vec::new()];
+        let mut misses = Vec::new();
+        let mut errors = Errors::of_speed(measured.freedom.speed);
         for of in measured.observables() {
             let Some(value) = measured.value(of) else {
                 continue;
@@ -244,10 +250,10 @@ impl CurveProblem {
                 _ => stencil.slope(at).ok_or_else(none)?,
             };
             misses.push(value.value - predicted);
-            sigmas.push(value.sigma);
-            moved.push(slope * predicted * relative);
+            let moved = slope * predicted * relative;
+            errors.push(value.sigma, measured.freedom(of), moved);
         }
-        Ok(whiten(&misses, &sigmas, &moved))
+        Ok(whiten(&misses, &errors.widened()))
     }
 }
 

@@ -1,5 +1,54 @@
 //! Residuals of one row, made independent.
 
+use crate::data::widening;
+
+/// Standard errors of what was measured at one speed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Errors {
+    /// Of each measured number by itself.
+    sigmas: Vec<f64>,
+    /// What an error of the speed of one σ moves each by.
+    moved: Vec<f64>,
+    /// Degrees of freedom of each, then of the speed's.
+    freedom: Vec<f64>,
+    of_speed: f64,
+}
+
+impl Errors {
+    /// None yet, of a speed whose error has these degrees of freedom.
+    pub(super) fn of_speed(freedom: f64) -> Self {
+        Self {
+            sigmas: Vec::new(),
+            moved: Vec::new(),
+            freedom: Vec::new(),
+            of_speed: freedom,
+        }
+    }
+
+    pub(super) fn push(&mut self, sigma: f64, freedom: f64, moved: f64) {
+        self.sigmas.push(sigma);
+        self.freedom.push(freedom);
+        self.moved.push(moved);
+    }
+
+    /// Each by what its own uncertainty costs, in its share of the row's covariance
+    /// C = diag(σᵢ²) + s sᵀ: sᵀ C⁻¹ s = q/(1 + q) of the speed and σᵢ² (C⁻¹)ᵢᵢ = 1 − (sᵢ/σᵢ)²/(1 + q) of the
+    /// others, q = Σ (sᵢ/σᵢ)²; they sum to the number of rows.
+    pub(super) fn widened(mut self) -> Self {
+        let pairs = self.sigmas.iter().zip(&self.moved);
+        let parts: Vec<f64> = pairs
+            .map(|(sigma, moved)| (moved / sigma).powi(2))
+            .collect();
+        let q: f64 = parts.iter().sum();
+        for (at, part) in parts.iter().enumerate() {
+            self.sigmas[at] *= widening(1.0 - part / (1.0 + q), self.freedom[at]);
+        }
+        let of_speed = widening(q / (1.0 + q), self.of_speed);
+        self.moved.iter_mut().for_each(|moved| *moved *= of_speed);
+        self
+    }
+}
+
 /// Lower triangle of a row's covariance.
 type Triangle = [[f64; 4]; 4];
 
@@ -10,7 +59,8 @@ type Triangle = [[f64; 4]; 4];
 ///
 /// The first is standardised by itself, each further one by what it tells beside
 /// those before it.
-pub(super) fn whiten(residuals: &[f64], sigmas: &[f64], moved: &[f64]) -> Vec<(f64, f64)> {
+pub(super) fn whiten(residuals: &[f64], errors: &Errors) -> Vec<(f64, f64)> {
+    let (sigmas, moved) = (&errors.sigmas, &errors.moved);
     let mut triangle: Triangle = [[0.0; 4]; 4];
     let mut white: Vec<(f64, f64)> = Vec::with_capacity(residuals.len());
     for i in 0..residuals.len().min(4) {
@@ -33,9 +83,20 @@ pub(super) fn whiten(residuals: &[f64], sigmas: &[f64], moved: &[f64]) -> Vec<(f
 mod tests {
     use super::*;
 
+    fn errors(sigmas: &[f64], moved: &[f64], freedom: f64) -> Errors {
+        let mut errors = Errors::of_speed(freedom);
+        for (sigma, moved) in sigmas.iter().zip(moved) {
+            errors.push(*sigma, freedom, *moved);
+        }
+        errors
+    }
+
     #[test]
     fn without_an_error_of_the_speed_each_has_its_own_sigma() {
-        let white = whiten(&[1.0, -6.0], &[0.5, 3.0], &[0.0, 0.0]);
+        let white = whiten(
+            &[1.0, -6.0],
+            &errors(&[0.5, 3.0], &[0.0, 0.0], f64::INFINITY),
+        );
         assert_eq!(white, [(2.0, 0.5_f64.ln()), (-2.0, 3.0_f64.ln())]);
     }
 
@@ -45,11 +106,28 @@ mod tests {
         let [a, b, c]: [f64; 3] = [0.25 + 0.64, -0.48, 0.09 + 0.36];
         let determinant = a * c - b * b;
         let exact = (r[0] * r[0] * c - 2.0 * r[0] * r[1] * b + r[1] * r[1] * a) / determinant;
-        let white = whiten(&r, &sigma, &moved);
+        let white = whiten(&r, &errors(&sigma, &moved, f64::INFINITY));
         let squares: f64 = white.iter().map(|(w, _)| w * w).sum();
         let ln_sigmas: f64 = white.iter().map(|(_, l)| l).sum();
         // Rounding of some ten operations.
         assert!((squares - exact).abs() < 1e-14, "{squares} {exact}");
         assert!((2.0 * ln_sigmas - determinant.ln()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn errors_are_widened_by_their_shares_of_a_sum() {
+        // One error alone: √(19/15). Two alike in one number: Welch's 38 degrees, √(38/34).
+        let alone = errors(&[0.5], &[0.0], 19.0).widened();
+        assert!((alone.sigmas[0] / 0.5 - (19.0_f64 / 15.0).sqrt()).abs() < 1e-15);
+        let both = errors(&[0.5], &[0.5], 19.0).widened();
+        for widened in [both.sigmas[0], both.moved[0]] {
+            // Rounding.
+            assert!((widened / 0.5 - (38.0_f64 / 34.0).sqrt()).abs() < 1e-15);
+        }
+        // Known ones, and ones of which nothing is known, stay.
+        for freedom in [f64::INFINITY, 4.0] {
+            let known = errors(&[0.5, 0.3], &[0.8, -0.6], freedom);
+            assert_eq!(known.clone().widened(), known);
+        }
     }
 }

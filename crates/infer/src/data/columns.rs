@@ -9,17 +9,24 @@ pub(super) struct Column {
     pub(super) title: String,
 }
 
-/// A measured quantity's column and that of its standard error.
+/// A measured quantity's column, that of its standard error, and those that tell how
+/// well this one is known.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Measured {
     pub(super) value: Column,
     pub(super) sigma: Option<Column>,
+    /// How many shots it is the mean of.
+    pub(super) count: Option<Column>,
+    /// The part of its error that all shots share, and that no scatter tells.
+    pub(super) shared: Option<Column>,
 }
 
 /// All columns that a fit can use.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Columns {
     pub(super) case: Option<Column>,
+    /// How many shots a row is of.
+    pub(super) shots: Option<Column>,
     pub(super) speed: Measured,
     pub(super) observables: [Option<Measured>; 4],
 }
@@ -42,7 +49,7 @@ impl Columns {
         })?;
         let column = |of: Observable| {
             let is_wanted = wanted.contains(&of);
-            let finer = of.finer_column().and_then(|name| measured(titles, name));
+            let finer = of.finer_column().and_then(|name| finer(titles, name, of));
             let found = finer.or_else(|| measured(titles, of.column()));
             found.filter(|_| is_wanted)
         };
@@ -53,6 +60,7 @@ impl Columns {
         }
         Ok(Self {
             case: find(titles, &["case"]),
+            shots: find(titles, &["shots"]),
             speed,
             observables,
         })
@@ -114,6 +122,20 @@ fn measured(titles: &[String], name: &str) -> Option<Measured> {
     Some(Measured {
         value,
         sigma: find(titles, &names),
+        count: find(titles, &[&format!("{name}_count")]),
+        shared: None,
+    })
+}
+
+/// A time taken to the mean speed: shots are counted with the plain mean, and its error
+/// holds what they share.
+fn finer(titles: &[String], name: &str, of: Observable) -> Option<Measured> {
+    let plain = of.column();
+    let stem = plain.strip_suffix("_s").unwrap_or(plain);
+    Some(Measured {
+        count: find(titles, &[&format!("{plain}_count")]),
+        shared: find(titles, &[&format!("{stem}_shared_s")]),
+        ..measured(titles, name)?
     })
 }
 

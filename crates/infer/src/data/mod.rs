@@ -9,8 +9,8 @@ mod shots;
 pub use check::wrong_speed;
 pub use error::{DataError, Place};
 pub(crate) use read::with_plain_ends;
-pub use read::{Defaults, Selection};
-pub use shots::{FEWEST_SHOTS, widening};
+pub use read::{Defaults, Scatter, Selection};
+pub use shots::{FEWEST_SHOTS, Freedom, widening};
 
 use hertzchain_signal::Estimate;
 
@@ -88,6 +88,8 @@ pub struct DataRow {
     pub speed_m_s: Estimate,
     /// Measured values in the order of [`Observable::ALL`].
     pub values: [Option<Estimate>; 4],
+    /// How well all these standard errors are known.
+    pub freedom: Freedom,
 }
 
 impl DataRow {
@@ -95,6 +97,11 @@ impl DataRow {
     #[must_use]
     pub fn value(&self, of: Observable) -> Option<Estimate> {
         self.values[of.index()]
+    }
+
+    /// Degrees of freedom of the scatter that an observable's standard error comes from.
+    pub(crate) fn freedom(&self, of: Observable) -> f64 {
+        self.freedom.of(of)
     }
 
     /// The observables that were measured.
@@ -139,6 +146,16 @@ impl Data {
     pub fn lines_of_exact_speeds(&self) -> Vec<u64> {
         let exact = self.rows.iter().filter(|row| row.speed_m_s.sigma == 0.0);
         let mut lines: Vec<u64> = exact.map(|row| row.line).collect();
+        lines.sort_unstable();
+        lines
+    }
+
+    /// Lines with errors from the scatter of so few shots that intervals can't be
+    /// corrected for that: their errors count as known.
+    #[must_use]
+    pub fn lines_of_few_shots(&self) -> Vec<u64> {
+        let few = self.rows.iter().filter(|row| row.freedom.is_too_small());
+        let mut lines: Vec<u64> = few.map(|row| row.line).collect();
         lines.sort_unstable();
         lines
     }

@@ -1,7 +1,7 @@
 //! From text to rows.
 
 use super::columns::{Column, Columns, Measured};
-use super::{Data, DataError, DataRow, Observable, Place, check, widening};
+use super::{Data, DataError, DataRow, Freedom, Observable, Place, check};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use hertzchain_signal::Estimate;
 
@@ -14,9 +14,23 @@ pub struct Defaults {
     pub time_s: Option<f64>,
     /// Of ratios of peaks.
     pub ratio: Option<f64>,
-    /// Shots from whose scatter all these errors come, the table's too: they are
-    /// widened by [`widening`](super::widening). `None` if they are known.
-    pub shots: Option<u32>,
+    /// How well errors are known, the table's too.
+    pub scatter: Scatter,
+}
+
+/// From the scatter of how many shots standard errors come. Such errors are widened by
+/// [`widening`](super::widening) in fits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scatter {
+    /// As many as the table tells of each row's own errors, in columns as `measure`
+    /// writes them: `shots`, and `tof_incident_s_count` of one quantity, less what they
+    /// share (`tof_incident_shared_s`). Where it tells nothing, errors are known.
+    #[default]
+    AsTold,
+    /// All errors are known, whatever the table says of shots.
+    Known,
+    /// All errors come from so many shots.
+    Of(u32),
 }
 
 /// What to take from a table.
@@ -177,21 +191,29 @@ impl Reader<'_> {
         let line = line(record);
         let speed_m_s = self.speed(record, line)?;
         let mut values = [None; 4];
+        let mut freedom = Freedom {
+            speed: self.freedom(record, line, &self.columns.speed, speed_m_s.sigma)?,
+            ..Freedom::KNOWN
+        };
         for (of, columns) in Observable::ALL.into_iter().zip(&self.columns.observables) {
             if let Some(columns) = columns {
-                values[of.index()] = self.observable(record, line, of, columns)?;
+                let value = self.observable(record, line, of, columns)?;
+                let sigma = value.map_or(f64::NAN, |value| value.sigma);
+                freedom.values[of.index()] = self.freedom(record, line, columns, sigma)?;
+                values[of.index()] = value;
             }
         }
         let row = DataRow {
             line,
             speed_m_s,
             values,
+            freedom,
         };
         Ok(values.iter().any(Option::is_some).then_some(row))
     }
 
     fn speed(&self, record: &StringRecord, line: u64) -> Result<Estimate, DataError> {
-        let Measured { value, sigma } = &self.columns.speed;
+        let Measured { value, sigma, .. } = &self.columns.speed;
         let speed = self.number(record, line, value)?.ok_or_else(|| {
             let what = "no speed; expected one in m/s".to_owned();
             self.cell_error(line, value, what)
@@ -203,7 +225,7 @@ impl Reader<'_> {
         };
         let estimate = Estimate {
             value: speed,
-            sigma: self.widened(known.or(self.defaults.speed_m_s).unwrap_or(0.0)),
+            sigma: known.or(self.defaults.speed_m_s).unwrap_or(0.0),
         };
         let place = sigma.as_ref().unwrap_or(value);
         self.sound(check::speed_sigma(estimate), line, place)?;
@@ -239,15 +261,60 @@ impl Reader<'_> {
             );
             self.cell_error(line, place, what)
         })?;
-        let sigma = self.widened(sigma);
         let estimate = Estimate { value, sigma };
         self.sound(check::sigma(of, estimate), line, place)?;
         Ok(Some(estimate))
     }
 
-    /// A standard error with what its own uncertainty costs.
-    fn widened(&self, sigma: f64) -> f64 {
-        sigma * self.defaults.shots.and_then(widening).unwrap_or(1.0)
+    /// Degrees of freedom of the scatter from which a standard error comes; infinite if
+    /// it is known, as one from an option is. Of an error part of which all shots share, and
+    /// which is known, Satterthwaite's: the rest alone scatters.
+    fn freedom(
+        &self,
+        record: &StringRecord,
+        line: u64,
+        columns: &Measured,
+        sigma: f64,
+    ) -> Result<f64, DataError> {
+        let own = columns.sigma.as_ref();
+        let own = own.is_some_and(|column| !record.get(column.at).unwrap_or_default().is_empty());
+        match self.defaults.scatter {
+            Scatter::Known => return Ok(f64::INFINITY),
+            Scatter::Of(shots) => return Ok(f64::from(shots) - 1.0),
+            Scatter::AsTold if !own => return Ok(f64::INFINITY),
+            Scatter::AsTold => {}
+        }
+        let Some(shots) = self.shots(record, line, columns)? else {
+            return Ok(f64::INFINITY);
+        };
+        let shared = match &columns.shared {
+            Some(column) => self.number(record, line, column)?.unwrap_or(0.0),
+            None => 0.0,
+        };
+        let scattered = 1.0 - (shared / sigma).powi(2).min(1.0);
+        // One shot has no scatter: its error is known from elsewhere.
+        Ok(match shots {
+            1.0 => f64::INFINITY,
+            shots => (shots - 1.0) / scattered.powi(2),
+        })
+    }
+
+    /// How many shots a row tells that a mean is of.
+    fn shots(
+        &self,
+        record: &StringRecord,
+        line: u64,
+        columns: &Measured,
+    ) -> Result<Option<f64>, DataError> {
+        for column in columns.count.iter().chain(&self.columns.shots) {
+            if let Some(shots) = self.number(record, line, column)? {
+                let wrong = shots < 1.0 || shots.fract() != 0.0;
+                let what = || format!("{shots} is no number of shots; expected a whole one from 1");
+                self.sound(wrong.then(what), line, column)?;
+                return Ok(Some(shots));
+            }
+        }
+        Ok(None)
     }
 
     fn sound(&self, wrong: Option<String>, line: u64, column: &Column) -> Result<(), DataError> {

@@ -1,8 +1,9 @@
 //! Where a free number starts and what it may be.
 
 use super::name::{Found, Target};
-use hertzchain_chain::{Chain, Material, Pair};
+use hertzchain_chain::{Chain, Material, Pair, laws};
 use hertzchain_experiment::Experiment;
+use std::f64::consts::FRAC_PI_2;
 
 /// A change of an exponent that matters.
 pub(super) const EXPONENT_SCALE: f64 = 0.1;
@@ -53,14 +54,38 @@ fn pair(chain: &Chain, section: usize) -> Option<Pair> {
     chain.pair(inside)
 }
 
+/// Steepest exponent of a force that the experiment file takes.
+const STEEPEST: f64 = 100.0;
+
+/// What a parameter of a contact law may be, as its law declares.
+fn of_law(path: &str) -> Option<(f64, f64)> {
+    let (section, name) = path.rsplit_once('.')?;
+    let law = laws::find(section.rsplit_once(".laws.")?.1)?;
+    let parameter = law.info.parameters.iter().find(|p| p.name == name)?;
+    let most = match name {
+        "exponent" => STEEPEST,
+        _ => f64::INFINITY,
+    };
+    let least = match name {
+        "stiffness" => f64::MIN_POSITIVE,
+        _ => parameter.least,
+    };
+    Some((least, most))
+}
+
 /// What a number may be, as far as its name tells.
 pub(super) fn bounds(found: &Found) -> (f64, f64) {
     let Some(path) = found.target.path() else {
         return (f64::MIN_POSITIVE, f64::INFINITY);
     };
+    if let Some(bounds) = of_law(path) {
+        return bounds;
+    }
     match path.rsplit('.').next().unwrap_or_default() {
         "poisson_ratio" => (0.0, MOST_POISSON_RATIO),
-        "exponent" | "incline" => (-MOST_EXPONENT, MOST_EXPONENT),
+        "exponent" => (-MOST_EXPONENT, MOST_EXPONENT),
+        // The experiment file takes no other: the wall is below.
+        "incline" => (0.0, FRAC_PI_2),
         "prefactor" | "young_modulus" | "stiffness" | "mass" | "radius" | "density" => {
             (f64::MIN_POSITIVE, f64::INFINITY)
         }

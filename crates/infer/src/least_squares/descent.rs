@@ -59,6 +59,12 @@ pub enum Ending {
         /// Expected fall of χ²/2.
         expected_fall: f64,
     },
+    /// The minimum of all that the data determine; along combinations that they leave
+    /// open there is no one minimum.
+    Open {
+        /// Expected fall of χ²/2 along those that they determine.
+        expected_fall: f64,
+    },
     /// The iterations allowed ran out.
     Iterations {
         /// Expected fall of χ²/2.
@@ -75,7 +81,7 @@ impl Ending {
     /// Whether the point reached is a minimum, as far as the model is smooth.
     #[must_use]
     pub fn converged(&self) -> bool {
-        matches!(self, Self::Minimum | Self::Floor { .. })
+        matches!(self, Self::Minimum | Self::Floor { .. } | Self::Open { .. })
     }
 }
 
@@ -87,6 +93,10 @@ impl std::fmt::Display for Ending {
                 f,
                 "converged as far as the model is smooth (chi-square could fall by {:.1e})",
                 2.0 * expected_fall
+            ),
+            Self::Open { .. } => write!(
+                f,
+                "converged in what the data determine; along the combinations that they leave open there is no one minimum"
             ),
             Self::Stuck { expected_fall } => write!(
                 f,
@@ -140,7 +150,7 @@ const RESOLVED: f64 = 1e-5;
 const LARGEST_DAMPING: f64 = 1e10;
 const LEAST_DAMPING: f64 = 1e-12;
 /// A fall of χ²/2 that no conclusion depends on.
-const SMALL_FALL: f64 = 1e-3;
+pub(super) const SMALL_FALL: f64 = 1e-3;
 /// Change of all residuals together, in σ, by a parameter's whole size, below which
 /// it counts for nothing.
 pub(super) const NOTICED: f64 = 0.01;

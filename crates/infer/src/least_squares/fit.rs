@@ -2,6 +2,7 @@
 
 use super::descent::{Descent, Ending, Limits, NOTICED, Reached};
 use super::drive::drive;
+use super::ending::ending;
 use super::jacobian::{Jacobian, jacobian};
 use super::merit::Merit;
 use super::starts::starts;
@@ -231,16 +232,17 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
         source,
     })?;
     changes_something(problem.parameters(), &best.point, &jacobian)?;
-    let gradient = merit.linear(at, &slopes).gradient;
+    let linear = merit.linear(at, &slopes);
+    let binding = binding(problem.parameters(), &best.point, &linear.gradient);
     Ok(Fit {
         point: best.point.clone(),
         cost: at.cost,
         residuals: at.rows[..problem.residual_count()].to_vec(),
         ln_sigmas: at.ln_sigmas.iter().sum(),
-        binding: binding(problem.parameters(), &best.point, &gradient),
+        ending: ending(problem.parameters(), best, (&linear, &jacobian), &binding),
+        binding,
         evaluations: 4 * best.point.len() - known.len(),
         jacobian,
-        ending: best.ending.clone(),
         starts: Vec::new(),
         loss: merit.loss,
     })

@@ -13,6 +13,11 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// derivatives are taken to be wrong by.
 pub(crate) const EXTRAPOLATED: f64 = 0.03;
 
+/// The same where a column may have a jump of the model, as where its solver takes another
+/// number of steps. One of j within the shorter steps h makes the derivatives j/2h and j/4h, so
+/// that they disagree by j/4h and the extrapolated one is wrong by 7j/12h.
+pub(crate) const JUMPING: f64 = 7.0 / 3.0;
+
 /// Derivatives of the residuals at a point, by central differences with two
 /// step sizes and Richardson's extrapolation from both.
 ///

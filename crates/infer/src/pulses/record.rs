@@ -157,8 +157,7 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, R
         error,
     };
     let found = measure(channels, interval_s, &Measuring::default()).map_err(named)?;
-    let grave = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_) | Doubt::Order);
-    if let Some(doubt) = found.found.doubts.iter().copied().find(grave) {
+    if let Some(doubt) = found.found.doubts.iter().copied().find(Doubt::is_grave) {
         return Err(RecordError::Doubtful {
             source_name: source.to_owned(),
             doubt,

@@ -7,8 +7,8 @@
 
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Model, Observable, Predicted, Speeds,
-    widening,
+    CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Freedom, Model, Observable, Predicted,
+    Speeds,
 };
 use hertzchain_signal::Estimate;
 use hertzchain_study::{Plan, Solver, shoot};
@@ -125,8 +125,8 @@ impl Truth {
     }
 
     /// A repetition whose standard errors come from the scatter of its own twenty
-    /// shots, widened for that or not.
-    pub fn measured_by_shots(&self, seed: u64, widened: bool) -> Data {
+    /// shots, which is told or not.
+    pub fn measured_by_shots(&self, seed: u64, told: bool) -> Data {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut mean_of = |scatter: f64| -> Estimate {
             let shots: Vec<f64> = (0..SHOTS as usize)
@@ -138,16 +138,15 @@ impl Truth {
             let mean = shots.iter().sum::<f64>() / SHOTS;
             let squares: f64 = shots.iter().map(|shot| (shot - mean).powi(2)).sum();
             let sigma = (squares / (SHOTS - 1.0) / SHOTS).sqrt();
-            let factor = widening(SHOTS as u32).unwrap();
-            Estimate {
-                value: mean,
-                sigma: if widened { factor * sigma } else { sigma },
-            }
+            Estimate { value: mean, sigma }
         };
         let mut data = self.measured(seed);
         for (at, row) in data.rows.iter_mut().enumerate() {
             let speed = mean_of(SPEED_M_S);
             row.speed_m_s.sigma = speed.sigma;
+            if told {
+                row.freedom = Freedom::of_all(SHOTS - 1.0);
+            }
             for of in [Observable::Incident, Observable::Reflected] {
                 let exact = self.curve[at][of as usize].unwrap();
                 let moved = self.slopes[at][of as usize] * speed.value / row.speed_m_s.value;
@@ -190,6 +189,7 @@ impl Truth {
                     sigma: speed_error,
                 },
                 values: [values[0], values[1], None, None],
+                freedom: Freedom::KNOWN,
             }
         };
         Data {

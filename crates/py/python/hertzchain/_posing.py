@@ -119,7 +119,7 @@ class FitOptions(TypedDict, total=False):
     speed_error: float | None
     tof_error: float | None
     ratio_error: float | None
-    error_shots: int | None
+    error_shots: int | Literal["known"] | None
     accuracy: float
     robust: bool
     starts: int

@@ -27,11 +27,13 @@ class Parameter(Tabled):
     value : float
         At the best fit.
     standard_error : float or None
-        By the covariance; None where the data do not determine it.
+        By the covariance; None where the data do not determine it, and at a bound.
     determined : bool
         Whether the data determine it; if not, its value is one of many that fit as well.
     at_bound : bool
         Whether the best fit lies at the end of what it may be.
+    limit : dict or None
+        Of one at or near a bound, by profile: ``side`` ("at most" or "at least"), ``percent_68``, ``percent_95``.
     start, lower, upper, scale : float or None
         Where it started, what it may be, a change that matters.
     prior : dict or None
@@ -48,6 +50,7 @@ class Parameter(Tabled):
     standard_error: float | None
     determined: bool
     at_bound: bool
+    limit: dict[str, Any] | None
     start: float
     lower: float | None
     upper: float | None
@@ -63,6 +66,10 @@ class Parameter(Tabled):
 
     def __str__(self) -> str:
         error = "not determined" if self.standard_error is None else f"± {short(self.standard_error, 2)}"
+        if self.at_bound:
+            error = "at its bound"
+            if self.limit and self.limit["percent_95"] is not None:
+                error += f", {self.limit['side']} {short(self.limit['percent_95'], 3)} (95 %)"
         return f"{short(self.value)} {error} {self.unit}".strip()
 
     def __repr__(self) -> str:
@@ -196,6 +203,9 @@ class Designed(Tabled):
         A series, each the best after those before it.
     undetermined : list of str
         Combinations that the data so far leave open: errors of their parameters mean little.
+    hopeless : list of str
+        What nothing that could be measured determines, and what is tightened instead: then
+        `parameters` are combinations.
 
     References
     ----------
@@ -208,6 +218,7 @@ class Designed(Tabled):
     ranked: list[dict[str, Any]]
     series: list[dict[str, Any]]
     undetermined: list[str]
+    hopeless: list[str]
 
     _index = "measure"
 
@@ -227,6 +238,7 @@ class Designed(Tabled):
     def __repr__(self) -> str:
         rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
         rows |= {f"left open, {at}": words for at, words in enumerate(self.undetermined, 1)}
+        rows |= {f"hopeless, {at}": words for at, words in enumerate(self.hopeless, 1)}
         return lines(f"Design for {', '.join(self.parameters)}: measure next", rows)
 
 

@@ -36,7 +36,7 @@ def fit(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
-    error_shots: int | None = None,
+    error_shots: int | Literal["known"] | None = None,
     accuracy: float = 1e-5,
     robust: bool = False,
     starts: int = 1,
@@ -77,8 +77,9 @@ def fit(
     speed_error, tof_error, ratio_error : float, optional
         Standard errors in m/s, s and 1 where the table has none; ``speed_error=0`` says that
         speeds are exact.
-    error_shots : int, optional
-        Shots a row from whose scatter the standard errors come: widens them for that.
+    error_shots : int or "known", optional
+        Shots a row from whose scatter the standard errors come, which widens them for that; what the
+        table tells in its columns ``shots`` and ``tof_incident_s_count`` when absent.
     use : iterable of {"incident", "reflected", "wall-ratio", "returning-ratio"}
         Which observables of a table are fitted.
     accuracy : float
@@ -185,7 +186,7 @@ def design(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
-    error_shots: int | None = None,
+    error_shots: int | Literal["known"] | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,
@@ -256,7 +257,7 @@ def gauge(
     speed_error: float | None = None,
     tof_error: float | None = None,
     ratio_error: float | None = None,
-    error_shots: int | None = None,
+    error_shots: int | Literal["known"] | None = None,
     accuracy: float = 1e-5,
     threads: int | None = None,
     progress: object = None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import warnings as _warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from ._table import Floats, Tabled, dataset, frame, lines, span, unit
-from .errors import OptionError
+from .errors import ExperimentWarning, OptionError
 from .results import PowerLaw
 
 if TYPE_CHECKING:
@@ -124,12 +125,19 @@ def campaign(
     InternalError
         A recording that can't be written.
 
+    Warns
+    -----
+    ExperimentWarning
+        A record that ends before the wave is back, a rate of few samples a pulse.
+
     References
     ----------
     The rig and its runs: docs/rig.md, after [Labbe2017].
     """
     with options.progress(progress, None, "shot") as update:
         done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)
+    for text in done.pop("warnings"):
+        _warnings.warn(text, ExperimentWarning, stacklevel=2)
     return Campaigned(folder=Path(out), **done)
 
 

@@ -1,7 +1,9 @@
 //! What the lines before and beside the numbers say: names, units, rate.
 
 use super::dialect::Dialect;
-use super::field::{fields, leading_number, number};
+use super::even;
+use super::field::{fields, last_digit, leading_number, number};
+use super::times::Printed;
 
 /// What is known of the columns.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,6 +108,7 @@ impl Header {
             match rising(&rows, 0) {
                 Some(1.0) => index = Some(first),
                 Some(_) => time = Some(first),
+                None if even::rises(&risen(beginning, dialect, first)) => time = Some(first),
                 None => {}
             }
         }
@@ -159,6 +162,23 @@ fn rising(rows: &[Vec<f64>], column: usize) -> Option<f64> {
     let step = (last - first) / (values.len().checked_sub(1)? as f64);
     let even = |(i, value): (usize, &f64)| (value - first - i as f64 * step).abs() <= 0.5 * step;
     (values.len() > 2 && step > 0.0 && values.iter().enumerate().all(even)).then_some(step)
+}
+
+/// A column until it falls, with its digits: times of few digits repeat.
+fn risen(beginning: &str, dialect: &Dialect, column: usize) -> Vec<Printed> {
+    let printed = |line: &str| {
+        let fields = fields(line, dialect.delimiter);
+        let field = fields.get(column)?;
+        Some(Printed {
+            s: number(field, dialect.decimal_comma)?,
+            unit_s: last_digit(field, dialect.decimal_comma),
+        })
+    };
+    let lines = beginning.lines().skip(dialect.first_row);
+    let mut last_s = f64::NEG_INFINITY;
+    let rows = lines.map_while(printed);
+    rows.take_while(|time| time.s >= std::mem::replace(&mut last_s, time.s))
+        .collect()
 }
 
 /// A line without the mark of a comment before it. Where the first column counts, a

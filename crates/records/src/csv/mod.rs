@@ -1,12 +1,14 @@
 //! Columns of numbers as text: any delimiter, decimal commas, preambles.
 
 mod dialect;
+mod even;
 mod field;
 mod header;
+mod lines;
 mod rows;
 mod times;
 
-use crate::channels::{chosen, interval_s, seconds_taken};
+use crate::channels::{Interval, chosen, interval_s, seconds_taken};
 use crate::error::RecordError;
 use crate::options::ReadOptions;
 use crate::read::Raw;
@@ -32,10 +34,11 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
             .collect(),
         columns: columns.copied().collect(),
         time: header.time.map(|time| time.0).zip(unit_s),
-        interval_s: match header.time {
+        stated_s: header.interval_s,
+        interval: match header.time {
             // Told by the times.
-            Some(_) => f64::NAN,
-            None => interval_s(file, header.interval_s, options)?,
+            Some(_) => Interval::of(f64::NAN),
+            None => Interval::of(interval_s(file, header.interval_s, options)?),
         },
         notes: header
             .time

@@ -1,16 +1,17 @@
 //! Rows into records, line by line.
 
 use super::dialect::{Dialect, text};
-use super::field::{fields, number};
-use super::times;
-use crate::channels;
+use super::field::{fields, last_digit, no_number, number};
+use super::lines::{Lines, Read};
+use super::times::{self, Printed, Returns};
+use crate::channels::{self, Interval};
 use crate::cut::{MOST_SAMPLES, from_sample};
 use crate::error::{RecordError, name};
 use crate::options::{Parts, ReadOptions};
 use crate::record::{Channel, Record, Samples};
+use std::borrow::Cow;
 use std::collections::VecDeque;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,10 @@ pub(super) struct Plan {
     pub columns: Vec<usize>,
     /// Column of times and their unit in s.
     pub time: Option<(usize, f64)>,
+    /// In s between samples, that a line beside the numbers states.
+    pub stated_s: Option<f64>,
     /// Between samples; of the last segment where times are written.
-    pub interval_s: f64,
+    pub interval: Interval,
     /// Lines that, seen again, separate segments.
     pub separators: Vec<String>,
     pub options: ReadOptions,
@@ -34,7 +37,8 @@ pub(super) struct Plan {
 /// An iterator over the records of a text.
 pub(super) struct Rows {
     file: PathBuf,
-    reader: BufReader<File>,
+    lines: Lines,
+    bytes: Vec<u8>,
     plan: Plan,
     line: usize,
     ended: bool,
@@ -44,6 +48,8 @@ pub(super) struct Rows {
     shots: u64,
     /// Samples of the segment under way that were given before.
     passed: usize,
+    /// Of times that the given rate makes irrelevant.
+    returns: Returns,
     block: Block,
     ready: VecDeque<Result<Record, RecordError>>,
 }
@@ -51,13 +57,13 @@ pub(super) struct Rows {
 /// Rows since the last separator.
 #[derive(Default)]
 struct Block {
-    times_s: Vec<f64>,
+    times: Vec<Printed>,
     columns: Vec<Vec<f64>>,
 }
 
 /// What a line is.
 enum Line {
-    Row(Vec<f64>),
+    Row(Option<Printed>, Vec<f64>),
     Separator,
     Bad(String),
     End,
@@ -65,53 +71,58 @@ enum Line {
 
 impl Rows {
     pub fn open(file: &Path, plan: Plan) -> io::Result<Self> {
-        let mut reader = BufReader::with_capacity(1 << 16, File::open(file)?);
-        let mut skipped = Vec::new();
+        let mut lines = Lines::open(file)?;
+        let mut bytes = Vec::new();
         for _ in 0..plan.dialect.first_row {
-            reader.read_until(b'\n', &mut skipped)?;
-            skipped.clear();
+            lines.next(&mut bytes)?;
         }
         Ok(Self {
             file: file.to_owned(),
-            reader,
+            lines,
+            bytes,
             line: plan.dialect.first_row,
             plan,
             ended: false,
             lost: false,
             shots: 0,
             passed: 0,
+            returns: Returns::default(),
             block: Block::default(),
             ready: VecDeque::new(),
         })
     }
 
     fn line(&mut self) -> Line {
-        let mut bytes = Vec::new();
-        match self.reader.read_until(b'\n', &mut bytes) {
-            Ok(0) => return Line::End,
-            Ok(_) => self.line += 1,
+        let read = match self.lines.next(&mut self.bytes) {
+            Ok(Read::Nothing) => return Line::End,
+            Ok(read) => read,
             Err(cause) => {
                 self.ready
                     .push_back(Err(RecordError::reading(&self.file, cause)));
                 return Line::End;
             }
-        }
-        let whole = bytes.ends_with(b"\n");
-        let line = text(&bytes);
-        let line = line.trim_end_matches(['\r', '\n']);
+        };
+        self.line += 1;
+        let whole = read == Read::Whole;
+        let line = text(&self.bytes);
+        let line = line.as_str();
         let dialect = &self.plan.dialect;
         let fields = fields(line, dialect.delimiter);
-        let value = |column: &usize| number(fields.get(*column)?, dialect.decimal_comma);
-        let time = self.plan.time.map(|time| time.0);
-        let values: Option<Vec<f64>> = time.iter().chain(&self.plan.columns).map(value).collect();
+        let value = |column: &usize| {
+            let field = fields.get(*column)?;
+            number(field, dialect.decimal_comma).or_else(|| no_number(field).filter(|_| whole))
+        };
         let blank = fields.iter().all(|field| field.is_empty());
-        match values {
-            Some(values) => Line::Row(values),
-            None if blank || self.plan.separators.iter().any(|known| known == line) => {
-                Line::Separator
-            }
-            None if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
-            None => {
+        let time = match self.plan.time {
+            Some((column, unit_s)) => self.time(fields.get(column), unit_s).map(Some),
+            None => Some(None),
+        };
+        let values = self.plan.columns.iter().map(value);
+        match time.zip(values.collect()) {
+            Some((time, values)) if !blank => Line::Row(time, values),
+            _ if blank || self.plan.separators.iter().any(|known| known == line) => Line::Separator,
+            _ if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
+            _ => {
                 let shown: String = line.chars().take(60).collect();
                 Line::Bad(format!(
                     "line {} is no row of numbers: {shown:?}",
@@ -121,11 +132,27 @@ impl Rows {
         }
     }
 
+    /// A time and its last digit; where the rate is told and trusted it may be anything.
+    fn time(&self, field: Option<&Cow<'_, str>>, unit_s: f64) -> Option<Printed> {
+        let comma = self.plan.dialect.decimal_comma;
+        let read = field.and_then(|field| Some((number(field, comma)?, last_digit(field, comma))));
+        let nothing = || {
+            self.plan
+                .options
+                .rate_is_trusted()
+                .then_some((f64::NAN, 0.0))
+        };
+        read.or_else(nothing).map(|(time, last)| Printed {
+            s: time * unit_s,
+            unit_s: last * unit_s,
+        })
+    }
+
     /// Reads on until something is ready or the file is at its end.
     fn advance(&mut self) {
         match self.line() {
-            Line::Row(_) if self.lost => {}
-            Line::Row(values) => self.row(&values),
+            Line::Row(..) if self.lost => {}
+            Line::Row(time, values) => self.row(time, &values),
             Line::Separator => {
                 self.close(true);
                 self.lost = false;
@@ -145,16 +172,16 @@ impl Rows {
         }
     }
 
-    fn row(&mut self, values: &[f64]) {
-        let mut values = values;
-        if let Some((_, unit_s)) = self.plan.time {
-            let (time, rest) = values.split_first().unwrap_or((&f64::NAN, &[]));
-            let time_s = time * unit_s;
-            if self.block.times_s.last().is_some_and(|last| time_s < *last) {
+    fn row(&mut self, time: Option<Printed>, values: &[f64]) {
+        if let Some(time) = time {
+            let begins = match self.plan.options.rate_is_trusted() {
+                true => self.returns.begins(time.s),
+                false => self.block.times.last().is_some_and(|last| time.s < last.s),
+            };
+            if begins {
                 self.close(true);
             }
-            self.block.times_s.push(time_s);
-            values = rest;
+            self.block.times.push(time);
         }
         self.block.columns.resize_with(values.len(), Vec::new);
         for (column, value) in self.block.columns.iter_mut().zip(values) {
@@ -179,8 +206,8 @@ impl Rows {
         let whole = 0..block.len();
         let segments = match self.plan.time {
             _ if block.len() == 0 => Vec::new(),
-            Some(_) => times::segments(&block.times_s),
-            None => std::iter::once(whole).collect(),
+            Some(_) if !self.plan.options.rate_is_trusted() => times::segments(&block.times),
+            _ => std::iter::once(whole).collect(),
         };
         for (number, range) in segments.into_iter().enumerate() {
             if number > 0 || self.passed == 0 {
@@ -205,10 +232,8 @@ impl Rows {
             shot => format!("{}, segment {shot}", name(&self.file)),
         };
         let source = from_sample(segment, self.passed as u64);
-        let interval_s = match block.times_s.get(range.clone()) {
-            Some(times) if self.plan.time.is_some() => self.interval_s(&source, times)?,
-            _ => self.plan.interval_s,
-        };
+        let times = block.times.get(range.clone()).unwrap_or_default();
+        let interval = self.interval(&source, times)?;
         let channels = self.plan.names.iter().zip(&block.columns);
         let channel = |(name, column): (&String, &Vec<f64>)| Channel {
             name: name.clone(),
@@ -217,26 +242,38 @@ impl Rows {
         Ok(Record {
             shot: Some(self.shots),
             first_sample: self.passed as u64,
-            notes: self.plan.notes.clone(),
+            interval_error_s: interval.error_s,
+            notes: self
+                .plan
+                .notes
+                .iter()
+                .cloned()
+                .chain(interval.note)
+                .collect(),
             ..Record::new(
                 source,
                 &self.file,
-                interval_s,
+                interval.s,
                 channels.map(channel).collect(),
             )
         })
     }
 
     /// A piece that goes on is as the piece before it.
-    fn interval_s(&mut self, source: &str, times_s: &[f64]) -> Result<f64, RecordError> {
-        if self.passed == 0 {
-            let stated_s = times::interval_s(source, times_s)?;
-            self.plan.interval_s =
-                channels::interval_s(&self.file, Some(stated_s), &self.plan.options)?;
-        } else if times_s.len() > 1 {
-            times::interval_s(source, times_s)?;
+    fn interval(&mut self, source: &str, times: &[Printed]) -> Result<Interval, RecordError> {
+        let options = &self.plan.options;
+        let given = options.rate_hz.filter(|_| options.trust_rate);
+        if let Some(rate_hz) = given {
+            return Ok(Interval::of(rate_hz.recip()));
         }
-        Ok(self.plan.interval_s)
+        if self.plan.time.is_some() && self.passed == 0 {
+            let told = times::interval(source, times)?;
+            self.plan.interval =
+                channels::from_times(&self.file, &told, self.plan.stated_s, options)?;
+        } else if times.len() > 1 {
+            times::interval(source, times)?;
+        }
+        Ok(self.plan.interval.clone())
     }
 }
 

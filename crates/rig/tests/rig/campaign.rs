@@ -98,8 +98,16 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     let before = out.recordings();
     let lost = before.keys().nth(2).unwrap();
     std::fs::remove_file(out.0.join(lost)).unwrap();
-    std::fs::write(out.0.join(format!(".{lost}.1-2-3.part")), b"half a file").unwrap();
+    // Of a killed run, of one that is still at work, and of somebody else.
+    let part = |name: &str| out.0.join(format!(".{name}.1-2-3.part"));
+    let (killed, alive, other) = (part(lost), part("dry-01-0.1000.h5"), part("mine.h5"));
+    for path in [&killed, &alive, &other] {
+        std::fs::write(path, b"half a file").unwrap();
+    }
+    let at_work = std::fs::File::open(&alive).unwrap();
+    at_work.lock().unwrap();
     let done = campaign(&plan, &out.0, Shard::WHOLE, &quiet).unwrap();
+    assert!(!killed.exists() && alive.exists() && other.exists());
     assert_eq!((done.kept, done.run, done.shots), (5, 1, 3));
     assert!(out.recordings() == before);
     assert_eq!(

@@ -9,6 +9,7 @@ mod amplifier;
 mod campaign;
 mod claims;
 mod instruments;
+mod outlook;
 mod poisoned;
 mod record;
 mod series;

@@ -11,12 +11,15 @@ pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding
     let rails = finding.rails_of(recorded);
     let mut doubts = Vec::new();
     let mut steps = [f64::INFINITY; 2];
-    for pulse in found.pulses() {
+    let pulses = [&mut found.passing, &mut found.wall, &mut found.returning];
+    for pulse in pulses.into_iter().flatten() {
         let which = usize::from(pulse.place == Place::Wall);
         let (from, to) = pulse.extent;
         let inside = channels[which].get(from..=to).unwrap_or_default();
-        let saturated = saturated(inside, own[which], pulse, rails[which]);
-        doubts.extend(saturated.then_some(Doubt::Saturation(pulse.place)));
+        if let Some(rails) = saturated(inside, own[which], pulse, rails[which]) {
+            doubts.push(Doubt::Saturation(pulse.place));
+            pulse.clipped = clipped(inside, from, rails);
+        }
         steps[which] = steps[which].min(step(inside));
     }
     if let Channels::Summed(_) = recorded {
@@ -27,8 +30,18 @@ pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding
     let coarse = found
         .pulses()
         .filter(|pulse| found.upright(pulse.place).is_coarse(pulse.height));
-    doubts.extend(coarse.map(|pulse| Doubt::CoarseSteps(pulse.place)));
+    let coarse: Vec<Place> = coarse.map(|pulse| pulse.place).collect();
+    doubts.extend(coarse.iter().copied().map(Doubt::CoarseSteps));
     found.doubt(doubts);
+    // A top of few steps is flat by itself.
+    let flat = |pulse: &&mut Pulse| {
+        let which = usize::from(pulse.place == Place::Wall);
+        rails[which].is_none() && coarse.contains(&pulse.place)
+    };
+    let pulses = [&mut found.passing, &mut found.wall, &mut found.returning];
+    for pulse in pulses.into_iter().flatten().filter(flat) {
+        pulse.clipped = None;
+    }
 }
 
 /// Least difference of neighbours. Of samples that are not rounded, the least of some
@@ -39,13 +52,27 @@ fn step(samples: &[f64]) -> f64 {
     differ.fold(f64::INFINITY, f64::min)
 }
 
-/// Whether a pulse has a run of samples at the record's extremes, or any on a known rail.
-fn saturated(inside: &[f64], (low, high): (f64, f64), pulse: &Pulse, known: Option<Rails>) -> bool {
+/// The rails on which a pulse has a run of samples: the record's extremes, or known ones, of
+/// which a single sample is enough.
+fn saturated(
+    inside: &[f64],
+    (low, high): (f64, f64),
+    pulse: &Pulse,
+    known: Option<Rails>,
+) -> Option<Rails> {
     // A round top of a hundred steps has a run of a tenth of its width.
     let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
     let own = (Rails { low, high }, longest);
     let (rails, shortest) = known.map_or(own, |rails| (rails, 1));
-    has_run(inside, rails, shortest)
+    has_run(inside, rails, shortest).then_some(rails)
+}
+
+/// First and last sample on a rail, counted in the record.
+fn clipped(inside: &[f64], from: usize, rails: Rails) -> Option<(usize, usize)> {
+    let on_rail = |sample: &f64| rails.hold(*sample);
+    let first = inside.iter().position(on_rail)?;
+    let last = inside.iter().rposition(on_rail)?;
+    Some((from + first, from + last))
 }
 
 /// Least and largest, eight lanes at a time.

@@ -56,12 +56,6 @@ pub(super) fn overlap(one: &Seen<'_, '_>, other: &Seen<'_, '_>) -> bool {
     valley > (0.1 * lower).max(5.0 * one.smooth.noise)
 }
 
-/// Whether the record ends before a return could have been missed.
-pub(super) fn ends_early(passing: &Pulse, wall: &Pulse, samples: usize) -> bool {
-    let incident = wall.at.saturating_sub(passing.at);
-    (samples as f64) < wall.at as f64 + 1.8 * incident as f64
-}
-
 /// Missing pulses.
 pub(super) fn missing(found: &[Option<Pulse>; 3]) -> impl Iterator<Item = Doubt> {
     let places = [Place::Passing, Place::Wall, Place::Returning];

@@ -48,12 +48,24 @@ pub enum Doubt {
     RecordTooShort,
     /// Pulses may have been taken for one another.
     Order,
+    /// One of the three pulses is lost, and it is not plain which: of those found the first may
+    /// be the passing or the wall's.
+    Lost,
     /// A pulse was found, but the method could not tell its time.
     NotPicked(Place),
     /// A pulse is few steps of the digitiser high, and no noise shakes them.
     CoarseSteps(Place),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
+}
+
+impl Doubt {
+    /// Whether times may be of something else than the wave: of a clipped pulse, or of pulses
+    /// taken for one another.
+    #[must_use]
+    pub fn is_grave(&self) -> bool {
+        matches!(self, Self::Saturation(_) | Self::Order | Self::Lost)
+    }
 }
 
 impl fmt::Display for Doubt {
@@ -67,6 +79,7 @@ impl fmt::Display for Doubt {
             Self::LowSignal(place) => write!(f, "{place} pulse low"),
             Self::RecordTooShort => f.write_str("record too short"),
             Self::Order => f.write_str("order of pulses doubtful"),
+            Self::Lost => f.write_str("one pulse missing, perhaps the passing one"),
             Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
             Self::CoarseSteps(place) => write!(f, "{place} pulse in coarse steps"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
@@ -123,6 +136,9 @@ pub struct Pulse {
     pub sides_samples: (f64, f64),
     /// First and last sample above a tenth of the height.
     pub extent: (usize, usize),
+    /// First and last sample of its top that stand on an end of the digitiser's range: what
+    /// lies between is not known.
+    pub clipped: Option<(usize, usize)>,
 }
 
 /// From so many times as slow a fall as rise on, at half the height, a pulse trails: those of
@@ -134,6 +150,12 @@ impl Pulse {
     #[must_use]
     pub fn trails(&self) -> bool {
         self.sides_samples.1 > TRAILS * self.sides_samples.0
+    }
+
+    /// Whether a sample is clipped, or next to one that is: recorders round the corner.
+    pub(crate) fn is_clipped(&self, sample: usize) -> bool {
+        self.clipped
+            .is_some_and(|(first, last)| sample + 1 >= first && sample <= last + 1)
     }
 
     /// Twice the shorter side: the width of a bell as steep as the steeper flank.
@@ -167,6 +189,19 @@ impl Found {
         [&self.passing, &self.wall, &self.returning]
             .into_iter()
             .flatten()
+    }
+
+    /// Counts so many samples on either side of clipped tops as clipped: a filter has
+    /// spread them.
+    pub(crate) fn spread_clipped(&mut self, samples: usize) {
+        let pulses = [&mut self.passing, &mut self.wall, &mut self.returning];
+        for clipped in pulses
+            .into_iter()
+            .flatten()
+            .filter_map(|p| p.clipped.as_mut())
+        {
+            *clipped = (clipped.0.saturating_sub(samples), clipped.1 + samples);
+        }
     }
 
     /// Adds doubts, kept in order and none twice.

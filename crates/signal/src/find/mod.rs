@@ -116,10 +116,13 @@ fn gather(chosen: &Chosen, sensor: Looked<'_, '_>, wall: Looked<'_, '_>) -> Foun
         see(sensor, Place::Returning, chosen.returning),
     ];
     let [passing, at_wall, returning] = seen.each_ref().map(|s| s.as_ref().map(|s| s.pulse));
-    let mut doubts: Vec<Doubt> = doubts::missing(&[passing, at_wall, returning]).collect();
+    let mut doubts: Vec<Doubt> = match chosen.lost {
+        true => vec![Doubt::Lost],
+        false => doubts::missing(&[passing, at_wall, returning]).collect(),
+    };
     doubts.extend(each(&seen, std::ptr::eq(sensor.0, wall.0)));
     if let (Some(first), Some(second), None) = (passing, at_wall, returning)
-        && doubts::ends_early(&first, &second, sensor.0.samples.len())
+        && choose::ends_early(first.at, second.at, sensor.0.samples.len())
     {
         doubts.push(Doubt::RecordTooShort);
     }
@@ -177,6 +180,7 @@ fn seen<'a, 'b>(
         width_samples: sides_samples.0 + sides_samples.1,
         sides_samples,
         extent: (from as usize, (to.ceil() as usize).min(last)),
+        clipped: None,
     };
     Seen {
         pulse,

@@ -18,7 +18,7 @@ struct Model {
 const PARAMETERS: usize = 4;
 
 /// Time in samples: Levenberg–Marquardt's least squares of four parameters;
-/// covariance noise² (JᵀJ)⁻¹. Samples on a rail tell nothing and are left out.
+/// covariance noise² (JᵀJ)⁻¹. Clipped samples tell nothing and are left out.
 pub(super) fn pick(
     sight: &Sight<'_>,
     pulse: &Pulse,
@@ -60,7 +60,7 @@ impl Data {
         let raw = sight.samples[first..first + heights.len()].iter();
         let free = |x: &f64| sight.rails.is_none_or(|rails| !rails.hold(*x));
         let points = heights.iter().zip(raw).enumerate();
-        let points = points.filter(|(_, (_, raw))| free(raw));
+        let points = points.filter(|(i, (_, raw))| free(raw) && !pulse.is_clipped(first + i));
         let points = points.map(|(i, (height, _))| ((first + i) as f64, *height));
         Self {
             points: points.collect(),

@@ -3,6 +3,7 @@
 mod bell;
 mod bound;
 mod correlation;
+mod flanks;
 mod local_model;
 mod matched;
 pub(crate) mod normal;
@@ -107,7 +108,7 @@ pub struct Picked {
 pub struct Moved {
     /// How far in s what lies under the pulse in a summed channel may have moved it, with its sign.
     pub under_s: f64,
-    /// What the samples leave open of the pulse's shape, in s.
+    /// What the samples leave open of the pulse's shape, in s; and of the interval between them.
     pub shape_s: f64,
 }
 
@@ -280,6 +281,12 @@ impl<'a> Picker<'a> {
             },
             Method::Onset { fraction } => Self::Onset(*fraction),
             Method::MatchedShape { shape, width } => Self::Matched(shape, *width),
+            Method::CrossCorrelation(Template::Passing) if passing.clipped.is_some() => {
+                return Err(SignalError::NoPick {
+                    place: passing.place,
+                    what: "top to be a template, clipped as it is,",
+                });
+            }
             Method::CrossCorrelation(template) => Self::Correlation(correlation::Correlator::new(
                 template, sensor, passing, interval_s,
             )?),
@@ -287,6 +294,9 @@ impl<'a> Picker<'a> {
     }
 
     fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        if pulse.clipped.is_some() {
+            return self.clipped(sight, pulse);
+        }
         match self {
             Self::Maximum => {
                 bell::pick(sight, pulse).map_or_else(|| local_model::in_noise(sight, pulse), Ok)
@@ -295,6 +305,29 @@ impl<'a> Picker<'a> {
             Self::Onset(fraction) => onset::pick(sight, pulse, *fraction),
             Self::Correlation(correlator) => correlator.pick(sight, pulse),
             Self::Matched(shape, width) => matched::pick(sight, pulse, shape, *width),
+        }
+    }
+
+    /// Of a pulse whose top is clipped there are the flanks.
+    fn clipped(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        let none = |what| SignalError::NoPick {
+            place: pulse.place,
+            what,
+        };
+        let top = bell::from_flanks(sight, pulse);
+        let top = top.ok_or_else(|| none("maximum that its flanks tell, clipped as it is,"))?;
+        match self {
+            Self::Maximum | Self::Local { .. } => Ok(top),
+            Self::Onset(fraction) => onset::of_clipped(sight, pulse, *fraction, top),
+            Self::Matched(shape, width) => {
+                let whole = Pulse {
+                    height: top.height,
+                    width_samples: top.width_s,
+                    ..*pulse
+                };
+                matched::pick(sight, &whole, shape, *width)
+            }
+            Self::Correlation(_) => Err(none("top to correlate, clipped as it is,")),
         }
     }
 }

@@ -16,6 +16,34 @@ const REACH: f64 = 0.18;
 /// finely. Variance: (var(cubic) + f² var(h))/slope².
 pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Picked, SignalError> {
     let top = local_model::roughly(sight, pulse)?;
+    before(sight, pulse, fraction, top)
+}
+
+/// Share of the height at which a pulse is clipped up to which its flank can be fitted.
+const FREE: f64 = 0.7;
+
+/// As [`pick`], with the maximum that the flanks of a clipped pulse tell.
+pub(super) fn of_clipped(
+    sight: &Sight<'_>,
+    pulse: &Pulse,
+    fraction: f64,
+    top: Picked,
+) -> Result<Picked, SignalError> {
+    match fraction * top.height < FREE * pulse.height {
+        true => before(sight, pulse, fraction, top),
+        false => Err(SignalError::NoPick {
+            place: pulse.place,
+            what: "rising flank up to that share, clipped as it is,",
+        }),
+    }
+}
+
+fn before(
+    sight: &Sight<'_>,
+    pulse: &Pulse,
+    fraction: f64,
+    top: Picked,
+) -> Result<Picked, SignalError> {
     let no_crossing = || SignalError::NoPick {
         place: pulse.place,
         what: "rising flank",

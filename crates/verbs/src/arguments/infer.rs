@@ -31,11 +31,33 @@ pub struct Measured {
     /// Standard error of ratios of peaks where the table has none
     #[arg(long, value_name = "RATIO", value_parser = positive, allow_hyphen_values = true)]
     pub ratio_error: Option<f64>,
-    /// Shots a row from whose scatter the standard errors come, if they are not known better: they
-    /// are widened, by 13 % for 20 shots, so that intervals hold the truth as often as they say
+    /// Shots a row from whose scatter the standard errors come, or `known`; what the table tells in
+    /// columns `shots` and `tof_incident_s_count` when absent. Errors from few shots are widened, so
+    /// that intervals hold the truth as often as they say
     #[arg(long, value_name = "COUNT", value_parser = shots, allow_hyphen_values = true)]
-    pub error_shots: Option<u32>,
+    pub error_shots: Option<ErrorShots>,
 }
+
+/// From the scatter of how many shots standard errors come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorShots {
+    /// They are known.
+    Known,
+    /// From so many.
+    Of(u32),
+}
+
+impl std::fmt::Display for ErrorShots {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Known => write!(f, "{KNOWN}"),
+            Self::Of(shots) => write!(f, "{shots}"),
+        }
+    }
+}
+
+/// The word for errors that need no shots.
+const KNOWN: &str = "known";
 
 /// Observables by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -433,16 +455,18 @@ fn whole(text: &str) -> Result<u64, String> {
     number.map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-fn shots(text: &str) -> Result<u32, String> {
+fn shots(text: &str) -> Result<ErrorShots, String> {
+    if text.trim() == KNOWN {
+        return Ok(ErrorShots::Known);
+    }
     let number = text.trim().parse().ok();
-    number
-        .filter(|count| *count >= FEWEST_SHOTS)
-        .ok_or_else(|| {
-            format!(
-                "expected a whole number from {FEWEST_SHOTS}: the scatter of fewer shots tells no \
+    let number = number.filter(|count| *count >= FEWEST_SHOTS);
+    number.map(ErrorShots::Of).ok_or_else(|| {
+        format!(
+            "expected a whole number from {FEWEST_SHOTS}, or {KNOWN}: the scatter of fewer shots tells no \
              error of a row; take one over many rows"
-            )
-        })
+        )
+    })
 }
 
 fn count(text: &str) -> Result<usize, String> {

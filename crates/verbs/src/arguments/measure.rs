@@ -30,7 +30,7 @@ pub struct Measure {
     /// Case that others are divided by
     #[arg(long, value_name = "CASE", default_value = "dry")]
     pub reference: String,
-    /// Let clipped shots and those of doubtful order count in means
+    /// Let clipped shots, those of doubtful order and those of which a pulse may be lost count in means
     #[arg(long)]
     pub keep_dubious: bool,
     /// Print JSON

@@ -1,6 +1,7 @@
 //! `fit`: times of flight to parameters.
 
 mod heeded;
+mod limits;
 mod more;
 mod partial;
 pub mod pulses;
@@ -8,6 +9,7 @@ mod results;
 mod rivals;
 mod tables;
 
+pub use limits::{Limit, Limits};
 pub use more::{CHAIN, Curves, More, Sampled, leave, saved};
 pub use partial::{PARTIAL, begun, finished};
 pub use results::{inferred, joined, json, rows_json};
@@ -43,6 +45,8 @@ pub struct Inferred {
     pub identifiability: Identifiability,
     /// Uncertainty beyond the covariance.
     pub more: More,
+    /// Of parameters at bounds.
+    pub limits: Limits,
 }
 
 /// Everything about a fit of a curve.
@@ -71,6 +75,13 @@ impl Inferred {
             true => f64::INFINITY,
             false => sd,
         }
+    }
+
+    /// How far from its bound a parameter may be, if it lies there.
+    #[must_use]
+    pub fn limit(&self, at: usize) -> Option<&Limit> {
+        let limits = self.limits.as_ref().ok()?;
+        limits.iter().find(|limit| limit.parameter == at)
     }
 }
 
@@ -139,7 +150,8 @@ fn told(
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let label = |at: usize| problem.residual_label(at);
     let identifiability = Identifiability::new(problem.parameters(), &fit, label);
-    let open = !identifiability.confused.is_empty();
+    let open = !identifiability.confused.is_empty() && fit.ending.converged();
+    let limits = limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?;
     Ok(Fitted {
         advice: open.then(|| problem.would_separate(&fit)),
         rivals: rivals::rivals(&problem, &fit, arguments)?,
@@ -150,6 +162,7 @@ fn told(
             identifiability,
             goodness: Goodness::new(problem.parameters(), &fit),
             more,
+            limits,
             covariance,
             fit,
         },

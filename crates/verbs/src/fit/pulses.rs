@@ -1,7 +1,7 @@
 //! Whole pulses of recordings to parameters.
 
 use super::partial::Remembered;
-use super::{Curves, Inferred, best, heeded, inferred, joined, more};
+use super::{Curves, Inferred, best, heeded, inferred, joined, limits, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
@@ -172,16 +172,15 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);
+    let how = Curves::Computed(None);
+    let more = more::more_of((&problem, &kept), (&fit, &covariance), how, arguments)?;
+    let identifiability = Identifiability::new(parameters, &fit, label);
     let found = Inferred {
         parameters: parameters.to_vec(),
-        identifiability: Identifiability::new(parameters, &fit, label),
+        limits: limits::limits(&kept, (&fit, &covariance), &identifiability, &more)?,
+        identifiability,
         goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
-        more: more::more_of(
-            (&problem, &kept),
-            (&fit, &covariance),
-            Curves::Computed(None),
-            arguments,
-        )?,
+        more,
         covariance,
         fit,
     };
@@ -199,6 +198,7 @@ pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
     let records = fitted.problem.records().iter();
     let own = json!({
         "model": fitted.problem.model().experiment().name(),
+        "kept": inference::kept(fitted.problem.model(), &arguments.modelled.set),
         "residuals": fitted.problem.residual_count(),
         "fitted_to_single_records": fitted.problem.nuisance_count(),
         "records": records.map(|record| json!({

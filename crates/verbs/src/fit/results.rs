@@ -2,9 +2,9 @@
 
 use super::more::{Curves, More};
 use super::rivals::{Rival, Rivals};
-use super::{Fitted, Inferred};
+use super::{Fitted, Inferred, Limit};
 use crate::arguments::infer::Fit as Arguments;
-use crate::inference::assumed;
+use crate::inference::{assumed, kept};
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
@@ -17,6 +17,7 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         "model": fitted.problem.model().experiment().name(),
         "model_accuracy": fitted.accuracy,
         "assumed": assumed(data, &arguments.measured),
+        "kept": kept(fitted.problem.model(), &arguments.modelled.set),
         "instruction_set": fitted.problem.model().set.name(),
         "fingerprint": fitted.problem.fingerprint().to_string(),
         "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
@@ -97,7 +98,8 @@ fn parameters(fitted: &Inferred) -> Value {
             "name": parameter.name,
             "unit": parameter.unit,
             "value": fitted.fit.point[at],
-            "standard_error": finite(fitted.standard_error(at)),
+            "standard_error": finite(fitted.standard_error(at)).filter(|_| !fitted.fit.is_bound(at)),
+            "limit": fitted.limit(at).map(Limit::json),
             "determined": fitted.standard_error(at).is_finite(),
             "at_bound": fitted.fit.is_bound(at),
             "start": parameter.start,
@@ -212,6 +214,7 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
             "model": rival.name,
             "point": rival.fit.point,
             "settings_left_out": rival.without,
+            "kept": rival.kept,
             "chi_square": rival.fit.chi_square(),
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),

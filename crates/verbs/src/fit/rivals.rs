@@ -3,7 +3,7 @@
 use super::Arguments;
 use crate::arguments::infer::{Against, Assignment, Freed};
 use crate::failure::Failure;
-use crate::inference::{self, is_meant, user};
+use crate::inference::{self, is_meant, kept, user};
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_infer::{
     Compared, Comparison, CrossValidation, CurveProblem, Fit, Fitting, Folding, compare,
@@ -20,6 +20,8 @@ pub struct Rival {
     pub foretells: CrossValidation,
     /// What is set in the fit's own model, and is not there in this one.
     pub without: Vec<String>,
+    /// Numbers of this one that are kept while their unit changes.
+    pub kept: Vec<String>,
 }
 
 /// A model that found no minimum.
@@ -99,6 +101,7 @@ fn other(
         seed: arguments.seed,
         ..Fitting::default()
     };
+    let kept = kept(posed.model(), &arguments.modelled.set);
     let fit = fit(&posed, &how).map_err(|error| of_rival(user(error)))?;
     if !fit.ending.converged() {
         return Ok(Err(Lost {
@@ -108,7 +111,11 @@ fn other(
         }));
     }
     let rival = rival(name.clone(), &posed, fit, arguments.seed)?;
-    Ok(Ok(Rival { without, ..rival }))
+    Ok(Ok(Rival {
+        without,
+        kept,
+        ..rival
+    }))
 }
 
 /// The same data against another model, in which everything is set and known that is
@@ -226,6 +233,7 @@ fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Ri
         fit,
         foretells,
         without: Vec::new(),
+        kept: Vec::new(),
     })
 }
 

@@ -74,7 +74,9 @@ fn summary(fitted: &Inferred) -> String {
         ("singular_value_floor", fitted.identifiability.floor.into()),
         (
             "combinations_determined",
-            fitted.identifiability.determined().into(),
+            (fit.ending.converged())
+                .then(|| fitted.identifiability.determined())
+                .into(),
         ),
     ];
     let line = |(name, value): (&str, Cell)| [name.into(), value];
@@ -82,16 +84,20 @@ fn summary(fitted: &Inferred) -> String {
 }
 
 fn parameters(fitted: &Inferred) -> String {
-    let titles = "name,unit,value,standard_error,determined,at_bound,start,lower,upper,scale";
-    let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 10] {
+    let titles = "name,unit,value,standard_error,determined,at_bound,limit_68,limit_95,start,lower,upper,scale";
+    let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 12] {
         let sd = fitted.standard_error(at);
+        let is_bound = fitted.fit.is_bound(at);
+        let limit = |which: usize| fitted.limit(at)?.ends[which].closed();
         [
             parameter.name.clone().into(),
             parameter.unit.clone().into(),
             fitted.fit.point[at].into(),
-            sd.into(),
+            (!is_bound).then_some(sd).into(),
             sd.is_finite().into(),
-            fitted.fit.is_bound(at).into(),
+            is_bound.into(),
+            limit(0).into(),
+            limit(1).into(),
             parameter.start.into(),
             parameter.lower.into(),
             parameter.upper.into(),

@@ -1,17 +1,19 @@
 //! From arguments to a problem of inference.
 
+mod kept;
 mod known;
 
+pub use kept::kept;
 pub use known::is_meant;
 
 use crate::arguments::Input;
-use crate::arguments::infer::{Assignment, Freed, Measured, Modelled, What};
+use crate::arguments::infer::{Assignment, ErrorShots, Freed, Measured, Modelled, What};
 use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, Defaults, FreeError, FreeNumber, FreeNumbers, Model, Observable, Problem,
-    PulseProblem, Selection,
+    CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeError, FreeNumber, FreeNumbers, Model,
+    Observable, Problem, PulseProblem, Scatter, Selection,
 };
 use hertzchain_study::{StudyError, stopped};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -94,23 +96,53 @@ pub fn parsed(
             speed_m_s: measured.speed_error,
             time_s: measured.tof_error,
             ratio: measured.ratio_error,
-            shots: measured.error_shots,
+            scatter: scatter(measured),
         },
     };
     Data::parse(name, text, &selection).map_err(user)
 }
 
-/// What is assumed of data that do not say all: for a warning.
+fn scatter(measured: &Measured) -> Scatter {
+    match measured.error_shots {
+        None => Scatter::AsTold,
+        Some(ErrorShots::Known) => Scatter::Known,
+        Some(ErrorShots::Of(shots)) => Scatter::Of(shots),
+    }
+}
+
+/// What is assumed of data that do not say all: for warnings.
 #[must_use]
 pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
-    let lines = data.lines_of_exact_speeds();
-    let which = match lines.len() {
-        0 => return None,
-        _ if measured.speed_error == Some(0.0) => return None,
-        all if all == data.rows.len() => "all lines".to_owned(),
-        1 => format!("line {}", lines[0]),
-        _ => format!("lines {}", listed(&lines)),
-    };
+    let all = [exact_speeds(data, measured), few_shots(data)];
+    let all: Vec<String> = all.into_iter().flatten().collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// Lines as a warning names them.
+fn which(data: &Data, lines: &[u64]) -> Option<String> {
+    match lines {
+        [] => None,
+        all if all.len() == data.rows.len() => Some("all lines".to_owned()),
+        [one] => Some(format!("line {one}")),
+        several => Some(format!("lines {}", listed(several))),
+    }
+}
+
+fn few_shots(data: &Data) -> Option<String> {
+    let which = which(data, &data.lines_of_few_shots())?;
+    Some(format!(
+        "{}, {which}: errors from the scatter of fewer than {FEWEST_SHOTS} shots are themselves too uncertain to \
+         correct for, and are taken as known: intervals are too narrow by an unknown factor. Shoot more, or take \
+         errors over many rows (--error-shots known says that they are)",
+        data.file
+    ))
+}
+
+fn exact_speeds(data: &Data, measured: &Measured) -> Option<String> {
+    if measured.speed_error == Some(0.0) {
+        return None;
+    }
+    let which = which(data, &data.lines_of_exact_speeds())?;
     Some(format!(
         "{}, {which}: speeds without an error, or with one of 0, are taken as exactly known; standard \
          errors are too small if they are not. Add a column `speed_error_m_s` or --speed-error \

@@ -1,7 +1,7 @@
 //! Whole pulses of recordings to parameters.
 
 use super::{report, write_inferred};
-use crate::failure::Failure;
+use crate::failure::{Failure, print_kept};
 use crate::folder::Folder;
 use crate::format::digits;
 use crate::print::{self, heading};
@@ -21,6 +21,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
     let fitted = pool.install(|| fitted(recorded, arguments))?;
+    print_kept(fitted.problem.model(), &arguments.modelled.set);
     let all = json(&fitted, arguments);
     match arguments.json {
         true => print::print_json(&all)?,

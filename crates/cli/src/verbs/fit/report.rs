@@ -6,7 +6,7 @@ use crate::words::{chi_square_text, doubt, estimate, percent};
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Observable, Parameter, Problem, Profile,
 };
-use hertzchain_verbs::fit::{Curves, Fitted, Inferred, More, Rivals, Sampled};
+use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -54,14 +54,11 @@ fn derivatives(fitted: &Inferred) -> String {
 
 /// What is doubtful about the minimum.
 pub fn beware(fitted: &Inferred) -> String {
-    let open = !fitted.identifiability.confused.is_empty();
-    let doubt = doubt(&fitted.fit.ending).map(|doubt| match open {
-        true => format!(
-            "{doubt}; where combinations are not determined there is no one minimum: settle these first"
-        ),
-        false => doubt,
-    });
+    let doubt = doubt(&fitted.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    if let Err(why) = &fitted.limits {
+        text += &format!("No limit of parameters at bounds: {why}\n");
+    }
     if fitted.fit.starts.len() > 1 {
         let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
         text += &format!("{agree} of {all} starts came to this minimum.\n");
@@ -74,9 +71,30 @@ pub fn values(fitted: &Inferred) -> String {
     let parameters = fitted.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fitted.fit.point[at], fitted.standard_error(at));
-        (parameter.name.clone(), estimate(parameter, value, sd))
+        let limit = fitted.limit(at).map(limit).unwrap_or_default();
+        (
+            parameter.name.clone(),
+            estimate(parameter, value, sd) + &limit,
+        )
     };
     format::pairs(&parameters.map(row).collect::<Vec<_>>())
+}
+
+/// What the data say of a parameter at its bound.
+fn limit(limit: &Limit) -> String {
+    let end = |end: End| match end {
+        End::At(value) => digits(value, 6),
+        End::Bound(value) => format!("its other bound {}", digits(value, 3)),
+        End::Open(value) => format!("no limit as far as {}", digits(value, 3)),
+        End::ModelFails(value) => {
+            format!("no limit up to {}, where the model fails", digits(value, 3))
+        }
+    };
+    let [narrow, wide] = limit.ends.map(end);
+    format!(
+        ": {} {narrow} (68 %), {wide} (95 %) by profile",
+        limit.side()
+    )
 }
 
 /// Pairs whose correlation is worth a line.
@@ -148,6 +166,10 @@ fn accuracy(fitted: &Fitted) -> String {
 /// What the data determine and what not, and what would help.
 pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
     let found = &fitted.identifiability;
+    if !fitted.fit.ending.converged() {
+        return "The fit found no minimum: what the data determine is not known where it ended.\n"
+            .to_owned();
+    }
     let (known, all) = (found.determined(), found.singular_values.len());
     if known == all {
         return match all {
@@ -307,7 +329,12 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
         )
     });
     let without: String = without.collect();
-    format!("\n{table}{}\n{without}", comparison.sentence)
+    let kept = rivals.all.iter().flat_map(|rival| {
+        let told = |kept: &String| format!("{}: {kept}\n", rival.name);
+        rival.kept.iter().map(told).collect::<Vec<_>>()
+    });
+    let kept: String = kept.collect();
+    format!("\n{table}{}\n{without}{kept}", comparison.sentence)
 }
 
 /// What observables are called where space is short.

@@ -1,0 +1,132 @@
+//! Clipped pulses are timed by their flanks, and stated errors hold what these leave open.
+
+use crate::common::{Scene, normal};
+use crate::picking::dry::Dry;
+use hertzchain_signal::{
+    Channels, Doubt, Estimate, Measured, Measuring, Method, Place, Shape, coverage, measure,
+};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// The record of one shot without noise, as a function of time, and when its maxima are.
+struct Source {
+    signal: Box<dyn Fn(f64) -> f64>,
+    maxima_s: [f64; 3],
+    /// The wall's height, which is the largest.
+    highest: f64,
+}
+
+fn bells() -> Source {
+    let pulses = Scene::default().pulses;
+    let shape = Scene::default().shape;
+    Source {
+        maxima_s: pulses.map(|pulse| pulse.0),
+        highest: 1.6,
+        signal: Box::new(move |time_s| {
+            let one = |(at_s, height, width_s): &(f64, f64, f64)| {
+                height * shape.value((time_s - at_s) / width_s)
+            };
+            pulses.iter().map(one).sum()
+        }),
+    }
+}
+
+fn dry() -> Source {
+    let dry = Dry::load();
+    let highest = (900..950)
+        .map(|us| dry.summed(f64::from(us) * 1e-6))
+        .fold(0.0, f64::max);
+    Source {
+        maxima_s: Dry::MAXIMA_S.map(|time_s| time_s + 500e-6),
+        highest,
+        signal: Box::new(move |time_s| dry.summed(time_s - 500e-6)),
+    }
+}
+
+impl Source {
+    /// Sampled from a random moment on, in noise, and clipped.
+    fn recorded(&self, noise: f64, end: f64, rng: &mut ChaCha8Rng) -> (f64, Vec<f64>) {
+        let phase_s = 1e-6 * f64::from(rng.next_u32()) / f64::from(u32::MAX);
+        let sample = |i: u32| {
+            let clean = (self.signal)(f64::from(i) * 1e-6 + phase_s);
+            (clean + noise * normal(rng)).min(end)
+        };
+        (phase_s, (0..3200).map(sample).collect())
+    }
+}
+
+fn measured(samples: &[f64], method: &Method) -> Measured {
+    let by = Measuring {
+        method: method.clone(),
+        ..Measuring::default()
+    };
+    measure(Channels::Summed(samples), 1e-6, &by).unwrap()
+}
+
+/// Errors of the incident time over the stated ones, and stated ones in ns, of those of 200 shots
+/// clipped at this share of the wall's pulse that are not refused.
+fn pulls(source: &Source, share: f64, noise: f64) -> Vec<(f64, f64)> {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let true_s = source.maxima_s[1] - source.maxima_s[0];
+    let pull = |_| {
+        let (_, samples) = source.recorded(noise, share * source.highest, &mut rng);
+        let shot = measured(&samples, &Method::default());
+        assert!(shot.found.doubts.contains(&Doubt::Saturation(Place::Wall)));
+        let Estimate { value, sigma } = shot.flight.ok()?.incident_s;
+        Some(((value - true_s) / sigma, 1e9 * sigma))
+    };
+    (0..200).filter_map(pull).collect()
+}
+
+#[test]
+fn stated_errors_of_clipped_pulses_hold_the_true_ones() {
+    for (name, source) in [("bells", bells()), ("dry", dry())] {
+        for share in [0.8, 0.6, 0.4] {
+            for noise in [1e-3, 1e-2] {
+                let found = pulls(&source, share, noise);
+                let pulls: Vec<f64> = found.iter().map(|(pull, _)| *pull).collect();
+                let within = [1.0, 1.96].map(|factor| coverage(&pulls, factor).unwrap().share);
+                let what = format!("{name} {share} {noise}: {within:?} of {}", pulls.len());
+                // Three binomial errors of 200 below 68.3 and 95 %.
+                assert!(within[0] > 0.58 && within[1] > 0.90, "{what}");
+                // Noise of a fortieth of what is left hides the flanks' course now and then.
+                assert!(pulls.len() > 180, "{what}");
+                let stated_ns: f64 = found.iter().map(|(_, ns)| ns).sum::<f64>() / 200.0;
+                println!("{what}, {stated_ns:.0} ns");
+            }
+        }
+    }
+}
+
+#[test]
+fn other_methods_use_the_flanks_or_say_why_they_cannot() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let source = bells();
+    let (_, samples) = source.recorded(1e-3, 1.0, &mut rng);
+    let true_s = source.maxima_s[1] - source.maxima_s[0];
+    let shape = Method::MatchedShape {
+        shape: Shape::cos_power(6.0),
+        width: 2.0,
+    };
+    let by_shape = measured(&samples, &shape).flight.unwrap().incident_s;
+    assert!(
+        (by_shape.value - true_s).abs() < 3.0 * by_shape.sigma,
+        "{by_shape:?}"
+    );
+    let onset = |fraction| measured(&samples, &Method::Onset { fraction }).flight;
+    let rise = onset(0.3).unwrap().incident_s;
+    // Half the difference of both widths at 0.3 of their heights: 1.32 times that at half.
+    let expected_s = true_s + 0.5 * 1.32 * 8e-6;
+    assert!(
+        (rise.value - expected_s).abs() < 0.2e-6,
+        "{rise:?} {expected_s:e}"
+    );
+    let told = onset(0.8).unwrap_err().to_string();
+    assert!(told.contains("clipped"), "{told}");
+    let correlation = Method::CrossCorrelation(hertzchain_signal::Template::Passing);
+    let told = measured(&samples, &correlation)
+        .flight
+        .unwrap_err()
+        .to_string();
+    assert!(told.contains("wall") && told.contains("clipped"), "{told}");
+}

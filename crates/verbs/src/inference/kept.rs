@@ -1,0 +1,68 @@
+//! Numbers that are kept while their unit changes with another's value.
+
+use crate::arguments::infer::Assignment;
+use hertzchain_experiment::{Experiment, Place};
+use hertzchain_infer::Model;
+
+/// What it means that a number on which a unit depends, such as the n of F = k δ^n,
+/// is free or set, one sentence for each number in that unit.
+#[must_use]
+pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
+    let experiment = model.experiment();
+    let free = model.numbers().as_slice().iter().map(|n| n.name());
+    let free = paths(experiment, free);
+    let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
+    let mut told = Vec::new();
+    for steering in free.iter().chain(&set) {
+        let followers = experiment.followers(steering).unwrap_or_default();
+        let is_free = free.contains(steering);
+        told.extend(followers.iter().filter_map(|follower| {
+            match (is_free, free.contains(&follower.path)) {
+                (true, true) => Some(follows(steering, follower)),
+                (false, true) => None,
+                (_, false) if set.contains(&follower.path) => None,
+                (_, false) => Some(stays(steering, follower, is_free)),
+            }
+        }));
+    }
+    told
+}
+
+fn paths<'a>(experiment: &Experiment, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let path = |name| experiment.place(name).ok().map(|place| place.path);
+    names.filter_map(path).collect()
+}
+
+fn follows(steering: &str, follower: &Place) -> String {
+    format!(
+        "{} and {steering}, on which its unit depends, are both free: its number is in the SI unit that \
+         follows from the fitted {}, not in {}",
+        follower.path,
+        last(steering),
+        follower.unit
+    )
+}
+
+fn stays(steering: &str, follower: &Place, is_free: bool) -> String {
+    let (how, unit) = match is_free {
+        true => (
+            "free",
+            format!("{} where the fit starts, another elsewhere", follower.unit),
+        ),
+        false => ("set", format!("now {}", follower.unit)),
+    };
+    format!(
+        "{steering} is {how} and {} is not: its number {} is kept, in the SI unit that follows from the {} \
+         ({unit}). So the force at an overlap of 1 m stays, and that at the overlaps of a contact, micrometres, \
+         changes by orders of magnitude; {how} {} too if that is not meant",
+        follower.path,
+        follower.value.unwrap_or(f64::NAN),
+        last(steering),
+        last(&follower.path)
+    )
+}
+
+/// The key at the end of a path.
+fn last(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
