@@ -11,7 +11,7 @@ pub(crate) fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
             row.push((entries[row.len()] - known) / above[above.len() - 1]);
         }
         let left = entries[at] - row.iter().map(|x| x * x).sum::<f64>();
-        if !(left > ROUNDING * entries[at]) {
+        if left.is_nan() || left <= ROUNDING * entries[at] {
             return None;
         }
         row.push(left.sqrt());

@@ -226,9 +226,9 @@ impl PulseProblem {
         for (at, record) in self.records.iter().enumerate() {
             let found = self.shootings(&start, at);
             match found.and_then(|[shooting, _]| first_shot(record, &shooting)) {
-                Ok((first, grid)) => {
+                Ok(first) => {
+                    self.grids.push(first.grid);
                     passing.push(Some(first));
-                    self.grids.push(grid);
                 }
                 Err(error) if stopped() => return Err(error.into()),
                 Err(error) => {
@@ -244,7 +244,7 @@ impl PulseProblem {
         let first = passing.into_iter().flatten().next();
         match (first, missing) {
             (Some(first), _) => {
-                self.start_gain(first);
+                self.start_gain(&first);
                 Ok(())
             }
             (None, Some(error)) => Err(error.into()),
@@ -254,11 +254,12 @@ impl PulseProblem {
 
     /// The sensors' sensitivity, if it is free, from what the first record has and the model's
     /// passing force.
-    fn start_gain(&mut self, (gain, force_n): (f64, f64)) {
+    fn start_gain(&mut self, first: &FirstShot) {
+        let gain = first.sensor_gain_v_n;
         let height_v = self.records.first().map_or(0.0, |record| record.height_v);
         let own = self.parameters.iter_mut().find(|p| p.name == GAIN);
         if let Some(parameter) = own {
-            let start = gain * height_v / (gain * force_n);
+            let start = gain * height_v / (gain * first.passing_n);
             (parameter.start, parameter.scale) = (start, start);
         }
     }
@@ -345,20 +346,26 @@ impl PulseProblem {
     }
 }
 
-/// The sensor's sensitivity in V/N and the passing force in N of a record's shot, and how long and how densely others are to be
-/// followed, in s.
-fn first_shot(
-    record: &Pulses,
-    shooting: &Shooting,
-) -> Result<((f64, f64), (f64, f64)), ModelError> {
+/// What a record's first shot tells.
+struct FirstShot {
+    sensor_gain_v_n: f64,
+    passing_n: f64,
+    /// How long others are to be followed, and how densely, in s.
+    grid: (f64, f64),
+}
+
+fn first_shot(record: &Pulses, shooting: &Shooting) -> Result<FirstShot, ModelError> {
     let shot = shoot(&shooting.plan).map_err(|error| named(record, error))?;
     let passage = shot.passage.as_ref();
     let passage = passage.map_err(|error| named(record, error))?;
     let (passing, wall) = (passage.incident, passage.wall);
     let length_s = (1.0 + LATER) * passing.time_s + record.after_s();
     let least_s = (wall.time_s - passing.time_s) / LEAST_SAMPLES;
-    let first = (shooting.sensor_gain_v_n, passing.value);
-    Ok((first, (length_s, least_s.min(record.interval_s))))
+    Ok(FirstShot {
+        sensor_gain_v_n: shooting.sensor_gain_v_n,
+        passing_n: passing.value,
+        grid: (length_s, least_s.min(record.interval_s)),
+    })
 }
 
 fn named(record: &Pulses, error: impl fmt::Display) -> ModelError {
