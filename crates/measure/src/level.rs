@@ -186,7 +186,7 @@ impl UnderWay {
             ..self.head.clone()
         };
         for piece in &self.kept {
-            add(&mut shot.channels, piece, segment);
+            add(&mut shot, piece, segment);
         }
         shot
     }
@@ -211,19 +211,12 @@ impl UnderWay {
     }
 }
 
-/// Adds what a piece has of a shot to its channels.
-fn add(channels: &mut Vec<Channel>, piece: &Record, segment: &Segment) {
+/// Adds what a piece has of a shot.
+fn add(shot: &mut Record, piece: &Record, segment: &Segment) {
     let first = piece.first_sample;
     let within = |sample: u64| (sample.saturating_sub(first) as usize).min(piece.len());
     let (from, to) = (within(segment.samples.start), within(segment.samples.end));
-    if from == to {
-        return;
-    }
-    if channels.is_empty() {
-        *channels = piece.part(from, to - from).channels;
-        return;
-    }
-    for (channel, later) in channels.iter_mut().zip(&piece.channels) {
-        channel.samples.append(&later.samples, from, to - from);
+    if from < to {
+        shot.append(piece, from, to - from);
     }
 }

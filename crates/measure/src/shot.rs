@@ -5,6 +5,7 @@ use hertzchain_records::Record;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
 };
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// What was measured on one record.
@@ -30,6 +31,10 @@ pub struct Shot {
     pub doubts: Vec<Doubt>,
     /// Whether its recorder waited for a trigger in vain.
     pub untriggered: bool,
+    /// How many of its samples are no numbers and were filled, and the first, from 0.
+    pub gaps: Option<(usize, usize)>,
+    /// Whether one of these lies in a pulse.
+    pub gap_in_pulse: bool,
     /// Whether its record seems to hold more shots than this one.
     pub holds_several: bool,
 }
@@ -58,7 +63,15 @@ impl Shot {
             }
             Err(error) => (Err(error), Vec::new()),
         };
+        let gap_in_pulse = flight
+            .as_ref()
+            .is_ok_and(|flight| record.gaps.iter().any(|gap| lies_in(gap, flight, record)));
         Self {
+            gaps: record.gaps.first().map(|first| {
+                let all: usize = record.gaps.iter().map(Range::len).sum();
+                (all, first.start)
+            }),
+            gap_in_pulse,
             source: record.source.clone(),
             file: record.file.clone(),
             shot: record.shot,
@@ -97,11 +110,11 @@ impl Shot {
     }
 
     /// Whether its times may be of something else than the wave: a clipped
-    /// pulse, or pulses of which one may be lost or that may have been taken for one another
+    /// pulse or one with a gap, or pulses of which one may be lost or that may have been taken for one another
     /// or be of several shots.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
-        self.holds_several || self.doubts.iter().any(Doubt::is_grave)
+        self.holds_several || self.gap_in_pulse || self.doubts.iter().any(Doubt::is_grave)
     }
 
     /// What is doubtful, as it is told to people.
@@ -112,8 +125,20 @@ impl Shot {
         let untriggered =
             "no trigger: its level was never passed, and the record may not hold the shot";
         let untriggered = self.untriggered.then(|| untriggered.to_owned());
+        let gaps = self.gaps.map(|(count, first)| {
+            let (are, were) = if count == 1 {
+                (" is", "was")
+            } else {
+                ("s are", "were")
+            };
+            let inside = if self.gap_in_pulse { " in a pulse" } else { "" };
+            format!(
+                "{count} sample{are} no number{inside}, from sample {} on, and {were} filled",
+                first + 1
+            )
+        });
         let doubts = self.doubts.iter().map(ToString::to_string);
-        let of_record = several.into_iter().chain(untriggered);
+        let of_record = several.into_iter().chain(untriggered).chain(gaps);
         of_record.chain(doubts).collect()
     }
 
@@ -124,6 +149,19 @@ impl Shot {
         let all = self.remarks().into_iter().chain(error);
         all.collect::<Vec<_>>().join("; ")
     }
+}
+
+/// Whether a gap is within a width and a half of a pulse's time.
+fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
+    let picks = &flight.picks;
+    let pulses = [Some(picks.passing), Some(picks.wall), picks.returning];
+    pulses.into_iter().flatten().any(|pulse| {
+        let (from, to) = (
+            pulse.time_s - 1.5 * pulse.width_s,
+            pulse.time_s + 1.5 * pulse.width_s,
+        );
+        gap.end as f64 * record.interval_s > from && (gap.start as f64) * record.interval_s < to
+    })
 }
 
 /// The converter's range, where the channel tells.

@@ -3,18 +3,28 @@
 use crate::error::RecordError;
 use crate::options::Parts;
 use crate::record::{Channel, Record, Samples};
+use std::ops::Range;
+
+/// Share of the samples of a channel that may be no numbers: more are no signal.
+const BEARABLE: f64 = 0.01;
 
 /// Refuses records without samples, with channels of different lengths,
-/// with samples that are not finite and with channels that never change.
+/// with many samples that are not finite and with channels that never change. Few are filled and
+/// noted as gaps.
 ///
 /// A piece of a recording may be quiet.
-pub(crate) fn sound(record: Record, parts: Parts) -> Result<Record, RecordError> {
+pub(crate) fn sound(mut record: Record, parts: Parts) -> Result<Record, RecordError> {
     let length = record.len();
     if length == 0 {
         return Err(RecordError::Empty {
             source_name: record.source,
         });
     }
+    let mut gaps = Vec::new();
+    for channel in &mut record.channels {
+        gaps.extend(filled(&record.source, channel)?);
+    }
+    record.gaps = gaps;
     for channel in &record.channels {
         if channel.samples.len() != length {
             return Err(RecordError::MixedLengths {
@@ -24,7 +34,6 @@ pub(crate) fn sound(record: Record, parts: Parts) -> Result<Record, RecordError>
                 why: "as in its first channel",
             });
         }
-        finite(&record.source, channel)?;
         if !matches!(parts, Parts::Pieces(_)) {
             varied(&record.source, channel)?;
         }
@@ -32,20 +41,68 @@ pub(crate) fn sound(record: Record, parts: Parts) -> Result<Record, RecordError>
     Ok(record)
 }
 
-fn finite(source: &str, channel: &Channel) -> Result<(), RecordError> {
-    let Samples::Volts(volts) = &channel.samples else {
-        return Ok(());
+/// Fills the samples that are not finite, and gives their runs.
+fn filled(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, RecordError> {
+    let Samples::Volts(volts) = &mut channel.samples else {
+        return Ok(Vec::new());
     };
     let Some(first) = volts.iter().position(|volt| !volt.is_finite()) else {
-        return Ok(());
+        return Ok(Vec::new());
     };
-    Err(RecordError::NotFinite {
-        source_name: source.to_owned(),
-        channel: channel.name.clone(),
-        count: volts.iter().filter(|volt| !volt.is_finite()).count(),
-        of: volts.len(),
-        first: first + 1,
-    })
+    let count = volts.iter().filter(|volt| !volt.is_finite()).count();
+    if count as f64 > BEARABLE * volts.len() as f64 {
+        return Err(RecordError::NotFinite {
+            source_name: source.to_owned(),
+            channel: channel.name.clone(),
+            count,
+            of: volts.len(),
+            first: first + 1,
+        });
+    }
+    let finite = || volts.iter().copied().filter(|volt| volt.is_finite());
+    let ends = (
+        finite().fold(f64::INFINITY, f64::min),
+        finite().fold(f64::NEG_INFINITY, f64::max),
+    );
+    let mut gaps: Vec<Range<usize>> = Vec::new();
+    for (at, _) in volts
+        .iter()
+        .enumerate()
+        .filter(|(_, volt)| !volt.is_finite())
+    {
+        match gaps.last_mut() {
+            Some(gap) if gap.end == at => gap.end += 1,
+            _ => gaps.push(at..at + 1),
+        }
+    }
+    gaps.iter().for_each(|gap| fill(volts, gap, ends));
+    Ok(gaps)
+}
+
+/// What was beyond a range is the record's least or largest; what is missing, between its
+/// neighbours.
+fn fill(volts: &mut [f64], gap: &Range<usize>, (low, high): (f64, f64)) {
+    let before = gap
+        .start
+        .checked_sub(1)
+        .and_then(|at| volts.get(at))
+        .copied();
+    let after = volts.get(gap.end).copied();
+    let (from, to) = match (before, after) {
+        (Some(from), Some(to)) => (from, to),
+        (one, other) => {
+            let only = one.or(other).unwrap_or(0.0);
+            (only, only)
+        }
+    };
+    let steps = gap.len() as f64 + 1.0;
+    for (number, volt) in volts[gap.clone()].iter_mut().enumerate() {
+        *volt = match *volt {
+            f64::INFINITY => high,
+            f64::NEG_INFINITY => low,
+            _ => from + (to - from) * (number as f64 + 1.0) / steps,
+        };
+    }
 }
 
 fn varied(source: &str, channel: &Channel) -> Result<(), RecordError> {

@@ -1,5 +1,6 @@
 //! Which format a file is: by content, held against its name.
 
+use crate::encoding::Encoding;
 use crate::error::{RecordError, name};
 use std::fs::File;
 use std::io::Read;
@@ -64,7 +65,7 @@ impl Format {
                 source_name: name(file),
             });
         }
-        let found = by_content(&bytes).ok_or_else(|| unknown(file, &bytes))?;
+        let found = by_content(&bytes).ok_or_else(|| unknown(file))?;
         match promised(file) {
             Some((promised, extension)) if promised != found => Err(RecordError::NotWhatItSays {
                 file: name(file),
@@ -103,7 +104,8 @@ fn by_content(bytes: &[u8]) -> Option<Format> {
 
 /// Text has no control characters but spaces.
 fn is_text(bytes: &[u8]) -> bool {
-    !bytes
+    let (text, _) = Encoding::of(bytes).decoded(bytes);
+    !text
         .iter()
         .any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
 }
@@ -117,12 +119,8 @@ fn promised(file: &Path) -> Option<(Format, String)> {
 }
 
 /// No format at all: against its name, if that promises one.
-fn unknown(file: &Path, bytes: &[u8]) -> RecordError {
-    let utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+fn unknown(file: &Path) -> RecordError {
     match promised(file) {
-        Some((Format::Text, _)) if utf_16 => {
-            RecordError::malformed(file, "text", "it is UTF-16; save it as UTF-8")
-        }
         Some((_, extension)) => RecordError::NotWhatItSays {
             file: name(file),
             extension,

@@ -13,6 +13,7 @@ mod channels;
 mod check;
 mod csv;
 mod cut;
+mod encoding;
 mod error;
 mod format;
 mod hdf5;

@@ -1,5 +1,6 @@
 //! One shot as a rig recorded it.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// What one or two sensors gave during one shot.
@@ -34,6 +35,9 @@ pub struct Record {
     pub triggered: Option<bool>,
     /// Number of its first sample in a recording of which it is a piece, from 0.
     pub first_sample: u64,
+    /// Samples that were no numbers, in runs, and have others in their places: between their
+    /// neighbours, or the largest or least of the record where they were beyond a range.
+    pub gaps: Vec<Range<usize>>,
     /// What was taken for granted while it was read, as it is told to people.
     pub notes: Vec<String>,
 }
@@ -61,6 +65,7 @@ impl Record {
             pretrigger: None,
             triggered: None,
             first_sample: 0,
+            gaps: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -72,8 +77,13 @@ impl Record {
             name: channel.name.clone(),
             samples: channel.samples.part(start, count),
         });
+        let end = start.saturating_add(count);
+        let within = |at: usize| at.clamp(start, end) - start;
+        let gaps = self.gaps.iter();
+        let gaps = gaps.map(|gap| within(gap.start)..within(gap.end));
         Self {
             channels: channels.collect(),
+            gaps: gaps.filter(|gap| !gap.is_empty()).collect(),
             ..self.without_samples()
         }
     }
@@ -88,7 +98,24 @@ impl Record {
             notes: self.notes.clone(),
             speeds_m_s: self.speeds_m_s.clone(),
             channels: Vec::new(),
+            gaps: Vec::new(),
             ..*self
+        }
+    }
+
+    /// Adds what a later piece of the same recording has from sample `start` on, at most
+    /// `count` samples, and takes its channels where there are none yet.
+    pub fn append(&mut self, later: &Self, start: usize, count: usize) {
+        let (before, part) = (self.len(), later.part(start, count));
+        let gaps = part.gaps.iter();
+        self.gaps
+            .extend(gaps.map(|gap| gap.start + before..gap.end + before));
+        if self.channels.is_empty() {
+            self.channels = part.channels;
+            return;
+        }
+        for (channel, later) in self.channels.iter_mut().zip(&later.channels) {
+            channel.samples.append(&later.samples, start, count);
         }
     }
 

@@ -99,6 +99,48 @@ fn stated_errors_of_clipped_pulses_hold_the_true_ones() {
 }
 
 #[test]
+fn tops_that_an_amplifier_clipped_before_the_digitiser_are_seen_in_its_noise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for source in [bells(), dry()] {
+        let true_s = source.maxima_s[1] - source.maxima_s[0];
+        for (share, noise) in [(0.75, 1e-3), (0.75, 1e-2), (0.5, 1e-3), (0.5, 1e-2)] {
+            let (_, mut samples) = source.recorded(0.0, share * source.highest, &mut rng);
+            samples
+                .iter_mut()
+                .for_each(|x| *x += noise * normal(&mut rng));
+            let shot = measured(&samples, &Method::default());
+            let doubts = &shot.found.doubts;
+            assert!(
+                doubts.contains(&Doubt::Saturation(Place::Wall)),
+                "{share} {noise}: {doubts:?}"
+            );
+            let found = shot.flight.unwrap().incident_s;
+            let off = (found.value - true_s).abs();
+            // Three deviations: eight shots.
+            assert!(
+                off < 3.0 * found.sigma,
+                "{share} {noise}: {off:e} {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn whole_tops_are_not_taken_for_clipped_ones() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    for source in [bells(), dry()] {
+        for noise in [1e-4, 1e-3, 1e-2, 3e-2] {
+            for _ in 0..20 {
+                let (_, samples) = source.recorded(noise, f64::INFINITY, &mut rng);
+                let doubts = measured(&samples, &Method::default()).found.doubts;
+                let saturated = doubts.iter().any(|d| matches!(d, Doubt::Saturation(_)));
+                assert!(!saturated, "{noise}: {doubts:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn other_methods_use_the_flanks_or_say_why_they_cannot() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let source = bells();

@@ -288,6 +288,19 @@ fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() 
 }
 
 #[test]
+fn pulses_of_few_samples_are_doubted() {
+    let scene = Scene {
+        interval_s: 14e-6,
+        samples: 300,
+        noise: 1e-3,
+        ..Scene::default()
+    };
+    let doubts = find(&scene.summed()).doubts;
+    let few = |doubt: &Doubt| matches!(doubt, Doubt::FewSamples(_));
+    assert!(doubts.iter().any(few), "{doubts:?}");
+}
+
+#[test]
 fn two_pulses_without_a_third_are_no_shot_unless_the_record_ends_before_it() {
     let mut scene = Scene {
         noise: 1e-3,

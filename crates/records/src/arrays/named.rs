@@ -1,5 +1,6 @@
 //! Several arrays by name: samples, and what else is named as what it is.
 
+use super::clock::{Clock, clock};
 use crate::arrays::Axes;
 use crate::channels::{chosen, interval_s, list, seconds_taken};
 use crate::error::RecordError;
@@ -84,7 +85,7 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
         Some(_) => None,
         None => of(TIMES).and_then(|name| seconds_taken(name, None, options)),
     };
-    let interval_s = interval_s(file, stated_s.or(nameless_s), options)?;
+    let stated_s = stated_s.or(nameless_s);
     let speeds = values(SPEEDS)?.unwrap_or_default();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
     // Single numbers beside them are whatever they are.
@@ -93,12 +94,29 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
         .iter()
         .filter(|name| !known.contains(&last(name)) && several(name));
     let samples: Vec<String> = samples.cloned().collect();
-    let (records, recordings) = of_samples(&arrays, samples, interval_s, options)?;
+    let clock = only_column(&*arrays, &samples, options);
+    let (read, own_s, own_note) = match clock {
+        Some(clock) => (clock.options, clock.interval_s, clock.note),
+        None => (options.clone(), None, None),
+    };
+    let note = note.or(own_note.filter(|_| stated_s.is_none()));
+    let interval_s = interval_s(file, stated_s.or(own_s), options)?;
+    let (records, recordings) = of_samples(&arrays, samples, interval_s, &read)?;
     let speeds = Speeds {
         told: speeds,
         recordings,
     };
     Ok(with_speeds(records, speeds, note))
+}
+
+/// Times among the columns of the only array of samples.
+fn only_column(arrays: &dyn Arrays, samples: &[String], options: &ReadOptions) -> Option<Clock> {
+    let [one] = samples else { return None };
+    if options.channels.contains(one) {
+        return None;
+    }
+    let open = |options: &ReadOptions| arrays.records(one, 1.0, options);
+    clock(&arrays.shape(one).ok()?, options, &open)
 }
 
 /// The last part of a path.

@@ -1,18 +1,22 @@
 //! How a text writes its columns, found from its beginning.
 
-use super::field::{fields, number};
-use std::fs::File;
-use std::io::{self, Read};
+use super::field::{fields, number, plain};
+use super::lines::{Lines, Read};
+use std::io;
 use std::path::Path;
 
 /// As much of a file as tells its dialect.
-const BEGINNING: u64 = 1 << 18;
+const BEGINNING: usize = 1 << 18;
 
 /// Rows that are looked at.
 const ROWS: usize = 60;
 
 /// Share of rows in which a column must hold a number to be one of numbers.
 const MOSTLY: f64 = 0.8;
+
+/// What a number with marks between its thousands counts: a dialect that reads it without any
+/// goes before.
+const GROUPED: f64 = 0.99;
 
 /// Delimiters in the order of preference; a comma may be a decimal one.
 const DELIMITERS: [char; 5] = [';', '\t', '|', ',', ' '];
@@ -28,19 +32,26 @@ pub(super) struct Dialect {
     pub first_row: usize,
 }
 
-/// The beginning of a file as text, whole lines if there are any; bytes that
-/// are not UTF-8 are taken for Latin-1, as oscilloscopes write µ.
+/// The lines at the beginning of a file, whole ones if there are any, each ended by LF.
 pub(super) fn beginning(file: &Path) -> io::Result<String> {
-    let mut bytes = Vec::new();
-    File::open(file)?.take(BEGINNING).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 == BEGINNING {
-        let whole = bytes.iter().rposition(|byte| *byte == b'\n');
-        bytes.truncate(whole.map_or(bytes.len(), |at| at + 1));
+    let mut lines = Lines::open(file)?;
+    let (mut all, mut line) = (String::new(), Vec::new());
+    loop {
+        match lines.next(&mut line)? {
+            Read::Nothing => return Ok(all),
+            Read::Begun if !all.is_empty() && all.len() + line.len() > BEGINNING => return Ok(all),
+            Read::Begun | Read::Whole => {}
+        }
+        line.truncate(BEGINNING);
+        all += &text(&line);
+        all.push('\n');
+        if all.len() >= BEGINNING {
+            return Ok(all);
+        }
     }
-    Ok(text(&bytes))
 }
 
-/// Bytes as text.
+/// Bytes as text; those that are not UTF-8 are taken for Latin-1, as oscilloscopes write µ.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
@@ -102,7 +113,11 @@ fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
             .filter(|field| !field.is_empty())
         {
             all += 1.0;
-            numbers += f64::from(u8::from(number(field, decimal_comma).is_some()));
+            numbers += match plain(field, decimal_comma) {
+                Some(_) => 1.0,
+                None if number(field, decimal_comma).is_some() => GROUPED,
+                None => 0.0,
+            };
         }
     }
     if all > 0.0 { numbers / all } else { 0.0 }
@@ -150,6 +165,17 @@ mod tests {
             found("a\n1.5  2\n 2.5  3\n3 4\n5 6\n6 7"),
             (' ', false, vec![0, 1], 1)
         );
+        // Marks between thousands are no delimiters, and no decimal signs of others.
+        assert_eq!(
+            found("\"1,234.5\",0.5\n\"2,345.5\",1.5\n"),
+            (',', false, vec![0, 1], 0)
+        );
+        assert_eq!(
+            found("1.234,5;0,5\n2.345,5;1,5"),
+            (';', true, vec![0, 1], 0)
+        );
+        assert_eq!(found("1,234;0,5\n2,345;1,5"), (';', true, vec![0, 1], 0));
+        assert_eq!(found("1,234\n2,345\n"), (',', false, vec![0, 1], 0));
         assert_eq!(
             found("\"0,1\",\"0,2\"\n\"0,3\",\"1,4\""),
             (',', true, vec![0, 1], 0)

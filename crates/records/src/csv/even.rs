@@ -28,7 +28,7 @@ pub(super) fn interval(times: &[Printed]) -> Option<FromTimes> {
     };
     let off = |(i, time): (usize, &Printed)| (time.s - first.s - i as f64 * mean_s).abs();
     let exact = |at: (usize, &Printed)| off(at) <= first.rounding_s() + at.1.rounding_s();
-    if times.iter().enumerate().all(exact) {
+    if mean_s > 0.0 && times.iter().enumerate().all(exact) {
         return Some(told(mean_s, mean_s, printed_to_s));
     }
     if lost(times) {

@@ -28,8 +28,68 @@ pub(super) fn fields(line: &str, delimiter: char) -> Vec<Cow<'_, str>> {
     trimmed.map(Cow::Owned).collect()
 }
 
-/// A number with a decimal point, or with a decimal comma.
+/// A number with a decimal point, or with a decimal comma; thousands may be apart by a
+/// comma or a point, whichever the decimal sign is not, a space or an apostrophe.
 pub(super) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
+    plain(text, decimal_comma).or_else(|| plain(&ungrouped(text, decimal_comma)?, decimal_comma))
+}
+
+/// The same without what stands between thousands, if anything does.
+fn ungrouped(text: &str, decimal_comma: bool) -> Option<String> {
+    let (sign, other) = if decimal_comma {
+        (',', '.')
+    } else {
+        ('.', ',')
+    };
+    let end = text.find([sign, 'e', 'E']).unwrap_or(text.len());
+    let (whole, rest) = text.split_at(end);
+    let digits = whole.trim_start_matches(['+', '-']);
+    let mark = digits.chars().find(|letter| !letter.is_ascii_digit())?;
+    let known = mark == other || matches!(mark, ' ' | '\u{a0}' | '\u{202f}' | '\'' | '’');
+    let mut groups = digits.split(mark);
+    let first = groups.next()?;
+    let leads = (1..=3).contains(&first.len()) && !first.starts_with('0');
+    let three = |group: &str| group.len() == 3 && group.bytes().all(|b| b.is_ascii_digit());
+    (known && leads && groups.all(three)).then(|| whole.replace(mark, "") + rest)
+}
+
+/// What stands in a cell of a number where there was none to be told.
+pub(super) fn no_number(text: &str) -> Option<f64> {
+    const OVER: &[&str] = &[
+        "overload",
+        "overrange",
+        "over range",
+        "overflow",
+        "over",
+        "ovl",
+        "ovld",
+        "ovrl",
+        "ovf",
+        "ol",
+        "o.l.",
+        "clipped",
+        "1.#inf",
+        "∞",
+        "+∞",
+    ];
+    const NONE: &[&str] = &[
+        "", "-", "--", "---", "n/a", "na", "#n/a", "null", "none", "missing", "#num!", "#value!",
+        "#div/0!", "1.#qnan", "1.#ind", "-1.#ind", "-1.#qnan",
+    ];
+    let text = text.trim_matches('"').to_lowercase();
+    let over = OVER.contains(&text.trim_start_matches('+'));
+    let under = text
+        .strip_prefix('-')
+        .is_some_and(|text| OVER.contains(&text.trim()));
+    match (over, under || text == "underrange" || text == "underflow") {
+        (true, _) => Some(f64::INFINITY),
+        (_, true) => Some(f64::NEG_INFINITY),
+        _ => NONE.contains(&text.as_str()).then_some(f64::NAN),
+    }
+}
+
+/// A number with nothing between its thousands.
+pub(super) fn plain(text: &str, decimal_comma: bool) -> Option<f64> {
     // No number begins with other letters; the parser takes its time to say so.
     let first = text.bytes().next()?;
     if !(first.is_ascii_digit() || b"+-.,nNiI".contains(&first)) {
@@ -62,7 +122,7 @@ pub(super) fn leading_number(text: &str, decimal_comma: bool) -> Option<(f64, &s
     let parsed = ends.filter_map(|end| {
         let (head, tail) = text.split_at(end);
         let plain = head.ends_with(|letter: char| letter.is_ascii_digit() || letter == '.');
-        let value = number(head, decimal_comma).filter(|_| plain)?;
+        let value = self::plain(head, decimal_comma).filter(|_| plain)?;
         Some((value, tail))
     });
     // Numbers are short; a long text is no number.
@@ -100,6 +160,35 @@ mod tests {
             // Rounding of a power of ten.
             assert!((worth / expected - 1.0).abs() < 1e-12, "{text}: {worth}");
         }
+    }
+
+    #[test]
+    fn thousands_may_be_apart_by_what_is_no_decimal_sign() {
+        for (text, comma, expected) in [
+            ("1,234.5", false, Some(1234.5)),
+            ("-12,345,678", false, Some(-12_345_678.0)),
+            ("1.234,5", true, Some(1234.5)),
+            ("1 234,5e-3", true, Some(1.2345)),
+            ("1\u{202f}234.5", false, Some(1234.5)),
+            ("1'234.5", false, Some(1234.5)),
+            ("0,123.5", false, None),
+            ("1,23.5", false, None),
+            ("1,2345", false, None),
+            ("1,234 567", false, None),
+            ("12-345", false, None),
+        ] {
+            assert_eq!(number(text, comma), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn cells_without_a_number_are_told_from_other_words() {
+        assert_eq!(no_number("OVERLOAD"), Some(f64::INFINITY));
+        assert_eq!(no_number("-OL"), Some(f64::NEG_INFINITY));
+        assert!(no_number("#N/A").unwrap().is_nan());
+        assert!(no_number("").unwrap().is_nan());
+        assert_eq!(no_number("what?"), None);
+        assert_eq!(no_number("-.-"), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod dialect;
 mod even;
 mod field;
 mod header;
+mod lines;
 mod rows;
 mod times;
 

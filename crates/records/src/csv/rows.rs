@@ -1,7 +1,8 @@
 //! Rows into records, line by line.
 
 use super::dialect::{Dialect, text};
-use super::field::{fields, last_digit, number};
+use super::field::{fields, last_digit, no_number, number};
+use super::lines::{Lines, Read};
 use super::times::{self, Printed, Returns};
 use crate::channels::{self, Interval};
 use crate::cut::{MOST_SAMPLES, from_sample};
@@ -10,8 +11,7 @@ use crate::options::{Parts, ReadOptions};
 use crate::record::{Channel, Record, Samples};
 use std::borrow::Cow;
 use std::collections::VecDeque;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,8 @@ pub(super) struct Plan {
 /// An iterator over the records of a text.
 pub(super) struct Rows {
     file: PathBuf,
-    reader: BufReader<File>,
+    lines: Lines,
+    bytes: Vec<u8>,
     plan: Plan,
     line: usize,
     ended: bool,
@@ -70,15 +71,15 @@ enum Line {
 
 impl Rows {
     pub fn open(file: &Path, plan: Plan) -> io::Result<Self> {
-        let mut reader = BufReader::with_capacity(1 << 16, File::open(file)?);
-        let mut skipped = Vec::new();
+        let mut lines = Lines::open(file)?;
+        let mut bytes = Vec::new();
         for _ in 0..plan.dialect.first_row {
-            reader.read_until(b'\n', &mut skipped)?;
-            skipped.clear();
+            lines.next(&mut bytes)?;
         }
         Ok(Self {
             file: file.to_owned(),
-            reader,
+            lines,
+            bytes,
             line: plan.dialect.first_row,
             plan,
             ended: false,
@@ -92,22 +93,25 @@ impl Rows {
     }
 
     fn line(&mut self) -> Line {
-        let mut bytes = Vec::new();
-        match self.reader.read_until(b'\n', &mut bytes) {
-            Ok(0) => return Line::End,
-            Ok(_) => self.line += 1,
+        let read = match self.lines.next(&mut self.bytes) {
+            Ok(Read::Nothing) => return Line::End,
+            Ok(read) => read,
             Err(cause) => {
                 self.ready
                     .push_back(Err(RecordError::reading(&self.file, cause)));
                 return Line::End;
             }
-        }
-        let whole = bytes.ends_with(b"\n");
-        let line = text(&bytes);
-        let line = line.trim_end_matches(['\r', '\n']);
+        };
+        self.line += 1;
+        let whole = read == Read::Whole;
+        let line = text(&self.bytes);
+        let line = line.as_str();
         let dialect = &self.plan.dialect;
         let fields = fields(line, dialect.delimiter);
-        let value = |column: &usize| number(fields.get(*column)?, dialect.decimal_comma);
+        let value = |column: &usize| {
+            let field = fields.get(*column)?;
+            number(field, dialect.decimal_comma).or_else(|| no_number(field).filter(|_| whole))
+        };
         let blank = fields.iter().all(|field| field.is_empty());
         let time = match self.plan.time {
             Some((column, unit_s)) => self.time(fields.get(column), unit_s).map(Some),
@@ -115,12 +119,10 @@ impl Rows {
         };
         let values = self.plan.columns.iter().map(value);
         match time.zip(values.collect()) {
-            Some((time, values)) => Line::Row(time, values),
-            None if blank || self.plan.separators.iter().any(|known| known == line) => {
-                Line::Separator
-            }
-            None if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
-            None => {
+            Some((time, values)) if !blank => Line::Row(time, values),
+            _ if blank || self.plan.separators.iter().any(|known| known == line) => Line::Separator,
+            _ if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
+            _ => {
                 let shown: String = line.chars().take(60).collect();
                 Line::Bad(format!(
                     "line {} is no row of numbers: {shown:?}",

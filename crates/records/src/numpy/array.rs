@@ -62,6 +62,15 @@ impl Array {
         Ok(samples.first().map(Samples::volts).unwrap_or_default())
     }
 
+    /// Whether the file ends before its numbers do, as its header counts them.
+    pub fn cut_short(&self) -> Option<RecordError> {
+        let sizes = self.shape.iter().map(|size| *size as u64);
+        let bytes = sizes.fold(self.number.width() as u64, u64::saturating_mul);
+        let there = self.bytes.left().filter(|there| *there < bytes)?;
+        let detail = format!("{there} of {bytes} bytes of numbers are there");
+        Some(RecordError::truncated(name(&self.place.file), detail))
+    }
+
     /// The records of an array of samples.
     pub fn records(self, interval_s: f64, options: &ReadOptions) -> Result<Raw, RecordError> {
         let fortran = self.fortran && self.shape.len() > 1;

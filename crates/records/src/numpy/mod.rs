@@ -7,6 +7,7 @@ mod place;
 
 pub(crate) use npz::open as open_npz;
 
+use crate::arrays::clock;
 use crate::channels::interval_s;
 use crate::error::RecordError;
 use crate::options::ReadOptions;
@@ -23,7 +24,21 @@ pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, Record
         size: u64::MAX,
         deflated: false,
     };
-    let array = Array::open(place, None)?;
-    let interval_s = interval_s(file, None, options)?;
-    array.records(interval_s, options)
+    let array = Array::open(place.clone(), None)?;
+    let look = |options: &ReadOptions| Array::open(place.clone(), None)?.records(1.0, options);
+    let clock = clock(&array.shape, options, &look);
+    let (read, stated_s, note) = match clock {
+        Some(clock) => (clock.options, clock.interval_s, clock.note),
+        None => (options.clone(), None, None),
+    };
+    // Who gives the rate of half a file would only learn then that it is half a file.
+    let interval_s =
+        interval_s(file, stated_s, options).map_err(|error| array.cut_short().unwrap_or(error))?;
+    let records = array.records(interval_s, &read)?;
+    Ok(Box::new(records.map(move |record| {
+        record.map(|mut record| {
+            record.notes.extend(note.clone());
+            record
+        })
+    })))
 }

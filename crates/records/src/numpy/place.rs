@@ -35,6 +35,18 @@ impl Place {
 }
 
 impl Bytes {
+    /// How many bytes are left in the file, of what is not deflated.
+    pub fn left(&self) -> Option<u64> {
+        let Self::Plain(bytes) = self else {
+            return None;
+        };
+        let inner = bytes.get_ref();
+        let mut file = inner.get_ref();
+        let (size, at) = (file.metadata().ok()?.len(), file.stream_position().ok()?);
+        let left = size.saturating_sub(at) + inner.buffer().len() as u64;
+        Some(left.min(bytes.limit()))
+    }
+
     /// Leaves out what comes next; where it ends before, nothing comes any more.
     pub fn skip(&mut self, count: u64) -> io::Result<()> {
         match self {

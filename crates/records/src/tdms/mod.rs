@@ -7,7 +7,8 @@ mod index;
 mod lead;
 mod scaling;
 
-use crate::channels::{chosen, interval_s};
+use crate::arrays;
+use crate::channels::{chosen, interval_s, seconds_taken};
 use crate::cut::{Cut, Head, MOST_SAMPLES, Stream};
 use crate::error::{RecordError, name};
 use crate::options::ReadOptions;
@@ -53,6 +54,7 @@ fn open_group(
     channels: Vec<Channel>,
     options: &ReadOptions,
 ) -> Result<Raw, RecordError> {
+    let (channels, step) = without_times(file, channels, options);
     let names: Vec<String> = channels
         .iter()
         .map(|channel| channel.name.clone())
@@ -83,11 +85,16 @@ fn open_group(
         });
     }
     let stated_s = kept.iter().find_map(Channel::interval_s);
+    let own_s = step
+        .as_ref()
+        .and_then(|(_, step)| arrays::of_step(*step, options));
+    let times = step.filter(|_| stated_s.is_none() && own_s.is_some());
+    let note = times.and_then(|(name, _)| seconds_taken(&name, None, options));
     let head = Head {
         file: file.to_owned(),
         part: Some(group),
         names: kept.iter().map(|channel| channel.name.clone()).collect(),
-        interval_s: interval_s(file, stated_s, options)?,
+        interval_s: interval_s(file, stated_s.or(own_s), options)?,
         total,
         row: total,
         each: total,
@@ -100,7 +107,53 @@ fn open_group(
         channels: kept,
         at: 0,
     };
-    Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
+    let records = Cut::new(head.divided(options.parts), stream);
+    Ok(Box::new(records.map(move |record| {
+        record.map(|mut record| {
+            record.notes.extend(note.clone());
+            record
+        })
+    })))
+}
+
+/// Channels but for one that rises evenly, as times do and no signal, with its name and step.
+/// Where channels are chosen by name, all stay.
+fn without_times(
+    file: &Path,
+    mut channels: Vec<Channel>,
+    options: &ReadOptions,
+) -> (Vec<Channel>, Option<(String, f64)>) {
+    if channels.len() < 2 {
+        return (channels, None);
+    }
+    let step = |channel: &Channel| {
+        if options.channels.contains(&channel.name) {
+            return None;
+        }
+        let channel = channel.clone().scaled().ok()?;
+        let mut opened = File::open(file).ok()?;
+        let samples = part(
+            &mut opened,
+            &channel,
+            0,
+            channel.len().min(arrays::LOOKED_AT),
+        );
+        arrays::rises(&samples.ok()?.volts())
+    };
+    let found = channels
+        .iter()
+        .enumerate()
+        .find_map(|(at, channel)| Some((at, step(channel)?)));
+    match found {
+        Some((at, step)) => {
+            let times = channels.get(at).map(|channel| (channel.name.clone(), step));
+            if options.channels.is_empty() {
+                channels.remove(at);
+            }
+            (channels, times)
+        }
+        None => (channels, None),
+    }
 }
 
 /// The channels of a group, read piece by piece.

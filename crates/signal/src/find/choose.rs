@@ -15,6 +15,9 @@ const EARLIEST: f64 = 0.6;
 /// Least height of the wall's pulse over the passing one's. Of computed rows it is 0.48 (weak
 /// shots in gear oil) to 1.9 (dry); a returning pulse has 0.20 to 0.35 of the wall's.
 const LEAST_WALL: f64 = 0.42;
+/// The same where no third pulse is there and nobody knows the row: returning pulses have up to 0.67
+/// of the passing one's height.
+const HIGHEST_RETURN: f64 = 0.7;
 /// Expected incident times between what a time to the wall and one to the wall and back can be.
 const TO_AND_FRO: f64 = 1.5;
 
@@ -128,9 +131,11 @@ fn of_two(
 ) -> Chosen {
     let time = (second.at - first.at) as f64;
     let falls = is_no_wall(&second, &first);
+    let may_be_back = second.height < HIGHEST_RETURN * first.height;
     let shows_all = !ends_early(first.at, second.at, track.samples.len());
+    let to_and_fro = |beads| time > TO_AND_FRO * expected(beads, track.width);
     match (falls, finding.beads) {
-        (true, Some(beads)) if time > TO_AND_FRO * expected(beads, track.width) => Chosen {
+        (_, Some(beads)) if may_be_back && to_and_fro(beads) => Chosen {
             wall: None,
             returning: Some(second),
             ..chosen
@@ -143,7 +148,7 @@ fn of_two(
         },
         (false, Some(_)) => chosen,
         (_, None) => Chosen {
-            lost: falls || shows_all,
+            lost: may_be_back || shows_all,
             ..chosen
         },
     }

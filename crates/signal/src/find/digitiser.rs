@@ -2,6 +2,7 @@
 
 use super::{Channels, Doubt, Finding, Found, Place, Pulse};
 use crate::Rails;
+use crate::picks::{Sight, flat_top};
 use crate::saturation::has_run;
 
 /// Looks at the pulses as they were recorded: filters leave neither rails nor steps.
@@ -33,6 +34,8 @@ pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding
     let coarse: Vec<Place> = coarse.map(|pulse| pulse.place).collect();
     doubts.extend(coarse.iter().copied().map(Doubt::CoarseSteps));
     found.doubt(doubts);
+    let flat_tops = flat_tops(found, recorded, &coarse);
+    found.doubt(flat_tops);
     // A top of few steps is flat by itself.
     let flat = |pulse: &&mut Pulse| {
         let which = usize::from(pulse.place == Place::Wall);
@@ -42,6 +45,28 @@ pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding
     for pulse in pulses.into_iter().flatten().filter(flat) {
         pulse.clipped = None;
     }
+}
+
+/// Marks the tops that something before the digitiser has clipped.
+fn flat_tops(found: &mut Found, recorded: Channels<'_>, coarse: &[Place]) -> Vec<Doubt> {
+    let channels = [recorded.sensor(), recorded.wall()];
+    let uprights = [found.sensor, found.wall_channel];
+    let pulses = [&mut found.passing, &mut found.wall, &mut found.returning];
+    let whole = pulses.into_iter().flatten().filter(|p| p.clipped.is_none());
+    let mut doubts = Vec::new();
+    for pulse in whole.filter(|pulse| !coarse.contains(&pulse.place)) {
+        let which = usize::from(pulse.place == Place::Wall);
+        let sight = Sight {
+            samples: channels[which],
+            upright: uprights[which],
+            rails: None,
+            summed: matches!(recorded, Channels::Summed(_)),
+            wall: None,
+        };
+        pulse.clipped = flat_top(&sight, pulse);
+        doubts.extend(pulse.clipped.map(|_| Doubt::Saturation(pulse.place)));
+    }
+    doubts
 }
 
 /// Least difference of neighbours. Of samples that are not rounded, the least of some

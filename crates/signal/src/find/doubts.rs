@@ -14,6 +14,9 @@ pub(super) struct Seen<'a, 'b> {
 /// Height over noise below which a pulse is low: 20 dB.
 const LOW: f64 = 10.0;
 
+/// Samples across the half maximum below which means of four hide a pulse.
+const FEW: f64 = 5.0;
+
 impl Seen<'_, '_> {
     /// Doubts about this pulse alone, given the samples between which it has no neighbour.
     pub(super) fn doubts(&self, alone: (usize, usize)) -> Vec<Doubt> {
@@ -23,6 +26,7 @@ impl Seen<'_, '_> {
             (self.split(alone), Doubt::Split(place)),
             (self.pulse.height < LOW * noise, Doubt::LowSignal(place)),
             (self.cut_off(), Doubt::RecordTooShort),
+            (self.pulse.width_samples < FEW, Doubt::FewSamples(place)),
         ];
         let raised = checks.into_iter().filter(|(raised, _)| *raised);
         raised.map(|(_, doubt)| doubt).collect()

@@ -55,16 +55,21 @@ pub enum Doubt {
     NotPicked(Place),
     /// A pulse is few steps of the digitiser high, and no noise shakes them.
     CoarseSteps(Place),
+    /// Fewer than five samples lie across a pulse's half maximum.
+    FewSamples(Place),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
 
 impl Doubt {
-    /// Whether times may be of something else than the wave: of a clipped pulse, or of pulses
-    /// taken for one another.
+    /// Whether times may be of something else than the wave: of a clipped or hardly
+    /// sampled pulse, or of pulses taken for one another.
     #[must_use]
     pub fn is_grave(&self) -> bool {
-        matches!(self, Self::Saturation(_) | Self::Order | Self::Lost)
+        matches!(
+            self,
+            Self::Saturation(_) | Self::Order | Self::Lost | Self::FewSamples(_)
+        )
     }
 }
 
@@ -82,6 +87,7 @@ impl fmt::Display for Doubt {
             Self::Lost => f.write_str("one pulse missing, perhaps the passing one"),
             Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
             Self::CoarseSteps(place) => write!(f, "{place} pulse in coarse steps"),
+            Self::FewSamples(place) => write!(f, "{place} pulse of few samples"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
         }
     }

@@ -13,6 +13,7 @@ mod shape;
 mod under;
 
 pub use bound::{cramer_rao_of_samples_s, cramer_rao_s};
+pub(crate) use flanks::flat_top;
 pub use shape::Shape;
 
 use crate::error::SignalError;
