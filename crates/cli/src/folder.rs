@@ -65,6 +65,11 @@ impl Folder {
         self.write(&format!("{name}.png"), &png)
     }
 
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Everything written.
     pub fn into_written(self) -> Vec<PathBuf> {
         self.written

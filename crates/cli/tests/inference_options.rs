@@ -127,13 +127,17 @@ fn options_that_would_say_nothing_are_refused_at_once() {
     let folder = folder("unheeded");
     let data = curve(&folder, "dry");
     let fit = ["fit", &data, "-p", "dry", "--free", "eta"];
+    let nowhere = folder.join("nowhere").to_str().unwrap().to_owned();
     for (options, words) in [
         (
             &["--robust", "--against", "hertz=Y"][..],
             "a robust loss is none",
         ),
         (&["--rate", "1MHz"], "--rate is for recordings"),
-        (&["--resume", "--out", "nowhere"], "add --method posterior"),
+        (
+            &["--resume", "--out", &nowhere],
+            "holds nothing of one: leave it out",
+        ),
     ] {
         let message = refused(&with_errors(&[&fit[..], options].concat()));
         assert!(message.contains(words), "{options:?}: {message}");

@@ -16,6 +16,8 @@ pub(crate) enum Purpose {
     Folds,
     /// Where walkers start, by ensemble.
     Ball(u32),
+    /// At which curves a surrogate is fitted.
+    Surrogate,
     /// One half step of the sampler, by number.
     HalfStep(u64),
 }
@@ -26,6 +28,7 @@ impl Purpose {
             Self::Start(start) => u64::from(start),
             Self::Folds => 1 << 32,
             Self::Ball(ensemble) => (2 << 32) | u64::from(ensemble),
+            Self::Surrogate => 3 << 32,
             Self::HalfStep(number) => (1 << 63) | number,
         }
     }

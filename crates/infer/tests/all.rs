@@ -17,4 +17,5 @@ mod posterior;
 mod pulses;
 mod round_trip;
 mod shots;
+mod surrogate;
 mod toys;

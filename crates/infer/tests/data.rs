@@ -63,7 +63,7 @@ fn mistakes_name_their_row_and_column() {
         (",0,7e-4,1e-7\n", "no speed"),
         ("0.5,0.6,7e-4,1e-7\n", "is not below the speed"),
         ("0.5,0\n", "a.csv"),
-        ("0.5,0,,\n", "no row has a time of flight"),
+        ("0.5,0,,\n", "no row has any of the numbers that are used"),
     ] {
         let error = refused(rows);
         assert!(error.contains(words), "{rows}: {error}");

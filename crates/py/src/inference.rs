@@ -42,8 +42,15 @@ pub fn fit<'py>(
     found(py, &options, progress, |arguments| {
         let problem = posed(&table, experiment, arguments)?;
         let fitted = fitting::fitted(problem, arguments)?;
+        left(&fitted.inferred, arguments)?;
         Ok(Found::of(&fitted, arguments))
     })
+}
+
+/// Leaves walkers in the output folder, if there is one.
+pub fn left(inferred: &fitting::Inferred, arguments: &Fit) -> Result<(), Failure> {
+    let out = arguments.out.as_deref();
+    out.map_or(Ok(()), |out| fitting::leave(inferred, out))
 }
 
 fn found<'py>(
@@ -79,6 +86,7 @@ pub fn fit_pulses<'py>(
         let inner = changed(inner, &arguments.modelled.set)?;
         let recorded = pulses::recorded_of(&inner, arguments)?;
         let fitted = pulses::fitted(recorded, arguments)?;
+        left(&fitted.inferred, arguments)?;
         Ok(Found {
             fit: pulses::json(&fitted, arguments),
             rows: pulses::rows_json(&pulses::shown(&fitted)?),

@@ -2,10 +2,9 @@
 
 use crate::experiment::Experiment;
 use crate::failure::Failed;
-use crate::inference::{Found, Table, posed};
+use crate::inference::{Found, Table, left, posed};
 use crate::job::Job;
 use hertzchain_infer::{Batch, CurveProblem, ModelError, Outcomes, Problem, Residuals, Spread};
-use hertzchain_study::reproduce::write_atomically;
 use hertzchain_study::{Stop, StudyError, stopped};
 use hertzchain_verbs::arguments::infer::Fit;
 use hertzchain_verbs::arguments::parsed;
@@ -200,11 +199,6 @@ fn fitted(
     arguments: &Fit,
 ) -> Result<Found, Failure> {
     let fitted = fitting::fitted_elsewhere(problem.clone(), computed, arguments)?;
-    if let (fitting::More::Sampled(sampled), Some(folder)) = (&fitted.inferred.more, &arguments.out)
-    {
-        let path = folder.join(fitting::CHAIN);
-        let written = write_atomically(&path, &fitting::saved(&sampled.chain)?);
-        written.map_err(|error| Failure::Ours(error.to_string()))?;
-    }
+    left(&fitted.inferred, arguments)?;
     Ok(Found::of(&fitted, arguments))
 }

@@ -72,6 +72,41 @@ def test_tables_of_pandas_and_sweeps_are_data(dry_data):
     assert next(iter(exact.parameters.values())).value == pytest.approx(77.0, rel=1e-2)
 
 
+def test_what_is_masked_was_not_measured(dry_data):
+    reflected = np.ma.masked_greater(dry_data["tof_reflected_s"], np.sort(dry_data["tof_reflected_s"])[-3])
+    seen = hc.fit({**dry_data, "tof_reflected_s": reflected}, free="B")
+    assert len(seen.to_pandas()) == 10
+    absent = hc.fit({**dry_data, "tof_reflected_s": reflected.filled(np.nan)}, free="B")
+    assert seen.covariance.tolist() == absent.covariance.tolist()
+    names = np.ma.array(["a"] * 6, mask=[True] + [False] * 5)
+    with pytest.raises(hc.OptionError, match="only numbers can be masked"):
+        hc.fit({**dry_data, "case": names}, free="B")
+
+
+def test_a_fit_that_was_broken_off_goes_on_in_its_folder(dry_data, tmp_path):
+    class Enough(Exception):
+        pass
+
+    def enough(more: int) -> None:
+        raise Enough
+
+    how = {"free": "eta,B", "method": "profile", "accuracy": 1e-6}
+    with pytest.raises(Enough):
+        hc.fit(dry_data, folder=tmp_path, progress=enough, **how)
+    assert any((tmp_path / "partial").glob("part-*"))
+    assert hc.fit(dry_data, folder=tmp_path, **how).details == hc.fit(dry_data, **how).details
+    assert not (tmp_path / "partial").exists()
+
+
+def test_walkers_in_a_folder_are_led_on(dry_data, tmp_path):
+    how = {"free": "eta,B", "method": "posterior"}
+    hc.fit(dry_data, folder=tmp_path, steps=40, **how)
+    led_on = hc.fit(dry_data, folder=tmp_path, steps=60, **how)
+    assert led_on.details["posterior"] == hc.fit(dry_data, steps=60, **how).details["posterior"]
+    with pytest.raises(hc.OptionError, match="--resume"):
+        hc.fit(noisy("dry", 2), folder=tmp_path, steps=60, **how)
+
+
 def test_bounds_priors_and_starts_are_those_of_the_command_line(cli, table):
     told = cli(
         "fit", table, "--preset", "dry", "--free", "eta,B", "--prior", "B=80+-5", "--bounds", "eta=1e4:1e5", "--start", "B=70", "--set", "young_modulus=212 GPa"

@@ -1,7 +1,7 @@
 //! What would tell confused parameters apart, by the rows that it would add to the
 //! Jacobian.
 
-use super::candidates::{ExpectedErrors, Kind, Way, expected, pushed};
+use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pushed};
 use super::contacts::three_for_two;
 use super::model::Model;
 use super::problem::CurveProblem;
@@ -228,8 +228,8 @@ impl CurveProblem {
             ways.push((spread, experiment.clone(), wider));
         }
         ways.extend(pushed.map(|chain| {
-            let name = "at the same speeds with a push of 0.24 N on bead 1";
-            (name.to_owned(), chain, own)
+            let name = format!("at the same speeds with a push of {USUAL_PRELOAD_N} N on bead 1");
+            (name, chain, own)
         }));
         let judged = ways.into_iter().filter_map(|(name, experiment, speeds)| {
             let model = Model::new(&experiment, self.model().numbers().clone()).ok()?;

@@ -150,8 +150,8 @@ pub struct Choices {
     pub costs: [f64; Kind::ALL.len()],
 }
 
-/// Push of the paper's springs in N.
-pub const USUAL_PRELOAD_N: f64 = 0.24;
+/// Push of the paper's springs in N: that of its reading.
+pub const USUAL_PRELOAD_N: f64 = hertzchain_experiment::reading::PRELOAD_N;
 
 impl Default for Choices {
     fn default() -> Self {

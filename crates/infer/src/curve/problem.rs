@@ -168,6 +168,41 @@ impl CurveProblem {
         self.model.curves(points, &self.speeds)
     }
 
+    /// Speeds in m/s at which residuals need predictions.
+    pub(super) fn all_speeds_m_s(&self) -> Vec<f64> {
+        self.speeds.at.iter().map(|(_, speed)| *speed).collect()
+    }
+
+    /// Predictions at some of these speeds, by number.
+    pub(super) fn curves_at(
+        &self,
+        points: &[Vec<f64>],
+        which: &[usize],
+    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        let speeds = Speeds {
+            at: which.iter().map(|at| self.speeds.at[*at]).collect(),
+            rows: self.speeds.rows,
+        };
+        self.model.curves(points, &speeds)
+    }
+
+    /// By how many of its row's errors one curve differs from another at each of these speeds;
+    /// infinite where only one has a prediction.
+    pub(super) fn differences(&self, one: &[Predicted], other: &[Predicted]) -> Vec<f64> {
+        let at = |(speed, (row, _)): (usize, &(usize, f64))| {
+            let row = &self.data.rows[*row];
+            let of = |of: Observable| {
+                let [a, b] = [one, other].map(|curve| curve[speed][of.index()]);
+                match (a, b, row.value(of)) {
+                    (Some(a), Some(b), Some(measured)) => (a - b).abs() / measured.sigma,
+                    _ => f64::INFINITY,
+                }
+            };
+            row.observables().map(of).fold(0.0, f64::max)
+        };
+        self.speeds.at.iter().enumerate().map(at).collect()
+    }
+
     /// Which row and observable each residual belongs to.
     #[must_use]
     pub fn measured(&self) -> Vec<(usize, Observable)> {

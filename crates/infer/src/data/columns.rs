@@ -44,9 +44,13 @@ impl Columns {
             expected,
         };
         let speed = measured(titles, "speed_m_s").ok_or_else(|| {
-            let near = other_unit(titles, "speed");
+            let near = other_unit(titles, "speed", "_m_s");
             missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
         })?;
+        let speed = Measured {
+            count: find(titles, &["speed_error_shots"]),
+            ..speed
+        };
         let column = |of: Observable| {
             let is_wanted = wanted.contains(&of);
             let finer = of.finer_column().and_then(|name| finer(titles, name, of));
@@ -56,8 +60,7 @@ impl Columns {
         let observables = Observable::ALL.map(column);
         if observables.iter().all(Option::is_none) {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
-            let what = format!("times in s or ratios{}", other_unit(titles, "tof"));
-            return Err(missing(&names.join("` or `"), what));
+            return Err(missing(&names.join("` or `"), instead(titles, wanted)));
         }
         Ok(Self {
             case: find(titles, &["case"]),
@@ -68,10 +71,29 @@ impl Columns {
     }
 }
 
-/// A hint at a column that looks like the one wanted.
-fn other_unit(titles: &[String], beginning: &str) -> String {
-    let near = titles.iter().find(|title| title.starts_with(beginning));
-    near.map_or(String::new(), |title| {
+/// What a table without any wanted observable should have, with a hint at what it has.
+fn instead(titles: &[String], wanted: &[Observable]) -> String {
+    let kinds = [(true, "times in s"), (false, "ratios of peaks")];
+    let kinds = kinds
+        .iter()
+        .filter(|(times, _)| wanted.iter().any(|of| of.is_time() == *times));
+    let kinds: Vec<&str> = kinds.map(|(_, name)| *name).collect();
+    let others = Observable::ALL
+        .into_iter()
+        .filter(|of| !wanted.contains(of));
+    let mut others = others.map(Observable::column);
+    let there = others.find(|column| titles.iter().any(|title| title == column));
+    let hint = there.map_or_else(
+        || other_unit(titles, "tof", "_s"),
+        |column| format!("; `{column}` is there, but --use does not name it"),
+    );
+    format!("{}{hint}", kinds.join(" or "))
+}
+
+/// A hint at a column that looks like the one wanted, but for its unit.
+fn other_unit(titles: &[String], beginning: &str, unit: &str) -> String {
+    let near = |title: &&String| title.starts_with(beginning) && !title.ends_with(unit);
+    titles.iter().find(near).map_or(String::new(), |title| {
         format!("; `{title}` is not read, since its title does not end with the SI unit")
     })
 }
@@ -143,6 +165,27 @@ mod tests {
             let last = titles(text).len() - 1;
             assert_eq!(incident.sigma.unwrap().at, last, "{text}");
         }
+    }
+
+    #[test]
+    fn a_missing_column_is_told_with_what_is_there_instead() {
+        let told = |text: &str, wanted: &[Observable]| {
+            Columns::of(&titles(text), wanted, "a.csv")
+                .unwrap_err()
+                .to_string()
+        };
+        let there = told("speed_m_s,tof_incident_s", &[Observable::WallOverPassing]);
+        let expected =
+            "expected ratios of peaks; `tof_incident_s` is there, but --use does not name it";
+        assert!(there.ends_with(expected), "{there}");
+        let other = told("speed_m_s,tof_incident_us", &[Observable::Incident]);
+        let expected = "expected times in s; `tof_incident_us` is not read, since its title does not end with the SI unit";
+        assert!(other.ends_with(expected), "{other}");
+        let neither = told("speed_m_s,speed_error_m_s", &Observable::ALL);
+        assert!(
+            neither.ends_with("expected times in s or ratios of peaks"),
+            "{neither}"
+        );
     }
 
     #[test]

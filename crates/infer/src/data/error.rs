@@ -60,7 +60,7 @@ pub enum DataError {
         what: String,
     },
     /// A table without rows that tell anything.
-    #[error("{file}: no row has a time of flight")]
+    #[error("{file}: no row has any of the numbers that are used (--use)")]
     Empty {
         /// File.
         file: String,

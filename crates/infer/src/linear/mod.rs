@@ -1,7 +1,11 @@
 //! The little linear algebra that inference needs, on matrices given by columns.
 
+mod cholesky;
+mod least_squares;
 mod svd;
 
+pub(crate) use cholesky::cholesky;
+pub(crate) use least_squares::least_squares;
 pub(crate) use svd::{Svd, svd};
 
 /// Scalar product.

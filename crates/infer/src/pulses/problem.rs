@@ -6,7 +6,7 @@ use crate::curve::{Model, Shooting, Speeds};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
 use hertzchain_chain::Sensor;
-use hertzchain_study::{Shot, count_done, shoot};
+use hertzchain_study::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
@@ -73,6 +73,7 @@ pub struct PulseProblem {
     parameters: Vec<Parameter>,
     /// How long each record's shot is followed, and how densely, in s.
     grids: Vec<(f64, f64)>,
+    left_out: Vec<String>,
 }
 
 /// Share of the model's first passing time by which it may become later.
@@ -89,7 +90,8 @@ const GAIN: &str = "sensor_gain";
 
 impl PulseProblem {
     /// A model against records. Its parameters start where the model has them,
-    /// the sensors' sensitivity where the first record has it.
+    /// the sensors' sensitivity where the first record has it. Records whose shot shows no
+    /// pulse there are [left out](Self::left_out).
     ///
     /// # Errors
     /// See [`PulseError`].
@@ -105,13 +107,21 @@ impl PulseProblem {
             rows: records.iter().map(row).collect(),
             parameters: model.numbers().parameters(&speeds_m_s),
             grids: Vec::new(),
+            left_out: Vec::new(),
             model,
             respond,
             records,
             speeds_m_s,
         };
         problem.lay_out()?;
-        Ok(problem)
+        if problem.left_out.is_empty() {
+            return Ok(problem);
+        }
+        // Speeds that nobody has any more have no values a speed either.
+        let left_out = std::mem::take(&mut problem.left_out);
+        let mut fewer = Self::new(problem.model, problem.records, problem.respond)?;
+        fewer.left_out.splice(..0, left_out);
+        Ok(fewer)
     }
 
     /// The same with other starts, bounds and priors of its parameters.
@@ -127,6 +137,12 @@ impl PulseProblem {
         Ok(self)
     }
 
+    /// Records of which the model, where it starts, has no pulses to compare with, and why.
+    #[must_use]
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
+    }
+
     /// The records.
     #[must_use]
     pub fn records(&self) -> &[Pulses] {
@@ -137,6 +153,31 @@ impl PulseProblem {
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Of everything that residuals follow from: the experiment as it is understood,
+    /// amplifier among it, its free numbers, the records, accuracy and instruction set, this
+    /// build of the program; not where the records lie.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        let model = &self.model;
+        let all = Inputs::of("pulse problem")
+            .text("experiment", &model.experiment().understood())
+            .text("free", &format!("{:?}", model.numbers()))
+            .text("parameters", &format!("{:?}", self.parameters))
+            .text("set", model.set.name())
+            .numbers("accuracy", &[model.accuracy]);
+        let record = |all: Inputs, record: &Pulses| {
+            let speed = record.speed_m_s;
+            let speeds = [speed.value, speed.sigma, record.programmed_m_s];
+            let times = [record.interval_s, record.start_s, record.passing_s];
+            let all = all.numbers("speeds", &speeds).numbers("times", &times);
+            let all = all.count("width", record.width as u64);
+            let all = all.numbers("noise", &record.sigma_v);
+            let channels = record.means_v.iter();
+            channels.fold(all, |all, means_v| all.numbers("means", means_v))
+        };
+        self.records.iter().fold(all, record).fingerprint()
     }
 
     /// Numbers fitted to single records: offsets, moments and errors of speeds.
@@ -180,25 +221,47 @@ impl PulseProblem {
             return Err(PulseError::NothingFree);
         }
         let start: Vec<f64> = self.parameters.iter().map(|p| p.start).collect();
+        let mut passing = Vec::new();
+        let mut missing = None;
         for (at, record) in self.records.iter().enumerate() {
-            let [shooting, _] = self.shootings(&start, at)?;
-            let (gain, shot) = (shooting.sensor_gain_v_n, shoot(&shooting.plan));
-            let shot = shot.map_err(|error| named(record, error))?;
-            let passage = shot
-                .passage
-                .as_ref()
-                .map_err(|error| named(record, error))?;
-            let (passing, wall) = (passage.incident, passage.wall);
-            let length_s = (1.0 + LATER) * passing.time_s + record.after_s();
-            let least_s = (wall.time_s - passing.time_s) / LEAST_SAMPLES;
-            self.grids.push((length_s, least_s.min(record.interval_s)));
-            let own = self.parameters.iter_mut().find(|p| p.name == GAIN);
-            if let (0, Some(parameter)) = (at, own) {
-                let start = gain * record.height_v / (gain * passing.value);
-                (parameter.start, parameter.scale) = (start, start);
+            let found = self.shootings(&start, at);
+            match found.and_then(|[shooting, _]| first_shot(record, &shooting)) {
+                Ok(first) => {
+                    self.grids.push(first.grid);
+                    passing.push(Some(first));
+                }
+                Err(error) if stopped() => return Err(error.into()),
+                Err(error) => {
+                    passing.push(None);
+                    self.left_out
+                        .push(format!("the model where it starts: {error}"));
+                    missing = missing.or(Some(error));
+                }
             }
         }
-        Ok(())
+        let mut seen = passing.iter().map(Option::is_some);
+        self.records.retain(|_| seen.next().unwrap_or(false));
+        let first = passing.into_iter().flatten().next();
+        match (first, missing) {
+            (Some(first), _) => {
+                self.start_gain(&first);
+                Ok(())
+            }
+            (None, Some(error)) => Err(error.into()),
+            (None, None) => Err(PulseError::NoRecords),
+        }
+    }
+
+    /// The sensors' sensitivity, if it is free, from what the first record has and the model's
+    /// passing force.
+    fn start_gain(&mut self, first: &FirstShot) {
+        let gain = first.sensor_gain_v_n;
+        let height_v = self.records.first().map_or(0.0, |record| record.height_v);
+        let own = self.parameters.iter_mut().find(|p| p.name == GAIN);
+        if let Some(parameter) = own {
+            let start = gain * height_v / (gain * first.passing_n);
+            (parameter.start, parameter.scale) = (start, start);
+        }
     }
 
     /// A record's shot at its speed, and a little faster.
@@ -281,6 +344,28 @@ impl PulseProblem {
         }
         None
     }
+}
+
+/// What a record's first shot tells.
+struct FirstShot {
+    sensor_gain_v_n: f64,
+    passing_n: f64,
+    /// How long others are to be followed, and how densely, in s.
+    grid: (f64, f64),
+}
+
+fn first_shot(record: &Pulses, shooting: &Shooting) -> Result<FirstShot, ModelError> {
+    let shot = shoot(&shooting.plan).map_err(|error| named(record, error))?;
+    let passage = shot.passage.as_ref();
+    let passage = passage.map_err(|error| named(record, error))?;
+    let (passing, wall) = (passage.incident, passage.wall);
+    let length_s = (1.0 + LATER) * passing.time_s + record.after_s();
+    let least_s = (wall.time_s - passing.time_s) / LEAST_SAMPLES;
+    Ok(FirstShot {
+        sensor_gain_v_n: shooting.sensor_gain_v_n,
+        passing_n: passing.value,
+        grid: (length_s, least_s.min(record.interval_s)),
+    })
 }
 
 fn named(record: &Pulses, error: impl fmt::Display) -> ModelError {

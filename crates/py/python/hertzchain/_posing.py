@@ -62,13 +62,23 @@ def _only(data: Any) -> Any:
 
 
 def csv(columns: Mapping[str, Any]) -> str:
-    lists = {name: np.atleast_1d(np.asarray(values)) for name, values in columns.items()}
+    lists = {name: np.atleast_1d(_plain(name, values)) for name, values in columns.items()}
     lengths = {values.size for values in lists.values() if values.ndim == 1}
     if len(lengths) != 1 or any(values.ndim != 1 for values in lists.values()):
         shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
         raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
     rows = zip(*(map(_cell, values) for values in lists.values()), strict=True)
     return "\n".join([",".join(map(str, lists)), *(",".join(row) for row in rows)]) + "\n"
+
+
+def _plain(name: str, values: Any) -> np.ndarray[Any, Any]:
+    """An array without a mask: what is masked was not measured."""
+    if not np.ma.is_masked(values):
+        return np.asarray(values)
+    try:
+        return np.asarray(np.ma.filled(values.astype(float), np.nan))
+    except ValueError:
+        raise OptionError(f"column {name!r}: only numbers can be masked; leave its masked rows out") from None
 
 
 def _cell(value: Any) -> str:
@@ -80,6 +90,19 @@ def _cell(value: Any) -> str:
 
 def modelled(model: Experiment | str | None) -> Experiment:
     return model if isinstance(model, Experiment) else preset(model or "dry")
+
+
+CHAIN = "chain.json"
+"""A posterior's walkers in a fit's folder."""
+
+
+def kept(folder: str | os.PathLike[str] | None) -> list[str]:
+    """Options for a folder in which a fit that was broken off goes on."""
+    if folder is None:
+        return []
+    into = Path(folder).resolve()
+    begun = (into / CHAIN).exists() or any((into / "partial").glob("part-*"))
+    return [f"--out={into}", *(["--resume"] if begun else [])]
 
 
 class FitOptions(TypedDict, total=False):

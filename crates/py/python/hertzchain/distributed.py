@@ -32,7 +32,7 @@ from . import _dask
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._posing import FitOptions, modelled, table, words
+from ._posing import FitOptions, kept, modelled, table, words
 from ._table import Tabled, lines, warned
 from .curves import Ensemble, Odd
 from .errors import OptionError
@@ -301,9 +301,6 @@ def campaign(
 POINTS = 32
 """Points of the model that a step of the sampler asks for at a time."""
 
-CHAIN = "chain.json"
-
-
 def fit(
     data: Any,
     model: Experiment | str | None = None,
@@ -325,8 +322,8 @@ def fit(
     data, model, free
         As for `hertzchain.fit`, of tables: times of flight in s, numbers in SI.
     folder : path
-        Where the problem and the walkers' chain are, seen by all workers under this
-        name. The same folder again goes on with the walkers of a run that was broken off.
+        Where the problem, residuals so far and the walkers' chain are, seen by all workers under
+        this name. The same folder again goes on where a run was broken off.
     client : dask.distributed.Client, optional
         Everything stays in this process when absent.
     points : int, optional
@@ -346,7 +343,7 @@ def fit(
     OptionError, ExperimentError
         As for `hertzchain.fit`; batches that no worker could compute.
     ConnectionError
-        The scheduler is lost: the same call goes on with the walkers that were saved.
+        The scheduler is lost: the same call goes on with what was saved.
 
     References
     ----------
@@ -354,9 +351,7 @@ def fit(
     """
     into = Path(folder).resolve()
     how["direct"] = True
-    told = [*words(**how), *options.listed("free", free), f"--out={into}"]
-    if (into / CHAIN).exists():
-        told.append("--resume")
+    told = [*words(**how), *options.listed("free", free), *kept(into)]
     name, text = table(data)
     likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
     size, compute = POINTS, None

@@ -12,7 +12,7 @@ import numpy as np
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._posing import Data, Method, What, modelled, recordings, table, words
+from ._posing import Data, Method, What, kept, modelled, recordings, table, words
 from .errors import ExperimentWarning
 from .inferred import Designed, Fitted, Gauged, Parameter
 
@@ -48,6 +48,7 @@ def fit(
     most_shots: int = 40,
     seed: int = 0,
     threads: int | None = None,
+    folder: str | os.PathLike[str] | None = None,
     progress: object = None,
 ) -> Fitted:
     """Fits contact parameters to times of flight or to whole pulses, with errors one can trust.
@@ -55,7 +56,8 @@ def fit(
     Parameters
     ----------
     data : path, mapping of columns, DataFrame, Measured or Sweep; or paths of recordings
-        Times of flight in s against ``speed_m_s``, errors in ``*_error`` columns: a table.
+        Times of flight in s against ``speed_m_s``, errors in ``*_error`` columns: a table. What is
+        NaN, or masked, was not measured.
         Or recordings of any format that `measure` reads, files or folders of them: then
         whole pulses are fitted, sample by sample.
     model : Experiment or str, optional
@@ -86,6 +88,10 @@ def fit(
         Most steps of a posterior's walkers.
     direct : bool
         Compute every curve of a posterior, in place of interpolating where that is as good.
+    folder : path, optional
+        Where residuals so far and a posterior's walkers are kept. The same call with the same folder
+        goes on where one was broken off, and comes to the same bits; walkers stay there, to
+        be led on with more ``steps``.
     shots : path, optional
         Of recordings: table of speeds and cases, as for `measure`.
     rate, channel
@@ -132,6 +138,7 @@ def fit(
     )  # fmt: skip
     told += options.listed("free", free)
     told += [f"--against={model}={given}" for model, given in rivals.items()]
+    told += kept(folder)
     files = recordings(data)
     with options.progress(progress, None, "curve") as update:
         if files is None:

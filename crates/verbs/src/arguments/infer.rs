@@ -20,19 +20,21 @@ pub struct Measured {
         default_value = "incident,reflected"
     )]
     pub observables: Vec<What>,
-    /// Standard error of speeds in m/s where the table has none; 0 says that they are exact
-    #[arg(long, value_name = "SPEED", value_parser = not_negative)]
+    /// Standard error of speeds where the table has none, such as 0.7mm/s; a plain number is in m/s,
+    /// and 0 says that they are exact
+    #[arg(long, value_name = "SPEED", value_parser = speed_error, allow_hyphen_values = true)]
     pub speed_error: Option<f64>,
-    /// Standard error of times of flight in s where the table has none
-    #[arg(long, value_name = "TIME", value_parser = positive)]
+    /// Standard error of times of flight where the table has none, such as 0.5us; a plain number is
+    /// in s
+    #[arg(long, value_name = "TIME", value_parser = time_error, allow_hyphen_values = true)]
     pub tof_error: Option<f64>,
     /// Standard error of ratios of peaks where the table has none
-    #[arg(long, value_name = "RATIO", value_parser = positive)]
+    #[arg(long, value_name = "RATIO", value_parser = positive, allow_hyphen_values = true)]
     pub ratio_error: Option<f64>,
     /// Shots a row from whose scatter the standard errors come, or `known`; what the table tells in
     /// columns `shots` and `tof_incident_s_count` when absent. Errors from few shots are widened, so
     /// that intervals hold the truth as often as they say
-    #[arg(long, value_name = "COUNT", value_parser = shots)]
+    #[arg(long, value_name = "COUNT", value_parser = shots, allow_hyphen_values = true)]
     pub error_shots: Option<ErrorShots>,
 }
 
@@ -84,10 +86,10 @@ pub struct Modelled {
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
     /// Relative accuracy of the model's times of flight
-    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy)]
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy, allow_hyphen_values = true)]
     pub accuracy: f64,
     /// Threads; all cores when absent; results do not depend on it
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
 }
 
@@ -97,7 +99,7 @@ pub struct Freed {
     /// Free numbers, separated by commas: short names (Y, nu, eta, K, A, B, of a material or section
     /// as in pump-oil.eta or wet.K) or paths of the experiment file; followed by :power for a power
     /// law of speed, by :each for a value a speed
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true, value_parser = name)]
     pub free: Vec<String>,
     /// Where a number starts, if not at the experiment's value
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
@@ -140,23 +142,24 @@ pub struct Fit {
     #[arg(long, value_name = "MODEL=NAMES", value_parser = against)]
     pub against: Vec<Against>,
     /// Most steps of a posterior's walkers
-    #[arg(long, value_name = "COUNT", default_value = "20000")]
+    #[arg(long, value_name = "COUNT", default_value = "20000", value_parser = whole, allow_hyphen_values = true)]
     pub steps: u64,
-    /// Compute every curve of a posterior, instead of interpolating between some hundreds, which is
-    /// done for up to four free parameters
+    /// Compute every curve of a posterior, instead of interpolating between some hundreds or
+    /// thousands where that is as good
     #[arg(long)]
     pub direct: bool,
-    /// Go on with the walkers of the last run into the same --out
+    /// Go on where the last run into the same --out was broken off, with its best fit, profiles and
+    /// walkers
     #[arg(long, requires = "out")]
     pub resume: bool,
     /// Count outliers by their size, not its square
     #[arg(long)]
     pub robust: bool,
     /// Starts: the first as given, others spread over bounds and priors
-    #[arg(long, value_name = "COUNT", default_value = "1", value_parser = count)]
+    #[arg(long, value_name = "COUNT", default_value = "1", value_parser = count, allow_hyphen_values = true)]
     pub starts: usize,
     /// Seed of all that is random
-    #[arg(long, value_name = "NUMBER", default_value = "0")]
+    #[arg(long, value_name = "NUMBER", default_value = "0", value_parser = whole, allow_hyphen_values = true)]
     pub seed: u64,
     /// Print JSON
     #[arg(long)]
@@ -173,13 +176,13 @@ pub struct Recorded {
     #[arg(long, value_name = "CSV")]
     pub shots: Option<PathBuf>,
     /// Sampling rate where a recording does not say, such as 1MHz; a plain number is in Hz
-    #[arg(long, value_name = "RATE", value_parser = super::measure::rate)]
+    #[arg(long, value_name = "RATE", value_parser = super::measure::rate, allow_hyphen_values = true)]
     pub rate: Option<f64>,
     /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
     #[arg(long, value_name = "NAME")]
     pub channel: Vec<String>,
     /// Most shots that are fitted, spread evenly over those that are good
-    #[arg(long, value_name = "COUNT", default_value = "40", value_parser = count)]
+    #[arg(long, value_name = "COUNT", default_value = "40", value_parser = count, allow_hyphen_values = true)]
     pub most_shots: usize,
 }
 
@@ -203,10 +206,10 @@ pub struct Design {
     pub target: Vec<String>,
     /// Speeds that could be measured: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT; eight over
     /// the range of the data when absent
-    #[arg(long, value_name = "SPEEDS")]
+    #[arg(long, value_name = "SPEEDS", allow_hyphen_values = true)]
     pub speeds: Option<String>,
     /// Pushes on bead 1 that could be tried, such as 0.1N,0.5N; a plain number is in N; `none` for none
-    #[arg(long, value_name = "FORCES", value_delimiter = ',', default_value = "0.24N", value_parser = force)]
+    #[arg(long, value_name = "FORCES", value_delimiter = ',', default_value = "0.24N", value_parser = force, allow_hyphen_values = true)]
     pub preloads: Vec<Push>,
     /// Beads that could hold the sensor; an eighth, a half and three quarters down the chain when
     /// absent
@@ -217,7 +220,7 @@ pub struct Design {
     #[arg(long, value_name = "WAY=NUMBER", value_delimiter = ',', value_parser = cost)]
     pub costs: Vec<Cost>,
     /// Length of the proposed series
-    #[arg(long, value_name = "COUNT", default_value = "5")]
+    #[arg(long, value_name = "COUNT", default_value = "5", value_parser = count, allow_hyphen_values = true)]
     pub picks: usize,
     /// Print JSON
     #[arg(long)]
@@ -240,13 +243,33 @@ fn force(text: &str) -> Result<Push, String> {
     if text.trim() == "none" {
         return Ok(Push::Nothing);
     }
-    let expected = || "expected a force that is not negative, such as 0.24N, or none".to_owned();
-    let quantity = parse_quantity(text.trim()).map_err(|_| expected())?;
-    let newton = parse_unit("N").map_or(Dimension::NONE, |unit| unit.dimension);
-    let is_force = quantity.dimension == Dimension::NONE || quantity.dimension == newton;
-    match is_force && quantity.value >= 0.0 && quantity.value.is_finite() {
-        true => Ok(Push::Of(quantity.value)),
-        false => Err(expected()),
+    let expected = "expected a force that is not negative, such as 0.24N, or none";
+    let force_n = quantity(text, "N").filter(|force| *force >= 0.0);
+    force_n.map(Push::Of).ok_or_else(|| expected.to_owned())
+}
+
+/// A finite number in an SI unit, from text in any unit of its kind or in none.
+fn quantity(text: &str, unit: &str) -> Option<f64> {
+    let quantity = parse_quantity(text.trim()).ok()?;
+    let own = parse_unit(unit).map_or(Dimension::NONE, |unit| unit.dimension);
+    let fits = quantity.dimension == Dimension::NONE || quantity.dimension == own;
+    (fits && quantity.value.is_finite()).then_some(quantity.value)
+}
+
+fn speed_error(text: &str) -> Result<f64, String> {
+    let found = quantity(text, "m/s").filter(|speed| *speed >= 0.0);
+    found.ok_or_else(|| "expected a speed or 0, such as 0.7mm/s, or 7e-4 for m/s".to_owned())
+}
+
+fn time_error(text: &str) -> Result<f64, String> {
+    let found = quantity(text, "s").filter(|time| *time > 0.0);
+    found.ok_or_else(|| "expected a positive time, such as 0.5us, or 5e-7 for s".to_owned())
+}
+
+fn name(text: &str) -> Result<String, String> {
+    match text.trim() {
+        "" => Err("expected names between commas, such as eta,B".to_owned()),
+        _ => Ok(text.to_owned()),
     }
 }
 
@@ -333,10 +356,10 @@ pub struct Gauge {
     #[arg(long, value_name = "FILE")]
     pub oils: Option<PathBuf>,
     /// Relative accuracy of the model's times of flight
-    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy)]
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", value_parser = super::accuracy, allow_hyphen_values = true)]
     pub accuracy: f64,
     /// Threads; all cores when absent; results do not depend on it
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Print JSON
     #[arg(long)]
@@ -423,13 +446,13 @@ fn against(text: &str) -> Result<Against, String> {
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "expected a positive number in SI, such as 3e-7".to_owned())
+    number.ok_or_else(|| "expected a positive number, such as 0.01".to_owned())
 }
 
-fn not_negative(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok();
-    let number = number.filter(|number: &f64| number.is_finite() && *number >= 0.0);
-    number.ok_or_else(|| "expected 0 or a positive number in SI, such as 7e-4".to_owned())
+/// A whole number.
+fn whole(text: &str) -> Result<u64, String> {
+    let number = text.trim().parse();
+    number.map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
 fn shots(text: &str) -> Result<ErrorShots, String> {

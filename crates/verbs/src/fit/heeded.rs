@@ -1,7 +1,6 @@
 //! Options that a fit could not heed are refused before anything is computed.
 
-use super::Arguments;
-use crate::arguments::infer::Method;
+use super::{Arguments, CHAIN, partial};
 use crate::failure::Failure;
 
 /// Of a fit of a table.
@@ -45,10 +44,15 @@ pub fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn of_any(arguments: &Arguments) -> Result<(), Failure> {
-    let sampled = arguments.method == Method::Posterior;
-    let why =
-        "goes on with the walkers of a posterior, and --method is another: add --method posterior";
-    refuse("--resume", arguments.resume && !sampled, why)
+    let Some(out) = arguments.out.as_deref().filter(|_| arguments.resume) else {
+        return Ok(());
+    };
+    let nothing = !partial::begun(out) && !out.join(CHAIN).exists();
+    let why = format!(
+        "goes on with what a run that was broken off left, and {} holds nothing of one: leave it out",
+        out.display()
+    );
+    refuse("--resume", nothing, &why)
 }
 
 fn refuse(option: &str, given: bool, why: &str) -> Result<(), Failure> {

@@ -3,13 +3,15 @@
 mod heeded;
 mod limits;
 mod more;
+mod partial;
 pub mod pulses;
 mod results;
 mod rivals;
 mod tables;
 
 pub use limits::{Limit, Limits};
-pub use more::{CHAIN, Curves, More, Sampled, saved};
+pub use more::{CHAIN, Curves, More, Sampled, leave, saved};
+pub use partial::{PARTIAL, begun, finished};
 pub use results::{inferred, joined, json, rows_json};
 pub use rivals::{Lost, Rival, Rivals};
 pub use tables::{Table, of_any as tables_of_any, tables};
@@ -21,6 +23,7 @@ use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
     Parameter, Problem, Speeds, fit,
 };
+use partial::Remembered;
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
 const OUTLIER: f64 = 1.345;
@@ -105,9 +108,11 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 /// What is in the way of a fit.
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
-    let fit = best(&problem, arguments)?;
+    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
-    let more = more::more(&problem, &fit, &covariance, arguments)?;
+    let more = more::more((&problem, &kept), (&fit, &covariance), arguments)?;
+    kept.sound()?;
     told(problem, (fit, covariance, more), arguments)
 }
 
@@ -123,14 +128,16 @@ pub fn fitted_elsewhere(
     arguments: &Arguments,
 ) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
-    let fit = best(computed, arguments)?;
+    let kept = Remembered::new(computed, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(
-        computed,
+        (computed, &kept),
         (&fit, &covariance),
         Curves::Computed(None),
         arguments,
     )?;
+    kept.sound()?;
     told(problem, (fit, covariance, more), arguments)
 }
 

@@ -1,6 +1,6 @@
 //! Uncertainty beyond the covariance.
 
-use super::Arguments;
+use super::{Arguments, Inferred, partial};
 use crate::arguments::infer::Method;
 use crate::failure::Failure;
 use crate::inference::{user, wanted};
@@ -11,7 +11,7 @@ use hertzchain_infer::{
 use hertzchain_study::reproduce::write_atomically;
 use hertzchain_study::{StudyError, stopped};
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -38,27 +38,28 @@ pub struct Sampled {
 /// Where a posterior's curves come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curves {
-    /// From others around the best fit, right to so many standard errors.
-    Interpolated(f64),
+    /// From others around the best fit, right to so many standard errors; but for these speeds
+    /// in m/s, where the model jumps.
+    Interpolated(f64, Vec<f64>),
     /// Every one was computed, for this reason if interpolation was wanted.
     Computed(Option<String>),
 }
 
-/// As the method asks, by interpolated curves where that is as good.
+/// As the method asks, by interpolated curves where that is as good. Beside the problem
+/// stands the same one as it [remembers](super::partial).
 pub fn more(
-    problem: &CurveProblem,
-    fit: &Fit,
-    covariance: &Covariance,
+    (problem, kept): (&CurveProblem, &dyn Problem),
+    found: (&Fit, &Covariance),
     arguments: &Arguments,
 ) -> Result<More, Failure> {
-    let found = (fit, covariance);
     if arguments.method != Method::Posterior || arguments.direct {
-        return more_of(problem, found, Curves::Computed(None), arguments);
+        return more_of((problem, kept), found, Curves::Computed(None), arguments);
     }
-    let why = match Surrogate::new(problem, fit, covariance) {
-        Ok(surrogate) if surrogate.error <= SURROGATE_ERROR => {
-            let curves = Curves::Interpolated(surrogate.error);
-            return more_of(&surrogate, found, curves, arguments);
+    let why = match Surrogate::new(problem, found.0, found.1) {
+        Ok(surrogate) if surrogate.is_right() => {
+            let speeds_m_s = surrogate.computed_speeds_m_s();
+            let curves = Curves::Interpolated(surrogate.error, speeds_m_s);
+            return more_of((&surrogate, kept), found, curves, arguments);
         }
         Ok(surrogate) => format!(
             "interpolated ones would be off by {:.2} standard errors",
@@ -66,7 +67,9 @@ pub fn more(
         ),
         Err(error) => error.to_string(),
     };
-    more_of(problem, found, Curves::Computed(Some(why)), arguments)
+    wanted()?;
+    let curves = Curves::Computed(Some(why));
+    more_of((problem, kept), found, curves, arguments)
 }
 
 /// As the method asks, of any problem; `curves` tells where its curves come from.
@@ -74,7 +77,7 @@ pub fn more(
 /// # Errors
 /// What is in the way.
 pub fn more_of(
-    problem: &dyn Problem,
+    (problem, kept): (&dyn Problem, &dyn Problem),
     (fit, covariance): (&Fit, &Covariance),
     curves: Curves,
     arguments: &Arguments,
@@ -84,7 +87,7 @@ pub fn more_of(
         Method::Profile => {
             let all: Vec<usize> = (0..fit.point.len()).collect();
             let how = Profiling::default();
-            let found = profile(problem, fit, covariance, &all, &how);
+            let found = profile(kept, fit, covariance, &all, &how);
             wanted()?;
             Ok(More::Profiles(found.map_err(user)?))
         }
@@ -106,16 +109,14 @@ pub fn more_of(
     }
 }
 
-/// Interpolated curves may be off by so many standard errors.
-const SURROGATE_ERROR: f64 = 0.1;
-
-/// A new chain, or the one that lies in the output folder.
+/// A new chain, or the one that lies in the output folder if a run left one.
 fn started(
     problem: &dyn Problem,
     (fit, covariance): (&Fit, &Covariance),
     arguments: &Arguments,
 ) -> Result<Chain, Failure> {
-    let Some(folder) = arguments.out.as_deref().filter(|_| arguments.resume) else {
+    let path = arguments.out.as_deref().map(|out| out.join(CHAIN));
+    let Some(path) = path.filter(|path| arguments.resume && path.exists()) else {
         let walkers = WALKERS.max(4 * fit.point.len());
         let how = Sampling {
             walkers,
@@ -124,15 +125,19 @@ fn started(
         };
         return Chain::start(problem, fit, covariance, &how).map_err(user);
     };
-    let path = folder.join(CHAIN);
     let unread = |error: &dyn std::fmt::Display| {
         Failure::User(format!("--resume: {}: {error}", path.display()))
     };
-    let text = fs::read(&path).map_err(|error| unread(&error))?;
-    let chain: Chain = serde_json::from_slice(&text).map_err(|error| unread(&error))?;
+    let file = fs::File::open(&path).map_err(|error| unread(&error))?;
+    let read = serde_json::from_reader(BufReader::with_capacity(PIECE, Wanted(file)));
+    wanted()?;
+    let chain: Chain = read.map_err(|error| unread(&error))?;
     chain.belongs_to(problem).map_err(|error| unread(&error))?;
     Ok(chain)
 }
+
+/// Bytes of a chain that are read between looks at whether it is still wanted.
+const PIECE: usize = 1 << 18;
 
 /// Walkers of each ensemble, unless parameters are many.
 const WALKERS: usize = 32;
@@ -181,27 +186,54 @@ impl<'a> Saving<'a> {
 /// # Errors
 /// Numbers that are none, of which JSON knows nothing; a wish to stop.
 pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
-    let mut text = Wanted::default();
+    let mut text = Wanted(Vec::new());
     let written = serde_json::to_writer(&mut text, chain);
     written.map_err(|error| Failure::Ours(error.to_string()))?;
     Ok(text.0)
 }
 
-/// Text that nobody writes on once it is no longer wanted: of long chains it has
-/// a hundred megabytes.
-#[derive(Default)]
-struct Wanted(Vec<u8>);
+/// Leaves a fit's walkers in the output folder, to be led on, and nothing of what it took to
+/// come there: for those who write no other files.
+///
+/// # Errors
+/// A folder that can't be written.
+pub fn leave(found: &Inferred, out: &Path) -> Result<(), Failure> {
+    if let More::Sampled(sampled) = &found.more {
+        let written = write_atomically(&out.join(CHAIN), &saved(&sampled.chain)?);
+        written.map_err(|error| Failure::Ours(error.to_string()))?;
+    }
+    partial::finished(out);
+    Ok(())
+}
 
-impl Write for Wanted {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if stopped() {
-            return Err(io::Error::other(StudyError::Stopped));
+/// Text that nobody writes or reads on once it is no longer wanted: of long chains it has
+/// a hundred megabytes.
+struct Wanted<T>(T);
+
+impl<T> Wanted<T> {
+    fn still(&self) -> io::Result<()> {
+        match stopped() {
+            true => Err(io::Error::other(StudyError::Stopped)),
+            false => Ok(()),
         }
+    }
+}
+
+impl Write for Wanted<Vec<u8>> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.still()?;
         self.0.extend_from_slice(bytes);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+impl<T: Read> Read for Wanted<T> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        self.still()?;
+        self.0.read(into)
     }
 }

@@ -1,5 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
+use super::partial::Remembered;
 use super::{Curves, Inferred, best, heeded, inferred, joined, limits, more};
 use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
@@ -161,26 +162,29 @@ fn respond(numbers: &Numbers) -> Respond {
 /// # Errors
 /// What is in the way of a fit; where no record is left, why.
 pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
-    let refused = recorded.refused;
+    let mut refused = recorded.refused;
     let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
+    refused.extend(problem.left_out().iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
-    let fit = best(&problem, arguments)?;
+    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
+    let fit = best(&kept, arguments)?;
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);
     let how = Curves::Computed(None);
-    let more = more::more_of(&problem, (&fit, &covariance), how, arguments)?;
+    let more = more::more_of((&problem, &kept), (&fit, &covariance), how, arguments)?;
     let identifiability = Identifiability::new(parameters, &fit, label);
     let found = Inferred {
         parameters: parameters.to_vec(),
-        limits: limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?,
+        limits: limits::limits(&kept, (&fit, &covariance), &identifiability, &more)?,
         identifiability,
         goodness: Goodness::beside(problem.nuisance_count(), parameters, &fit),
         more,
         covariance,
         fit,
     };
+    kept.sound()?;
     Ok(Pulsed {
         problem,
         inferred: found,

@@ -159,9 +159,9 @@ fn posterior(fitted: &Inferred) -> Value {
     let More::Sampled(sampled) = &fitted.more else {
         return Value::Null;
     };
-    let (error, why) = match &sampled.curves {
-        Curves::Interpolated(error) => (Some(error), None),
-        Curves::Computed(why) => (None, why.as_ref()),
+    let (error, why, computed) = match &sampled.curves {
+        Curves::Interpolated(error, speeds_m_s) => (Some(error), None, Some(speeds_m_s)),
+        Curves::Computed(why) => (None, why.as_ref(), None),
     };
     let mut all = json!({
         "walkers": sampled.chain.walkers(),
@@ -169,6 +169,7 @@ fn posterior(fitted: &Inferred) -> Value {
         "acceptance": sampled.chain.acceptance(),
         "surrogate_error": error,
         "no_surrogate": why,
+        "computed_speeds_m_s": computed,
     });
     match &sampled.posterior {
         Err(unconverged) => all["unconverged"] = json!(unconverged.to_string()),

@@ -11,7 +11,7 @@ use hertzchain_verbs::arguments::infer::Fit as Arguments;
 use hertzchain_verbs::fit::pulses::{
     Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown,
 };
-use hertzchain_verbs::fit::tables_of_any;
+use hertzchain_verbs::fit::{finished, tables_of_any};
 use hertzchain_verbs::inference;
 use serde_json::Value;
 
@@ -70,6 +70,7 @@ fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure
     folder.figure("pulses", &picture(&shown))?;
     let tables = tables_of_any(&fitted.inferred);
     write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
+    finished(folder.path());
     eprint!("Written:\n{}", folder.list());
     Ok(())
 }

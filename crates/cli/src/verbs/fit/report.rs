@@ -219,15 +219,27 @@ fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
     format!("\n{}", format::table(&head, &rows))
 }
 
+fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
+    let text = format!(
+        "curves interpolated, right to {} standard errors",
+        digits(error, 2)
+    );
+    let speeds: Vec<String> = computed_m_s.iter().map(|speed| digits(*speed, 3)).collect();
+    match speeds.is_empty() {
+        true => text,
+        false => format!(
+            "{text}, but computed at {} m/s, where pulses jump",
+            speeds.join(", ")
+        ),
+    }
+}
+
 fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
     let chain = &sampled.chain;
     let how = match &sampled.curves {
         Curves::Computed(None) => "every curve computed".to_owned(),
         Curves::Computed(Some(why)) => format!("every curve computed, as {why}"),
-        Curves::Interpolated(error) => format!(
-            "curves interpolated, right to {} standard errors",
-            digits(*error, 2)
-        ),
+        Curves::Interpolated(error, speeds_m_s) => interpolated(*error, speeds_m_s),
     };
     let mut text = format!(
         "\nPosterior: {} walkers, {} steps, {} of proposals taken; {how}\n",
