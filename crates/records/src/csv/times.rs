@@ -90,10 +90,15 @@ fn uneven(source: &str, times: &[Printed]) -> RecordError {
     RecordError::UnevenTimes {
         source_name: source.to_owned(),
         sample: at + 1,
-        time_s: times.get(at).map_or(f64::NAN, |time| time.s),
+        time_s: times.get(at).map_or(f64::NAN, |time| as_printed(time.s)),
         step_s: step_s(times, at),
         usual_s,
     }
+}
+
+/// Without the last digits of double precision, which no file had.
+fn as_printed(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn step_s(times: &[Printed], at: usize) -> f64 {
