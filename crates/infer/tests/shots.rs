@@ -78,6 +78,9 @@ fn the_shots_of_each_row_are_read_by_themselves() {
     let of_20 = format!("{shots}0.5,1e-3,20,7e-4,1e-7\n0.7,1e-3,8,6e-4,1e-7\n");
     assert_eq!(freedom(&of_20, Scatter::AsTold), (19.0, 19.0));
     assert_eq!(freedom(&of_20, Scatter::Known), (known, known));
+    let widened = |scatter| read(&of_20, scatter).unwrap().widened();
+    assert_eq!(widened(Scatter::AsTold), Some((2, [7.0, 19.0])));
+    assert_eq!(widened(Scatter::Known), None);
     let data = read(&of_20, Scatter::AsTold).unwrap();
     assert_eq!(data.rows[1].freedom.speed, 7.0);
     // An error that the table does not give comes from no shots of its.
