@@ -267,6 +267,29 @@ fn shots_that_never_pass_the_level_are_told() {
 }
 
 #[test]
+fn a_record_too_short_is_warned_of_and_a_rate_without_pulses_refused() {
+    let scratch = Scratch::new("outlook");
+    let with = |from: &str, to: &str| {
+        assert!(small().contains(from), "{from}");
+        fs::write(scratch.0.join("small.toml"), small().replace(from, to)).unwrap();
+    };
+    with("record = \"20 ms\"", "record = \"6 ms\"");
+    let short = scratch.run("short", &[]);
+    assert!(short.status.success());
+    let told = String::from_utf8_lossy(&short.stderr);
+    assert!(
+        told.contains("warning: case `dry` at 0.1000 m/s: the record ends"),
+        "{told}"
+    );
+    with("sampling = \"500 kHz\"", "sampling = \"1 kHz\"");
+    let slow = scratch.run("slow", &[]);
+    assert_eq!(slow.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&slow.stderr);
+    assert!(told.contains("sampled at 1 kHz"), "{told}");
+    assert!(!scratch.0.join("slow").exists());
+}
+
+#[test]
 fn another_seed_needs_another_folder() {
     let scratch = Scratch::new("seed");
     scratch.done("out", &["--shard", "1/8"]);

@@ -371,7 +371,7 @@ fn a_design_ranks_what_to_measure() {
     let told = found["hopeless"].to_string();
     for words in [
         "nu up 1.00 % with",
-        "So Y, nor nu, nor eta by itself can't be tightened",
+        "So none of Y, nu, eta can be tightened by itself",
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }

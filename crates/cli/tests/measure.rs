@@ -147,6 +147,65 @@ fn a_file_without_a_rate_asks_for_it_and_takes_it() {
 }
 
 #[test]
+fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
+    let folder = folder("digits");
+    for name in ["one.csv", "two.csv"] {
+        let rows = volts(0.5, 1.0).into_iter().enumerate();
+        // No sample at a tie of rounding, which would tell more.
+        let time_s = |i: usize| (i as f64 - 400.0) * 1e-6 + 0.3e-6;
+        let rows: String = rows
+            .map(|(i, v)| format!("{:.5},{v:.6}\n", time_s(i)))
+            .collect();
+        fs::write(folder.join(name), format!("Time (s),Volts\n{rows}")).unwrap();
+    }
+    let told = |more: &[&str]| {
+        let output = measure(&folder, &[&["one.csv", "two.csv"], more].concat());
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let open = told(&[]);
+    assert_eq!(
+        open.matches("times are even only to 10 µs").count(),
+        1,
+        "{open}"
+    );
+    assert!(open.contains("--rate"), "{open}");
+    assert_eq!(told(&["--rate", "1MHz"]), "");
+}
+
+#[test]
+fn a_lost_passing_pulse_counts_in_no_mean() {
+    let folder = folder("lost");
+    let mut list = "file,case,speed,speed error\n".to_owned();
+    for number in 0..3 {
+        let mut all = volts(0.5, 1.0);
+        if number == 2 {
+            all.iter_mut().take(700).for_each(|volt| *volt *= 1e-3);
+        }
+        write(&folder.join(format!("{number}.csv")), &all);
+        list += &format!("{number}.csv,dry,0.5,0.001\n");
+    }
+    fs::write(folder.join("list.txt"), list).unwrap();
+    let files = ["0.csv", "1.csv", "2.csv", "--shots", "list.txt", "--json"];
+    let found = json(&measure(&folder, &files));
+    let row = &found["cases"][0]["speeds"][0];
+    assert_eq!(
+        (&row["shots"], &row["left_out"]),
+        (&2.into(), &1.into()),
+        "{found}"
+    );
+    let named = json(&measure(
+        &folder,
+        &[&files[..], &["--beads", "40", "--sensor", "7"]].concat(),
+    ));
+    assert_eq!(
+        named["shots"][2]["flags"][0], "passing pulse missing",
+        "{named}"
+    );
+    assert!(named["shots"][2]["missing"].is_string());
+}
+
+#[test]
 fn every_method_agrees_on_pulses_of_one_shape() {
     let folder = folder("methods");
     write(&folder.join("shot.csv"), &volts(0.5, 1.0));

@@ -78,6 +78,9 @@ fn the_shots_of_each_row_are_read_by_themselves() {
     let of_20 = format!("{shots}0.5,1e-3,20,7e-4,1e-7\n0.7,1e-3,8,6e-4,1e-7\n");
     assert_eq!(freedom(&of_20, Scatter::AsTold), (19.0, 19.0));
     assert_eq!(freedom(&of_20, Scatter::Known), (known, known));
+    let widened = |scatter| read(&of_20, scatter).unwrap().widened();
+    assert_eq!(widened(Scatter::AsTold), Some((2, [7.0, 19.0])));
+    assert_eq!(widened(Scatter::Known), None);
     let data = read(&of_20, Scatter::AsTold).unwrap();
     assert_eq!(data.rows[1].freedom.speed, 7.0);
     // An error that the table does not give comes from no shots of its.
@@ -93,7 +96,7 @@ fn the_shots_of_each_row_are_read_by_themselves() {
     let told = wrong.unwrap_err().to_string();
     assert_eq!(
         told,
-        "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one from 1"
+        "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one"
     );
 }
 
@@ -104,6 +107,12 @@ fn what_shots_share_does_not_scatter() {
                 0.5,1e-3,20,7e-4,9e-8,17,8e-8,7e-4,1e-7\n";
     let (speed, time) = freedom(text, Scatter::AsTold);
     assert_eq!(speed, 19.0);
+    // Nor does an error of measuring speeds.
+    let known = text.replace("_m_s,shots", "_m_s,speed_error_shots");
+    assert_eq!(
+        freedom(&known.replace(",20,", ",0,"), Scatter::AsTold).0,
+        f64::INFINITY
+    );
     // Of 1e-7 squared (8e-8)² are shared: 16 degrees for the other 0.36 of it.
     assert!(
         (time / (16.0 / 0.36_f64.powi(2)) - 1.0).abs() < 1e-12,

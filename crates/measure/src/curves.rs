@@ -34,6 +34,8 @@ pub struct SpeedRow {
     /// Mean speed in m/s. Its error is that of the measured speeds if it is
     /// known, else their scatter's.
     pub speed_m_s: Estimate,
+    /// Shots from whose scatter that error comes; 0 if it is that of measuring, and known.
+    pub speed_error_shots: usize,
     /// Shots that count, and shots that do not.
     pub shots: (usize, usize),
     /// Incident time of flight in s.
@@ -184,9 +186,11 @@ fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
     let exact = |value: f64| Estimate { value, sigma: 0.0 };
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
     let speed_m_s = mean_speed(&speeds)?;
+    let speed_error_shots = if are_known(&speeds) { 0 } else { speeds.len() };
     let moved = |time: usize| at_speed(&counted, speed_m_s, time);
     Some(SpeedRow {
         speed_m_s,
+        speed_error_shots,
         shared_s: [shared_s(&counted, 0), shared_s(&counted, 1)],
         at_mean_speed_s: [moved(0), moved(1)],
         shots: (counted.len(), group.len() - counted.len()),
@@ -206,15 +210,19 @@ fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
 /// their scatter: only the errors of measuring make it uncertain.
 fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
     let all = summary(speeds)?;
-    let known = speeds.iter().all(|speed| speed.sigma > 0.0);
     let squares: f64 = speeds.iter().map(|speed| speed.sigma.powi(2)).sum();
     Some(Estimate {
         value: all.mean,
-        sigma: match known {
+        sigma: match are_known(speeds) {
             true => squares.sqrt() / all.count as f64,
             false => all.error,
         },
     })
+}
+
+/// Whether each shot's speed has an error of its own.
+fn are_known(speeds: &[Estimate]) -> bool {
+    speeds.iter().all(|speed| speed.sigma > 0.0)
 }
 
 /// What the errors of all shots that have this time share: of both its pulses, the mean of

@@ -87,7 +87,7 @@ pub fn speeds_csv(curves: &Curves) -> String {
     for time in ["tof_incident", "tof_reflected"] {
         text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
     }
-    text.push('\n');
+    text += ",speed_error_shots\n";
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -113,7 +113,8 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain(summarised(row.returning_over_passing))
         .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
         .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))))
-        .chain(row.at_mean_speed_s.into_iter().flat_map(both));
+        .chain(row.at_mean_speed_s.into_iter().flat_map(both))
+        .chain([row.speed_error_shots.to_string()]);
     line(cells)
 }
 

@@ -92,7 +92,8 @@ pub enum RecordError {
     /// Times that do not go in equal steps.
     #[error(
         "{source_name}: its times are not evenly spaced: from sample {sample}, at {time_s} s, to \
-         the next they go on by {:.4} µs where steps of {:.4} µs are usual; were samples lost?",
+         the next they go on by {:.4} µs where steps of {:.4} µs are usual; were samples lost? If \
+         not, --rate with --trust-rate leaves times aside",
         .step_s * 1e6, .usual_s * 1e6
     )]
     UnevenTimes {

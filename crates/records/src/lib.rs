@@ -17,6 +17,7 @@ mod encoding;
 mod error;
 mod format;
 mod hdf5;
+mod interval;
 mod numbers;
 mod numpy;
 mod options;

@@ -1,8 +1,9 @@
 //! RIFF WAVE: the header by hound, the samples as raw numbers.
 
-use crate::channels::{chosen, interval_s, numbered};
+use crate::channels::{chosen, numbered};
 use crate::cut::{Cut, Head, RawNumbers};
 use crate::error::{RecordError, name};
+use crate::interval::interval_s;
 use crate::numbers::{Kind, Number};
 use crate::options::ReadOptions;
 use crate::read::Raw;

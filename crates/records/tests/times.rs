@@ -165,6 +165,34 @@ fn a_trusted_rate_makes_any_column_of_times_irrelevant() {
 }
 
 #[test]
+fn times_that_go_to_and_fro_are_told_once() {
+    let folder = folder("fro");
+    let path = folder.join("fro.csv");
+    let jitter = |i: usize| (i * 7919) % 5 * 10;
+    let rows: String = (0..SAMPLES)
+        .map(|i| format!("{},{:.2}\n", i + jitter(i), volt(i)))
+        .collect();
+    fs::write(&path, "t (us),A\n".to_owned() + &rows).unwrap();
+    let told: Vec<_> = read(&path, &ReadOptions::default()).collect();
+    assert_eq!(told.len(), 1);
+    let error = told.into_iter().next().unwrap().unwrap_err();
+    assert!(matches!(error, RecordError::UnevenTimes { .. }), "{error}");
+    assert!(error.to_string().contains("--trust-rate"), "{error}");
+}
+
+#[test]
+fn numbered_titles_separate_segments() {
+    let folder = folder("numbered");
+    let path = folder.join("numbered.csv");
+    let segment = |number: usize| {
+        let rows = (0..SAMPLES).map(|i| format!("{i},{:.2}\n", volt(i)));
+        format!("Segment {number}\nt (us),A\n{}", rows.collect::<String>())
+    };
+    fs::write(&path, (0..3).map(segment).collect::<String>()).unwrap();
+    assert_eq!(all(&path, &ReadOptions::default()).len(), 3);
+}
+
+#[test]
 fn times_without_a_title_are_told_from_a_signal_though_they_repeat() {
     let folder = folder("untitled");
     let path = folder.join("untitled.csv");

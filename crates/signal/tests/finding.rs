@@ -245,6 +245,23 @@ fn a_lost_passing_pulse_is_named_where_the_row_is_known_and_doubted_where_not() 
 }
 
 #[test]
+fn a_return_much_lower_than_the_first_pulse_is_still_found() {
+    for height in [0.45, 0.3, 0.1] {
+        let mut scene = Scene {
+            noise: 1e-3,
+            ..Scene::default()
+        };
+        scene.pulses[0].1 = 0.0;
+        scene.pulses[2].1 = height;
+        let found = of_row(&scene);
+        assert!(
+            found.doubts.contains(&Doubt::Missing(Place::Passing)),
+            "{height}"
+        );
+    }
+}
+
+#[test]
 fn a_lost_pulse_of_the_wall_is_told_from_a_lost_passing_one() {
     let mut scene = Scene {
         noise: 1e-3,

@@ -167,10 +167,12 @@ impl Designed {
             .map(|k| problem.parameters()[*k].name.as_str())
             .collect();
         if !names.is_empty() {
-            told.push(format!(
-                "So {} by itself can't be tightened",
-                names.join(", nor ")
-            ));
+            let which = match names[..] {
+                [one] => one.to_owned(),
+                _ => format!("none of {}", names.join(", ")),
+            };
+            let can = if names.len() > 1 { "can" } else { "can't" };
+            told.push(format!("So {which} {can} be tightened by itself"));
         }
         for (name, aim) in self.names.iter().zip(&self.design.aims) {
             if let Aim::Combination(words) = aim {

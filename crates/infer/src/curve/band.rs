@@ -17,8 +17,7 @@ pub struct FittedCurve {
 impl CurveProblem {
     /// The curve at a fit's optimum with its standard errors, from central
     /// differences by the fit's own steps, all in one ensemble and ten times as
-    /// accurate as the fit: what jumps where the solver takes another number of steps would
-    /// stand out of the band as a spike.
+    /// accurate as the fit, so that no jump of the solver's stands out of the band.
     ///
     /// # Errors
     /// What is in the way of a shot at the optimum; where the model fails on both

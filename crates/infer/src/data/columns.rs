@@ -47,6 +47,10 @@ impl Columns {
             let near = other_unit(titles, "speed", "_m_s");
             missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
         })?;
+        let speed = Measured {
+            count: find(titles, &["speed_error_shots"]),
+            ..speed
+        };
         let column = |of: Observable| {
             let is_wanted = wanted.contains(&of);
             let finer = of.finer_column().and_then(|name| finer(titles, name, of));

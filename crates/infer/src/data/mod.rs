@@ -150,6 +150,22 @@ impl Data {
         lines
     }
 
+    /// How many rows have an error that is widened for its uncertainty, and the least and the
+    /// most degrees of freedom among those errors; `None` if there is no such row.
+    #[must_use]
+    pub fn widened(&self) -> Option<(usize, [f64; 2])> {
+        let own = |row: &DataRow| {
+            let of = row.observables().map(|of| row.freedom(of));
+            let all = of.chain([row.freedom.speed]);
+            all.filter(|f| shots::is_widened(*f)).collect::<Vec<f64>>()
+        };
+        let rows = self.rows.iter().map(own).filter(|own| !own.is_empty());
+        let rows: Vec<Vec<f64>> = rows.collect();
+        let least = rows.iter().flatten().copied().reduce(f64::min)?;
+        let most = rows.iter().flatten().copied().reduce(f64::max)?;
+        Some((rows.len(), [least, most]))
+    }
+
     /// Lines with errors from the scatter of so few shots that intervals can't be
     /// corrected for that: their errors count as known.
     #[must_use]

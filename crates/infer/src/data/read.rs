@@ -24,7 +24,7 @@ pub struct Defaults {
 pub enum Scatter {
     /// As many as the table tells of each row's own errors, in columns as `measure`
     /// writes them: `shots`, and `tof_incident_s_count` of one quantity, less what they
-    /// share (`tof_incident_shared_s`). Where it tells nothing, errors are known.
+    /// share (`tof_incident_shared_s`); `speed_error_shots` of the speed, 0 where it is known. Where it tells nothing, errors are known.
     #[default]
     AsTold,
     /// All errors are known, whatever the table says of shots.
@@ -292,10 +292,10 @@ impl Reader<'_> {
             None => 0.0,
         };
         let scattered = 1.0 - (shared / sigma).powi(2).min(1.0);
-        // One shot has no scatter: its error is known from elsewhere.
-        Ok(match shots {
-            1.0 => f64::INFINITY,
-            shots => (shots - 1.0) / scattered.powi(2),
+        // One shot has no scatter, nor has none: the error is known from elsewhere.
+        Ok(match shots > 1.0 {
+            true => (shots - 1.0) / scattered.powi(2),
+            false => f64::INFINITY,
         })
     }
 
@@ -308,8 +308,8 @@ impl Reader<'_> {
     ) -> Result<Option<f64>, DataError> {
         for column in columns.count.iter().chain(&self.columns.shots) {
             if let Some(shots) = self.number(record, line, column)? {
-                let wrong = shots < 1.0 || shots.fract() != 0.0;
-                let what = || format!("{shots} is no number of shots; expected a whole one from 1");
+                let wrong = shots < 0.0 || shots.fract() != 0.0;
+                let what = || format!("{shots} is no number of shots; expected a whole one");
                 self.sound(wrong.then(what), line, column)?;
                 return Ok(Some(shots));
             }

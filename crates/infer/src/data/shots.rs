@@ -42,6 +42,11 @@ impl Freedom {
     }
 }
 
+/// Whether an error of so many degrees of freedom is widened at all.
+pub(super) fn is_widened(freedom: f64) -> bool {
+    freedom >= FEWEST && freedom.is_finite()
+}
+
 /// What the standard error of part of a sum must be multiplied by, if it comes from a
 /// scatter of ν degrees of freedom and has this share h of the sum's variance, so that
 /// intervals of a fit hold the truth as often as they say: 1/√(1 − 4h/ν). 1 if ν is

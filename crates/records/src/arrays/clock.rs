@@ -1,7 +1,7 @@
 //! Times among the columns of an array, as they are among those of a text.
 
-use crate::channels::seconds_taken;
 use crate::error::RecordError;
+use crate::interval::seconds_taken;
 use crate::options::{Parts, ReadOptions, Rows};
 use crate::read::Raw;
 

@@ -2,8 +2,9 @@
 
 use super::clock::{Clock, clock};
 use crate::arrays::Axes;
-use crate::channels::{chosen, interval_s, list, seconds_taken};
+use crate::channels::{chosen, list};
 use crate::error::RecordError;
+use crate::interval::{interval_s, seconds_taken};
 use crate::options::{Parts, ReadOptions, Rows};
 use crate::read::Raw;
 use crate::record::Record;

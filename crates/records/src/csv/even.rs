@@ -1,7 +1,7 @@
 //! The even interval of printed times, as far as their digits tell it.
 
 use super::times::Printed;
-use crate::channels::FromTimes;
+use crate::interval::FromTimes;
 
 /// Share of a step by which times may be off the even ones beyond their digits: clocks
 /// jitter; one lost sample shifts by half a step or more.

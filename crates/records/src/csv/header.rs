@@ -247,13 +247,15 @@ fn plain(title: &str) -> String {
 
 fn called(names: &[&str], title: &str) -> bool {
     let title = plain(title).to_lowercase();
-    let stem = title.rsplit_once('_').filter(|_| ending(&title).is_some());
+    let stem = title
+        .rsplit_once(['_', '/'])
+        .filter(|_| ending(&title).is_some());
     names.contains(&title.as_str()) || stem.is_some_and(|(stem, _)| names.contains(&stem))
 }
 
-/// The unit that a title ends in: "time_us".
+/// The unit that a title ends in: "time_us", "t/ms".
 fn ending(title: &str) -> Option<f64> {
-    look_up(TIMES, title.rsplit_once('_')?.1)
+    look_up(TIMES, title.rsplit_once(['_', '/'])?.1)
 }
 
 fn look_up(units: &[(&str, f64)], unit: &str) -> Option<f64> {
@@ -326,6 +328,8 @@ mod tests {
         assert_eq!(named.names, ["Channel A"]);
         let units = header("Time,A,B\n(us),(mV),(mV)\n\n0,1.5,2\n1,3.5,4\n2,3.5,1\n");
         assert_eq!(units.time, Some((0, Some(1e-6))));
+        let slashed = header("t/ms;U/V\n0.5;1\n1;2\n1.5;3\n");
+        assert_eq!(slashed.time, Some((0, Some(1e-3))));
         let ending = header("time_us,a\n0.5,1\n1,2\n1.5,3\n");
         assert_eq!(ending.time, Some((0, Some(1e-6))));
         assert_eq!(units.names, ["A", "B"]);

@@ -8,8 +8,9 @@ mod lines;
 mod rows;
 mod times;
 
-use crate::channels::{Interval, chosen, interval_s, seconds_taken};
+use crate::channels::chosen;
 use crate::error::RecordError;
+use crate::interval::{Interval, interval_s, seconds_taken};
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use std::path::Path;

@@ -4,9 +4,9 @@ use super::dialect::{Dialect, text};
 use super::field::{fields, last_digit, no_number, number};
 use super::lines::{Lines, Read};
 use super::times::{self, Printed, Returns};
-use crate::channels::{self, Interval};
 use crate::cut::{MOST_SAMPLES, from_sample};
 use crate::error::{RecordError, name};
+use crate::interval::{self, Interval};
 use crate::options::{Parts, ReadOptions};
 use crate::record::{Channel, Record, Samples};
 use std::borrow::Cow;
@@ -48,6 +48,8 @@ pub(super) struct Rows {
     shots: u64,
     /// Samples of the segment under way that were given before.
     passed: usize,
+    /// Whether times go back so soon that they are no segments'.
+    to_and_fro: bool,
     /// Of times that the given rate makes irrelevant.
     returns: Returns,
     block: Block,
@@ -86,6 +88,7 @@ impl Rows {
             lost: false,
             shots: 0,
             passed: 0,
+            to_and_fro: false,
             returns: Returns::default(),
             block: Block::default(),
             ready: VecDeque::new(),
@@ -120,7 +123,7 @@ impl Rows {
         let values = self.plan.columns.iter().map(value);
         match time.zip(values.collect()) {
             Some((time, values)) if !blank => Line::Row(time, values),
-            _ if blank || self.plan.separators.iter().any(|known| known == line) => Line::Separator,
+            _ if blank || self.separates(line) => Line::Separator,
             _ if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
             _ => {
                 let shown: String = line.chars().take(60).collect();
@@ -130,6 +133,15 @@ impl Rows {
                 ))
             }
         }
+    }
+
+    /// Whether a line is one of those before the numbers, but for digits: "Segment 2".
+    fn separates(&self, line: &str) -> bool {
+        let letters = |line: &str| line.replace(|c: char| c.is_ascii_digit(), "");
+        let own = letters(line);
+        let worded = own.contains(char::is_alphabetic);
+        let mut known = self.plan.separators.iter();
+        known.any(|known| known == line || (worded && letters(known) == own))
     }
 
     /// A time and its last digit; where the rate is told and trusted it may be anything.
@@ -176,7 +188,7 @@ impl Rows {
         if let Some(time) = time {
             let begins = match self.plan.options.rate_is_trusted() {
                 true => self.returns.begins(time.s),
-                false => self.block.times.last().is_some_and(|last| time.s < last.s),
+                false => self.goes_back(time),
             };
             if begins {
                 self.close(true);
@@ -200,13 +212,24 @@ impl Rows {
         }
     }
 
+    /// Whether a segment begins with this time. One of a few rows is none: then times go to and
+    /// fro, which is told once.
+    fn goes_back(&mut self, time: Printed) -> bool {
+        let times = &self.block.times;
+        let back = times.last().is_some_and(|last| time.s < last.s);
+        self.to_and_fro |= back && self.passed == 0 && times.len() < times::SHORTEST;
+        back && !self.to_and_fro
+    }
+
     /// Makes records of the block, of which more may follow only if it is a piece.
     fn close(&mut self, ended: bool) {
         let block = std::mem::take(&mut self.block);
         let whole = 0..block.len();
         let segments = match self.plan.time {
             _ if block.len() == 0 => Vec::new(),
-            Some(_) if !self.plan.options.rate_is_trusted() => times::segments(&block.times),
+            Some(_) if !self.plan.options.rate_is_trusted() && !self.to_and_fro => {
+                times::segments(&block.times)
+            }
             _ => std::iter::once(whole).collect(),
         };
         for (number, range) in segments.into_iter().enumerate() {
@@ -220,7 +243,7 @@ impl Rows {
             self.passed += count;
         }
         if ended || !matches!(self.plan.options.parts, Parts::Pieces(_)) {
-            self.passed = 0;
+            (self.passed, self.to_and_fro) = (0, false);
         }
     }
 
@@ -269,7 +292,7 @@ impl Rows {
         if self.plan.time.is_some() && self.passed == 0 {
             let told = times::interval(source, times)?;
             self.plan.interval =
-                channels::from_times(&self.file, &told, self.plan.stated_s, options)?;
+                interval::from_times(&self.file, &told, self.plan.stated_s, options)?;
         } else if times.len() > 1 {
             times::interval(source, times)?;
         }

@@ -1,12 +1,15 @@
 //! Times written beside samples: where segments begin, and how far digits tell.
 
 use super::even;
-use crate::channels::FromTimes;
 use crate::error::RecordError;
+use crate::interval::FromTimes;
 use std::ops::Range;
 
 /// A step so many times the usual one begins a new segment.
 const GAP: f64 = 10.0;
+
+/// Rows of the shortest segment: fewer hold no shot.
+pub(super) const SHORTEST: usize = 16;
 
 /// Units of the last digit over which a usual step is told: then rounding moves it by a
 /// quarter at most.
@@ -33,7 +36,8 @@ impl Printed {
     }
 }
 
-/// Where times jump back, or ahead by many steps more than their digits hide.
+/// Where times jump back, or ahead by many steps more than their digits hide; nowhere if most of
+/// what that leaves is too short.
 pub(super) fn segments(times: &[Printed]) -> Vec<Range<usize>> {
     let usual_s = usual_step_s(times);
     let jumps = |at: &usize| {
@@ -44,10 +48,18 @@ pub(super) fn segments(times: &[Printed]) -> Vec<Range<usize>> {
     let starts = (1..times.len()).filter(jumps);
     let mut begin = 0;
     let segments = starts.chain([times.len()]);
-    segments
+    let segments: Vec<Range<usize>> = segments
         .map(|end| std::mem::replace(&mut begin, end)..end)
-        .collect()
+        .collect();
+    let short = segments.iter().filter(|part| part.len() < SHORTEST).count();
+    match segments.len() > MANY && 2 * short > segments.len() {
+        true => std::iter::once(0..times.len()).collect(),
+        false => segments,
+    }
 }
+
+/// More segments than this are looked at for what they are.
+const MANY: usize = 3;
 
 /// The even interval of a segment's times.
 ///
@@ -78,10 +90,15 @@ fn uneven(source: &str, times: &[Printed]) -> RecordError {
     RecordError::UnevenTimes {
         source_name: source.to_owned(),
         sample: at + 1,
-        time_s: times.get(at).map_or(f64::NAN, |time| time.s),
+        time_s: times.get(at).map_or(f64::NAN, |time| as_printed(time.s)),
         step_s: step_s(times, at),
         usual_s,
     }
+}
+
+/// Without the last digits of double precision, which no file had.
+fn as_printed(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn step_s(times: &[Printed], at: usize) -> f64 {

@@ -8,8 +8,8 @@ mod place;
 pub(crate) use npz::open as open_npz;
 
 use crate::arrays::clock;
-use crate::channels::interval_s;
 use crate::error::RecordError;
+use crate::interval::interval_s;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use array::Array;

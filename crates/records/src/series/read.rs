@@ -1,9 +1,10 @@
 //! Reading series, shot by shot. True values are not looked at.
 
 use super::layout;
-use crate::channels::{chosen, interval_s};
+use crate::channels::chosen;
 use crate::error::{RecordError, name};
 use crate::hdf5::damaged;
+use crate::interval::interval_s;
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::{Channel, Record, Samples};

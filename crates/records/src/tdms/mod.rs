@@ -8,9 +8,10 @@ mod lead;
 mod scaling;
 
 use crate::arrays;
-use crate::channels::{chosen, interval_s, seconds_taken};
+use crate::channels::chosen;
 use crate::cut::{Cut, Head, MOST_SAMPLES, Stream};
 use crate::error::{RecordError, name};
+use crate::interval::{interval_s, seconds_taken};
 use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::Samples;

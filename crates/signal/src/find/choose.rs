@@ -72,6 +72,8 @@ pub(super) fn largest_block(track: &Track<'_>, from: f64, to: f64) -> Option<usi
 /// Last sample that matters in a summed channel: three incident times after the wall's pulse.
 pub(super) fn end_of_interest(track: &Track<'_>, finding: &Finding) -> usize {
     let (from, to) = due(finding, track.width);
+    // Beyond the first pulse's own fall, which may be higher than all that follows.
+    let from = from.max(3.0 * track.width);
     let passing = track.first as f64 + 0.5 * track.width;
     let wall = largest_block(track, passing + from, passing + to);
     let end = wall.map_or(passing, |wall| {

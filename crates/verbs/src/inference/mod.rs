@@ -118,6 +118,21 @@ pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
+/// How standard errors are widened that come from few shots.
+#[must_use]
+pub fn widened(data: &Data) -> Option<String> {
+    let (rows, [least, most]) = data.widened()?;
+    let freedom = match least == most {
+        true => format!("{least:.0}"),
+        false => format!("{least:.0} to {most:.0}"),
+    };
+    Some(format!(
+        "Errors of {rows} of {} speeds come from the scatter of few shots ({freedom} degrees of freedom) and are \
+         widened for that, each by its share of the row",
+        data.rows.len()
+    ))
+}
+
 /// Lines as a warning names them.
 fn which(data: &Data, lines: &[u64]) -> Option<String> {
     match lines {

@@ -74,6 +74,7 @@ fn case(case: &Case) -> Value {
 fn row(row: &SpeedRow) -> Value {
     json!({
         "speed_m_s": estimate(row.speed_m_s),
+        "speed_error_shots": row.speed_error_shots,
         "shots": row.shots.0,
         "left_out": row.shots.1,
         "tof_incident_s": summary(&row.incident_s),

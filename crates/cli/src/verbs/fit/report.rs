@@ -7,6 +7,7 @@ use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Observable, Parameter, Problem, Profile,
 };
 use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
+use hertzchain_verbs::inference::widened;
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -29,6 +30,7 @@ pub fn text(fitted: &Fitted) -> String {
     );
     text += &described(&fitted.inferred, &fitted.problem);
     text += &accuracy(fitted);
+    text += &widened(data).map_or(String::new(), |told| format!("{told}\n"));
     let advice = fitted.advice.as_ref();
     text += &determined(&fitted.inferred, &|| {
         advice.map_or(Vec::new(), Advice::words)
