@@ -77,7 +77,7 @@ def note_signals(w, seen):
         seen[1, lane] = force(w, CONTACTS - 1, lane)
 
 
-@njit
+@njit(error_model="numpy")
 def look(seen, first, last, h, lane, watch):
     """Maxima among samples first..last of a lane; whether its shot is over."""
     f = np.empty(5)
@@ -93,7 +93,7 @@ def look(seen, first, last, h, lane, watch):
     return False
 
 
-@njit
+@njit(error_model="numpy")
 def block(w, h):
     """Sixteen shots to their ends; what each one's watch has seen."""
     w[Y + RATES : Y + RATES + LANES] = np.float32(1.0)
@@ -113,7 +113,7 @@ def block(w, h):
     return watches
 
 
-@njit
+@njit(error_model="numpy")
 def shots(law, h, speeds):
     out, w = [], np.empty(T + SIZE, dtype=np.float32)
     times = np.empty(LANES)

@@ -235,7 +235,7 @@ impl Session {
             .collect();
         let machine = format!(
             "One pinned core, native builds use {}; medians of processor time. Settings are the \
-             cheapest tried that meet the accuracy for every speed.",
+             cheapest tried that meet the accuracy for every speed that was timed.",
             table::native()
         );
         std::fs::write(results.join("table.csv"), table::csv(&self.rows))?;

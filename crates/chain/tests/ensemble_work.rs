@@ -20,9 +20,13 @@ fn dry() -> Vec<Arc<dyn Law>> {
 fn the_dry_shot_costs_this_many_force_passes() {
     let system = System::new(&row(40, 0.5, dry())).unwrap();
     for set in InstructionSet::available() {
-        for (step, openings, passes) in
-            [(0.16, false, 785), (0.05, false, 2417), (0.05, true, 2417)]
-        {
+        for (step, openings, passes) in [
+            (0.205, false, 625),
+            (0.16, false, 785),
+            (0.07, true, 1745),
+            (0.05, false, 2417),
+            (0.05, true, 2417),
+        ] {
             let settings = Settings {
                 set,
                 openings,

@@ -82,7 +82,7 @@ pub fn instruction_set() -> Result<InstructionSet, Failure> {
         let sets = InstructionSet::available();
         let names: Vec<&str> = sets.into_iter().map(InstructionSet::name).collect();
         Failure::User(format!(
-            "{INSTRUCTION_SET} is `{name}`, which this machine does not have; expected one of {}",
+            "{INSTRUCTION_SET} is `{name}`, which is none of this machine's sets, as they are written: {}",
             names.join(", ")
         ))
     })
