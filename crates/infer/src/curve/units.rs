@@ -1,5 +1,6 @@
 //! Whether speeds are in another unit than m/s, by what times of flight they make.
 
+use super::model::Speeds;
 use super::problem::CurveProblem;
 use crate::data::Observable;
 use crate::problem::Problem;
@@ -7,22 +8,42 @@ use crate::problem::Problem;
 /// A smaller unit of speed, and how many make 1 m/s.
 const SMALLER: [(&str, f64); 2] = [("cm/s", 100.0), ("mm/s", 1000.0)];
 
-/// d ln(time of flight)/d ln(speed) of waves in beads that touch with hardly a push, −1/5:
-/// the speed of a solitary wave of Hertz contacts goes as the fifth root of the striker's.
-const SLOPE: f64 = -0.2;
-
-/// How far ln(measured/predicted) may be from what a unit makes of it: a quarter of what is
-/// between the units.
-const NEAR: f64 = 0.115;
+/// How far ln(measured/predicted) may be where speeds are taken in the right unit, in the
+/// middle of a curve: materials and pushes move times by less than units do, a hundred times
+/// the speed by about its fifth root.
+const NEAR: f64 = 0.2;
 
 impl CurveProblem {
-    /// The unit that speeds seem to be in, if it is not m/s: times of flight are longer than
-    /// the model's, where its parameters start, by as much as speeds that many times slower
-    /// make them.
+    /// The unit that speeds seem to be in, if it is not m/s: the model, where its parameters
+    /// start, has the measured times of flight at speeds that many times slower, and not at
+    /// those that stand in the table.
     #[must_use]
     pub fn other_unit_of_speed(&self) -> Option<&'static str> {
+        let near = |factor: f64| {
+            self.middle_miss(factor)
+                .is_some_and(|miss| miss.abs() < NEAR)
+        };
+        if near(1.0) {
+            return None;
+        }
+        let of = SMALLER.iter().find(|(_, factor)| near(*factor));
+        of.map(|(unit, _)| *unit)
+    }
+
+    /// Median of ln(measured/predicted) of incident times at speeds so many times slower.
+    fn middle_miss(&self, factor: f64) -> Option<f64> {
         let start: Vec<f64> = self.parameters().iter().map(|p| p.start).collect();
-        let curve = self.curves(&[start]).pop()?.ok()?;
+        let speeds: Vec<f64> = self
+            .data()
+            .speeds_m_s()
+            .iter()
+            .map(|v| v / factor)
+            .collect();
+        let curve = self
+            .model()
+            .curves(&[start], &Speeds::of_rows(&speeds))
+            .pop()?
+            .ok()?;
         let miss = |(row, predicted): (&crate::DataRow, &super::Predicted)| {
             let measured = row.value(Observable::Incident)?.value;
             Some((measured / predicted[Observable::Incident.index()]?).ln())
@@ -30,8 +51,6 @@ impl CurveProblem {
         let rows = self.data().rows.iter().zip(&curve);
         let mut misses: Vec<f64> = rows.filter_map(miss).collect();
         misses.sort_by(f64::total_cmp);
-        let middle = *misses.get(misses.len() / 2)?;
-        let near = |(_, factor): &&(&str, f64)| (middle + SLOPE * factor.ln()).abs() < NEAR;
-        SMALLER.iter().find(near).map(|(unit, _)| *unit)
+        misses.get(misses.len() / 2).copied()
     }
 }

@@ -44,8 +44,8 @@ pub fn text(fitted: &Fitted) -> String {
 fn unit(fitted: &Fitted) -> String {
     fitted.unit_of_speed.map_or(String::new(), |unit| {
         format!(
-            "Beware: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): times of flight are as \
-             much longer than the model's as such slower speeds make them\n",
+            "Beware: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
+             times of flight at speeds that many times slower\n",
             fitted.problem.data().file
         )
     })
