@@ -129,19 +129,21 @@ fn one_dry_shot_alone(bencher: Bencher<'_, '_>, precision: Precision) {
 
 /// What memory alone allows: as many numbers read and written as by a step of
 /// [`one_long_chain`].
-#[divan::bench(args = [100_000, 1_000_000], sample_count = 5)]
+#[divan::bench(args = [100_000, 1_000_000], sample_count = 20, sample_size = 10)]
 fn memory_of_one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
-    let numbers = || vec![0.0_f64; beads];
+    // Written to, so that every page is there.
+    let numbers = || vec![1.0_f64; beads];
     let (mut x, mut v, mut force, mut newest) = (numbers(), numbers(), numbers(), numbers());
-    let earlier: [Vec<f64>; 4] = std::array::from_fn(|_| numbers());
+    let [a, b, c, d] = std::array::from_fn(|_| numbers());
     bencher.counter(ItemsCount::new(beads)).bench_local(|| {
         for (force, (x, v)) in force.iter_mut().zip(x.iter().zip(&v)) {
             *force = x - v;
         }
+        let earlier = a.iter().zip(&b).zip(c.iter().zip(&d));
         let bodies = x.iter_mut().zip(&mut v).zip(&mut newest).zip(&force);
-        for (i, (((x, v), newest), force)) in bodies.enumerate() {
+        for ((((x, v), newest), force), ((a, b), (c, d))) in bodies.zip(earlier) {
             *newest = *force;
-            *v += earlier[0][i] + earlier[1][i] + earlier[2][i] + earlier[3][i];
+            *v += (a + b) + (c + d);
             *x += *v;
         }
         black_box((&x, &v));

@@ -8,7 +8,7 @@ use crate::sweep::{Asked, judges, representative};
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Warning;
 use hertzchain_study::{
-    InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, piece, shoot_all,
+    InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, parted, piece, shoot_all,
     shoot_tuned, shoot_unjudged, stopped,
 };
 use hertzchain_verbs::arguments::{How, parsed};
@@ -167,13 +167,7 @@ impl Fired {
         let piece = piece();
         for first in (0..count).step_by(piece) {
             let part: Vec<usize> = (first..count.min(first + piece)).collect();
-            let (mut plans, mut told) = (Vec::new(), Vec::new());
-            for planned in rows.planned(&part) {
-                told.push(planned.map(|(plan, warnings)| {
-                    plans.push(plan);
-                    warnings
-                }));
-            }
+            let (plans, told) = parted(rows.planned(&part));
             let shots = shooting.shots(&plans, set, rows.how.check, stop);
             if stopped() {
                 return Err(Failure::User(StudyError::Stopped.to_string()));

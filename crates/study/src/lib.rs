@@ -47,7 +47,7 @@ pub use hertzchain_chain::InstructionSet;
 pub use plan::{Pick, Plan, Solver, Watch};
 pub use rows::{COLUMNS, Column, Failed, Law, Odd, Rows};
 pub use run::{How, Part, Run, RunError};
-pub use several::piece;
+pub use several::{parted, piece};
 pub use shard::{Shard, ShardError};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};

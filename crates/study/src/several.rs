@@ -17,6 +17,20 @@ pub fn piece() -> usize {
     256 * rayon::current_num_threads()
 }
 
+/// Plans for one flight, parted from what is odd about each or why it has none:
+/// the shots of those that have one come back in the same order.
+pub fn parted<P, O, E>(planned: Vec<Result<(P, O), E>>) -> (Vec<P>, Vec<Result<O, E>>) {
+    let mut plans = Vec::with_capacity(planned.len());
+    let part = |planned: Result<(P, O), E>| {
+        planned.map(|(plan, odd)| {
+            plans.push(plan);
+            odd
+        })
+    };
+    let odd = planned.into_iter().map(part).collect();
+    (plans, odd)
+}
+
 /// A shot's plan with what is odd about it, or why there is none.
 pub(crate) type Planned = Result<(Plan, Vec<Warning>), PointError>;
 
@@ -74,13 +88,7 @@ impl Several<'_> {
             false => (self.plan)(*place),
         };
         let planned: Vec<Planned> = places.par_iter().map(wanted).collect();
-        let (mut plans, mut odd) = (Vec::new(), Vec::new());
-        for planned in planned {
-            odd.push(planned.map(|(plan, warnings)| {
-                plans.push(plan);
-                warnings
-            }));
-        }
+        let (plans, odd) = parted(planned);
         let Settings {
             set,
             checked,

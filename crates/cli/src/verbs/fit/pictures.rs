@@ -110,11 +110,23 @@ fn residuals(fitted: &Fitted) -> Chart {
                 .unzip();
             let edge = |sign: f64| own().map(|(_, sd)| sign * BAND * **sd).collect::<Vec<_>>();
             let (colour, marker) = LOOKS[of as usize];
-            let band = format!("95 % of the fit, {}", short(of));
+            let name = format!("95 % of the fit, {}", short(of));
+            let first = Observable::ALL.iter().find(|of| data.has(**of)) == Some(&of);
+            // A second band would hide the first.
+            let chart = match first {
+                true => {
+                    let band = Series::band(&name, &speeds, &edge(-1.0), &edge(1.0));
+                    chart.with(band.colour(colour))
+                }
+                false => [(-1.0, ""), (1.0, &name)]
+                    .iter()
+                    .fold(chart, |chart, (sign, name)| {
+                        let line = Series::line(name, &speeds, &edge(*sign));
+                        chart.with(line.colour(colour).dash(Dash::Dashed).width(0.7))
+                    }),
+            };
             let points = Series::points("", &speeds, &values);
-            chart
-                .with(Series::band(&band, &speeds, &edge(-1.0), &edge(1.0)).colour(colour))
-                .with(points.colour(colour).marker(marker))
+            chart.with(points.colour(colour).marker(marker))
         })
 }
 
