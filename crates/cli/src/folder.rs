@@ -2,9 +2,10 @@
 
 use crate::failure::Failure;
 use hertzchain_figures::Figure;
+use hertzchain_measure::records::beside;
 use hertzchain_study::reproduce::write_atomically;
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Resolution of PNG pictures in dots per inch.
@@ -50,6 +51,24 @@ impl Folder {
         Ok(())
     }
 
+    /// The same of what is made while it is written, and may be longer than memory.
+    pub fn write_with(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let path = self.path.join(name);
+        let part = beside(&path);
+        let written = whole(&part, write).and_then(|()| fs::rename(&part, &path));
+        written.map_err(|error| {
+            // Nothing half-written stays; the first error is the one that counts.
+            let _ = fs::remove_file(&part);
+            Failure::Ours(format!("cannot write {}: {error}", path.display()))
+        })?;
+        self.written.push(path);
+        Ok(())
+    }
+
     /// Writes tables, each under its name.
     pub fn tables(&mut self, tables: &[(&str, String)]) -> Result<(), Failure> {
         let mut tables = tables.iter();
@@ -83,4 +102,11 @@ impl Folder {
             .map(|path| format!("  {}\n", path.display()));
         lines.collect()
     }
+}
+
+/// A file that is whole, or an error.
+fn whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    write(&mut file)?;
+    file.flush()
 }

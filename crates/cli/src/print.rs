@@ -1,15 +1,21 @@
 //! Standard output, which may be a closed pipe.
 
 use crate::failure::Failure;
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 
 /// Prints a text and a line end if it has none.
 pub fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
     let end = if text.ends_with('\n') { "" } else { "\n" };
-    let written = out
-        .write_all(text.as_bytes())
-        .and_then(|()| out.write_all(end.as_bytes()));
+    print_with(|out| {
+        out.write_all(text.as_bytes())?;
+        out.write_all(end.as_bytes())
+    })
+}
+
+/// Prints what is made while it is printed.
+pub fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    let written = write(&mut out);
     match written.and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::BrokenPipe),
@@ -24,7 +30,7 @@ pub fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
 
 /// A heading, bold on a terminal.
 pub fn heading(text: &str) -> String {
-    let bold = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let bold = io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     match bold {
         true => format!("\u{1b}[1m{text}\u{1b}[0m"),
         false => text.to_owned(),

@@ -45,6 +45,17 @@ pub fn chi_square_of(found: ChiSquare) -> String {
     )
 }
 
+/// That a model does not follow the data, if chance can't be why.
+pub fn misfit(goodness: &Goodness) -> Option<String> {
+    let times = goodness.birge_ratio.filter(|_| goodness.is_rejected())?;
+    Some(format!(
+        "the model does not follow the data, which lie {} of their standard errors from it on average \
+         (root of chi-square over degrees of freedom). Its values are those of a wrong model, or the data's errors are \
+         too small, and its standard errors mean nothing",
+        digits(times, 3)
+    ))
+}
+
 /// A share in percent.
 pub fn percent(share: f64) -> String {
     match share {

@@ -422,7 +422,7 @@ fn parameters_that_can_not_be_free_are_told_by_name() {
         (&["--free", "eta,aisi316.eta"], "are the same number"),
         (
             &["--free", "friction", "--start", "friction=0.05"],
-            "friction changes no residual",
+            "the wave knows no friction",
         ),
         (
             &["--free", "eta,wall_gain"],

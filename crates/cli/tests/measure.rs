@@ -317,3 +317,107 @@ fn shots_that_are_the_same_have_no_spread_of_rounding() {
     let fits = printed.lines().filter(|line| line.contains("v^("));
     assert_eq!(fits.filter(|line| !line.contains("e-1")).count(), 2);
 }
+
+#[test]
+fn an_odd_unit_of_times_is_named_and_not_called_absent() {
+    let folder = folder("shakes");
+    let rows = volts(0.5, 1.0);
+    let rows = rows
+        .iter()
+        .enumerate()
+        .map(|(i, v)| format!("{i},{v:.6}\n"));
+    let text = "Time (shakes),sum\n".to_owned() + &rows.collect::<String>();
+    fs::write(folder.join("odd.csv"), text).unwrap();
+    let refused = measure(&folder, &["odd.csv"]);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        told.contains("shakes") && told.contains("--time-unit"),
+        "{told}"
+    );
+    let given = measure(&folder, &["odd.csv", "--time-unit", "us"]);
+    assert_eq!(given.status.code(), Some(0));
+}
+
+#[test]
+fn counts_are_times_in_the_unit_that_is_given() {
+    let folder = folder("counts");
+    let rows = volts(0.5, 1.0).into_iter().enumerate();
+    let rows: String = rows.map(|(i, v)| format!("{i},{v:.6}\n")).collect();
+    fs::write(folder.join("bare.csv"), rows).unwrap();
+    let asked = measure(&folder, &["bare.csv"]);
+    assert!(String::from_utf8_lossy(&asked.stderr).contains("--rate"));
+    let output = measure(&folder, &["bare.csv", "--time-unit", "us", "--json"]);
+    let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
+    assert!((found.as_f64().unwrap() - 1e-6 * incident_us(0.5)).abs() < 1e-7);
+}
+
+#[test]
+fn shots_and_speeds_without_times_are_told_counted_and_in_the_exit_code() {
+    let folder = folder("timeless");
+    let mut list = "file,case,speed,speed error\n".to_owned();
+    for (number, speed) in [0.2, 0.2, 0.5, 0.5, 1.0].iter().enumerate() {
+        let mut all = volts(*speed, 1.0);
+        if *speed == 0.5 {
+            // The passing pulse alone.
+            let noise = |i: usize| 1e-3 * (1.7 * i as f64).sin();
+            (700..all.len()).for_each(|i| all[i] = noise(i));
+        }
+        write(&folder.join(format!("{number}.csv")), &all);
+        list += &format!("{number}.csv,gear,{speed},0.001\n");
+    }
+    fs::write(folder.join("list.txt"), list).unwrap();
+    let output = measure(&folder, &[".", "--shots", "list.txt", "--out", "out"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        printed.contains("5 records, 3 with times of flight, 2 flagged, 0 refused"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("gear at 0.5000 m/s: none of 2 shots")
+            || printed.contains("gear at 0.5 m/s: none of 2 shots"),
+        "{printed}"
+    );
+    let table = fs::read_to_string(folder.join("out/speeds.csv")).unwrap();
+    let lost = table.lines().last().unwrap();
+    assert!(lost.starts_with("gear,5e-1,,0,2,,"), "{table}");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        told.contains("2 of 5") && told.contains("no time of flight"),
+        "{told}"
+    );
+}
+
+/// Fits of shots at speeds whose errors are told or not.
+fn fits(folder: &Path, speeds: &[f64], error: &str) -> String {
+    let mut list = "file,speed,speed error\n".to_owned();
+    for (number, speed) in speeds.iter().enumerate() {
+        // No power law: a part of the time does not depend on the speed.
+        let wet = 1.0 + 0.1 * (speed - 0.5);
+        write(&folder.join(format!("{number}.csv")), &volts(*speed, wet));
+        list += &format!("{number}.csv,{speed},{error}\n");
+    }
+    fs::write(folder.join("list.txt"), list).unwrap();
+    let output = measure(folder, &[".", "--shots", "list.txt"]);
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let fit = printed.lines().find(|line| line.starts_with("incident:"));
+    fit.unwrap_or_else(|| unreachable!("{printed}")).to_owned()
+}
+
+#[test]
+fn a_power_law_is_judged_by_errors_of_speeds_only_where_these_are_known() {
+    let known = fits(&folder("known"), &[0.2, 0.5, 1.0], "1e-6");
+    assert!(
+        known.contains("NOT a power law within the errors"),
+        "{known}"
+    );
+    let unknown = fits(&folder("unknown"), &[0.2, 0.5, 1.0], "");
+    assert!(!unknown.contains("NOT a power law"), "{unknown}");
+    assert!(
+        unknown.contains("`speed error`") && unknown.contains("taken for 0"),
+        "{unknown}"
+    );
+    let two = fits(&folder("two"), &[0.2, 1.0], "1e-6");
+    assert!(two.contains("two speeds, which cannot test it"), "{two}");
+}

@@ -46,6 +46,19 @@ impl Goodness {
     }
 }
 
+impl Goodness {
+    /// Whether chance can't be why the data are so far from the model.
+    #[must_use]
+    pub fn is_rejected(&self) -> bool {
+        let chi_square = self.chi_square;
+        chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
+    }
+}
+
+/// Probability of a chi-square by chance below which it is not by chance: of a thousand
+/// fits of right models one is called wrong.
+const LEAST_BY_CHANCE: f64 = 1e-3;
+
 /// Runs of equal sign in a row of residuals: too few mean that the curve's
 /// shape is wrong, though each point may be near it.
 #[derive(Clone, Copy, Debug, PartialEq)]

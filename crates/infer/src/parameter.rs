@@ -43,6 +43,18 @@ pub enum Prior {
     },
 }
 
+impl std::fmt::Display for Prior {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Flat => write!(f, "no prior"),
+            Self::Normal { mean, sd } => write!(f, "a prior {mean} ± {sd}"),
+            Self::LogNormal { median, ln_sd } => {
+                write!(f, "a prior {median} times or over {}", ln_sd.exp())
+            }
+        }
+    }
+}
+
 /// Why a parameter cannot be free as described.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -82,7 +94,7 @@ pub enum ParameterError {
         scale: f64,
     },
     /// A prior's width is not positive, or its centre impossible.
-    #[error("{name}: a prior {prior:?} is no distribution; widths and medians must be positive")]
+    #[error("{name}: {prior} is no distribution; widths and medians must be positive")]
     Prior {
         /// The parameter.
         name: String,

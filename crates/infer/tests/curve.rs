@@ -131,7 +131,7 @@ fn two_speeds_get_their_slopes_from_shots_around_them() {
     let model = model(&preset("hertz").unwrap(), &["Y"]);
     let mut data = table(&model, &[213e9], 0.0, 0.001);
     data.rows.truncate(1);
-    let problem = problem(&model, data);
+    let problem = crate::common::problem(&model, data);
     let residuals = problem.residuals(&[vec![213e9]])[0].clone().unwrap();
     let time = problem.data().rows[0].values[0].unwrap().value;
     let sigma = (0.2 * time * 0.001 / SPEEDS_M_S[0]).hypot(1e-7);
@@ -158,4 +158,21 @@ fn fewer_values_than_parameters_are_refused_by_name() {
         "{error}"
     );
     assert!(error.to_string().contains("eta, B, Y"), "{error}");
+}
+
+/// Speeds in smaller units: waves are slower than such speeds make them.
+#[test]
+fn times_of_flight_tell_speeds_in_another_unit() {
+    let dry = preset("dry").unwrap();
+    let model = model(&dry, &["eta"]);
+    let measured = crate::common::Truth::of(&dry, &[0.0759, 0.125, 0.25, 0.4]).measured(3);
+    for (factor, unit) in [(1.0, None), (100.0, Some("cm/s"))] {
+        let mut data = measured.clone();
+        for row in &mut data.rows {
+            row.speed_m_s.value *= factor;
+            row.speed_m_s.sigma *= factor;
+        }
+        let problem = crate::common::problem(&model, data);
+        assert_eq!(problem.other_unit_of_speed(), unit);
+    }
 }

@@ -2,8 +2,9 @@
 
 use crate::common::{Noise, Truth, speeds_between};
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_infer::gauge::{Chains, Description, Gauge, known_oils, oils};
+use hertzchain_infer::gauge::{Chains, Description, Gauge, GaugeLaws, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
+use hertzchain_signal::Estimate;
 
 const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 
@@ -170,6 +171,69 @@ fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
     assert!(smaller >= 2, "the smallest A would have done as well");
 }
 
+/// At these speeds the true pair lies between pairs that belong to nothing.
+#[test]
+fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_branch() {
+    let pump = preset("pump").unwrap();
+    let noise = Noise {
+        speed_m_s: 1e-5,
+        time_s: 1e-8,
+    };
+    let wet = Truth::of(&pump, &[0.0759, 0.0967, 0.1251]).measured_with(noise, 8);
+    let gauge = gauge(wet, 8);
+    let oil = known_oils().unwrap().remove(2);
+    let rows = gauge.rows();
+    for row in &rows {
+        let contact = row.told.as_ref().unwrap();
+        let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
+        // The dry numbers' errors move pairs by some percent of A.
+        let is_true = |ln: &[f64; 2]| (ln[0] - k.ln()).abs() < 0.01 && (ln[1] - a.ln()).abs() < 0.1;
+        assert!(contact.pairs().iter().any(is_true), "{row:?}");
+        assert!(contact.scan.as_ref().unwrap().is_complete(), "{row:?}");
+    }
+    let open = rows
+        .iter()
+        .filter(|row| !row.told.as_ref().unwrap().is_known());
+    assert!(open.count() > 0, "{rows:?}");
+    assert!(GaugeLaws::through(&rows).is_err());
+    let told = Gauge::ambiguous(&rows).unwrap();
+    assert!(told.contains("branch is not known at 0.0759"), "{told}");
+}
+
+/// A ratio of peaks beside both times: a third equation for two numbers.
+#[test]
+fn a_row_that_no_pair_gives_is_told_as_such() {
+    let pump = preset("pump").unwrap();
+    let truth = Truth::of(&pump, &[0.0967]);
+    let told = |times: f64| {
+        let noise = Noise {
+            speed_m_s: 1e-5,
+            time_s: 1e-8,
+        };
+        let mut wet = truth.measured_with(noise, 9);
+        let ratio = times * truth.curve[0][3].unwrap();
+        wet.rows[0].values[3] = Some(Estimate {
+            value: ratio,
+            sigma: 0.005 * ratio,
+        });
+        gauge(wet, 9).rows().remove(0).told
+    };
+    let contact = told(1.0).unwrap();
+    let (_, a) = known_oils()
+        .unwrap()
+        .remove(2)
+        .contact(6.35e-3 / 2.0, 0.0967);
+    assert!(
+        contact
+            .pairs()
+            .iter()
+            .any(|ln| (ln[1] - a.ln()).abs() < 0.1),
+        "{contact:?}"
+    );
+    let why = told(3.0).unwrap_err();
+    assert!(why.contains("does not follow"), "{why}");
+}
+
 #[test]
 fn incident_times_alone_tell_one_combination_and_what_to_add() {
     let pump = preset("pump").unwrap();
@@ -202,12 +266,14 @@ fn a_users_oil_may_be_given_by_its_contact() {
         ("mine,9e9,0,,", "expected either"),
         ("mine,fast,0,8e-7,0", "`fast` is no number"),
         ("mine,-1,0,8e-7,0", "expected more than 0"),
+        (
+            "mine,9e9,-0.1,8e-7,-0.2\nmine,8e9,,8e-7,",
+            "mine stands in the table twice",
+        ),
     ] {
         let text = text.replace("mine,9e9,-0.1,8e-7,-0.2", row);
         let error = oils("mine.csv", &text).unwrap_err().to_string();
-        assert!(
-            error.contains("mine.csv, line 2") && error.contains(words),
-            "{error}"
-        );
+        let line = format!("mine.csv, line {}", 1 + row.lines().count());
+        assert!(error.contains(&line) && error.contains(words), "{error}");
     }
 }

@@ -1,6 +1,7 @@
 //! Shots into curves: means a speed, ratios, power laws.
 
 use crate::Shot;
+use crate::lost::{Lost, lost};
 use hertzchain_signal::{
     Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
     power_law_both_errors, ratios_at_common, shared, summary,
@@ -95,6 +96,8 @@ pub struct Curves {
     pub cases: Vec<Case>,
     /// Ratios of all others to the reference.
     pub ratios: Vec<WetOverDry>,
+    /// Speeds of cases at which no shot counts, by the order of cases and speeds.
+    pub lost: Vec<Lost>,
 }
 
 /// How times of flight change with speed between neighbouring speeds: a Hertz
@@ -111,12 +114,14 @@ impl Curves {
                 names.push(&shot.case);
             }
         }
-        let cases = names
-            .into_iter()
-            .map(|name| Case::of(name, shots, grouping));
+        let cases = names.iter().map(|name| Case::of(name, shots, grouping));
         let cases: Vec<Case> = cases.filter(|case| !case.rows.is_empty()).collect();
         Self {
             ratios: ratios(&cases, grouping),
+            lost: names
+                .iter()
+                .flat_map(|name| lost(name, shots, grouping))
+                .collect(),
             cases,
         }
     }

@@ -249,6 +249,11 @@ impl Columns {
             field(column).map(number).transpose()
         };
         let shot = |text: &str| text.parse().map_err(|_| wrong(text, "number of a shot"));
+        let what = "speed in m/s above 0";
+        let speed = value(self.speed, what)?;
+        if let Some(text) = field(self.speed).filter(|_| speed == Some(0.0)) {
+            return Err(wrong(text, what));
+        }
         Ok(Entry {
             line,
             file: field(Some(self.file))
@@ -256,7 +261,7 @@ impl Columns {
                 .to_owned(),
             shot: field(self.shot).map(shot).transpose()?,
             case: field(self.case).map(str::to_owned),
-            speed_m_s: value(self.speed, "speed in m/s")?,
+            speed_m_s: speed,
             speed_error_m_s: value(self.error, "error of a speed in m/s")?,
         })
     }
@@ -285,6 +290,16 @@ mod tests {
             let list = ShotList::parse(&format!("file,{title}\na.csv,0.5\n"));
             assert!(list.is_ok(), "{title}");
         }
+    }
+
+    #[test]
+    fn speeds_of_nothing_are_refused_like_those_below() {
+        for speed in ["0", "0.0 m/s", "-0.5"] {
+            let list = ShotList::parse(&format!("file,speed\na.csv,{speed}\n"));
+            let line_2 = matches!(list, Err(ListError::NoNumber { line: 2, .. }));
+            assert!(line_2, "{speed}");
+        }
+        assert!(ShotList::parse("file,speed,speed error\na.csv,0.5,0\n").is_ok());
     }
 
     #[test]

@@ -23,8 +23,11 @@ pub struct Options {
     pub reading: ReadOptions,
     /// How recordings that hold several shots are cut, unless `reading` does.
     pub cutting: Cut,
-    /// How pulses are found and picked.
+    /// How pulses are found and picked. Without a high-pass of its own, that of which a
+    /// recording tells is taken out of it.
     pub measuring: Measuring,
+    /// Whether the droop of such a high-pass stays in the recording.
+    pub keep_droop: bool,
     /// Speeds and cases of files.
     pub list: Option<ShotList>,
     /// Standard error of speeds in m/s where nobody else tells one.
@@ -173,16 +176,13 @@ fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<D
             let part = |(from, to)| {
                 let part = record.part(from, to - from);
                 let volts = self::volts(&part);
-                (
-                    Shot::of(&part, &volts, &options.measuring),
-                    Some((from, to)),
-                )
+                (Shot::of(&part, &volts, options), Some((from, to)))
             };
             return ranges.into_iter().map(part).collect();
         }
         let shot = Shot {
             holds_several: found == Content::Mixed,
-            ..Shot::of(record, &volts, &options.measuring)
+            ..Shot::of(record, &volts, options)
         };
         vec![(shot, None)]
     };
@@ -197,6 +197,12 @@ fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<D
     batch.par_iter().map(watched).collect()
 }
 
+/// The corner in Hz of the high-pass whose droop is taken out because the recording tells of it.
+pub(crate) fn told_high_pass_hz(record: &Record, options: &Options) -> Option<f64> {
+    let nobody_says = options.measuring.high_pass_s.is_none() && !options.keep_droop;
+    record.high_pass_hz.filter(|hz| nobody_says && *hz > 0.0)
+}
+
 /// Every channel of a record in V.
 fn volts(record: &Record) -> Vec<Vec<f64>> {
     let channels = record.channels.iter();
@@ -207,6 +213,15 @@ impl Measurement {
     fn keep(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
         for note in &record.notes {
             self.note(note, &record.file);
+        }
+        if let Some(corner_hz) = told_high_pass_hz(record, options) {
+            self.note(
+                &format!(
+                    "tells that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
+                     taken out; --high-pass takes another, 0 leaves it"
+                ),
+                &record.file,
+            );
         }
         if shots.len() > 1 {
             self.note(

@@ -1,10 +1,12 @@
 //! One measured shot.
 
 use crate::Options;
+use crate::run::told_high_pass_hz;
 use hertzchain_records::Record;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
 };
+use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -41,7 +43,9 @@ pub struct Shot {
 
 impl Shot {
     /// Measures one record, given its channels in V.
-    pub(crate) fn of(record: &Record, volts: &[Vec<f64>], measuring: &Measuring) -> Self {
+    pub(crate) fn of(record: &Record, volts: &[Vec<f64>], options: &Options) -> Self {
+        let measuring = &options.measuring;
+        let told_s = told_high_pass_hz(record, options).map(|hz| (TAU * hz).recip());
         let channels = match volts {
             [sensor, wall, ..] => Channels::Separate { sensor, wall },
             one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
@@ -52,6 +56,7 @@ impl Shot {
                 wall_rails: measuring.finding.wall_rails.or_else(|| rails(record, 1)),
                 ..measuring.finding
             },
+            high_pass_s: measuring.high_pass_s.or(told_s),
             ..measuring.clone()
         };
         let measured = hertzchain_signal::measure(channels, record.interval_s, &measuring);

@@ -1,7 +1,9 @@
 //! Results as CSV, in SI.
 
-use crate::{Curves, Shot, SpeedRow};
+use crate::{Curves, Lost, Shot, SpeedRow};
 use hertzchain_signal::{Estimate, Picked, PowerLaw, Ratio, Summary};
+use std::io::{self, Write};
+use std::iter::once;
 
 /// A number in a cell; empty where there is none.
 fn cell(value: Option<f64>) -> String {
@@ -31,14 +33,25 @@ fn line(cells: impl IntoIterator<Item = String>) -> String {
 /// One line a shot.
 #[must_use]
 pub fn shots_csv(shots: &[Shot]) -> String {
-    let mut text = "file,shot,case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s,\
+    shot_lines(shots).collect()
+}
+
+/// Writes the same line by line: recordings may have any number of shots.
+///
+/// # Errors
+/// Those of what is written to.
+pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
+    shot_lines(shots).try_for_each(|line| out.write_all(line.as_bytes()))
+}
+
+fn shot_lines(shots: &[Shot]) -> impl Iterator<Item = String> {
+    let titles = "file,shot,case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s,\
                     tof_reflected_s,tof_reflected_sigma_s,wall_over_passing,\
                     wall_over_passing_sigma,returning_over_passing,returning_over_passing_sigma,\
                     passing_peak_v,wall_peak_v,returning_peak_v,\
                     passing_width_s,wall_width_s,returning_width_s,flags\n"
         .to_owned();
-    text.extend(shots.iter().map(shot_line));
-    text
+    once(titles).chain(shots.iter().map(shot_line))
 }
 
 fn shot_line(shot: &Shot) -> String {
@@ -70,7 +83,7 @@ fn shot_line(shot: &Shot) -> String {
     line(cells)
 }
 
-/// One line a case and speed.
+/// One line a case and speed; last those at which no shot counts, without times.
 #[must_use]
 pub fn speeds_csv(curves: &Curves) -> String {
     let mut text = "case,speed_m_s,speed_error_m_s,shots,left_out".to_owned();
@@ -91,7 +104,25 @@ pub fn speeds_csv(curves: &Curves) -> String {
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
+    let cells = text
+        .lines()
+        .next()
+        .map_or(0, |titles| titles.split(',').count());
+    text.extend(curves.lost.iter().map(|lost| lost_line(lost, cells)));
     text
+}
+
+/// All its shots are left out, and what would be told of the others is empty.
+fn lost_line(lost: &Lost, cells: usize) -> String {
+    let told = [
+        quoted(&lost.case),
+        cell(Some(lost.speed_m_s)),
+        String::new(),
+        "0".to_owned(),
+        lost.shots.to_string(),
+    ];
+    let empty = std::iter::repeat_n(String::new(), cells.saturating_sub(told.len()));
+    line(told.into_iter().chain(empty))
 }
 
 fn speed_line(case: &str, row: &SpeedRow) -> String {

@@ -5,7 +5,7 @@ use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
 };
-use hertzchain_signal::{Doubt, Flight, alone};
+use hertzchain_signal::{Doubt, Flight, Measuring, alone};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,17 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
 
 /// A series of five shots whose times of flight differ by 0.2 samples.
 fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
+    told_series(folder, case, speed_m_s, height, &[])
+}
+
+/// The same, of which the file tells more.
+fn told_series(
+    folder: &Path,
+    case: &str,
+    speed_m_s: f64,
+    height: f64,
+    told: &[(&str, &str)],
+) -> PathBuf {
     let path = folder.join(format!("{case}-{speed_m_s}.h5"));
     let info = SeriesInfo {
         channels: Channels::Summed,
@@ -46,7 +57,11 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
         case: case.to_owned(),
         seed: 0,
         experiment: String::new(),
-        more: vec![("measured_speed_error_m_s".to_owned(), "0.001".to_owned())],
+        more: [("measured_speed_error_m_s", "0.001")]
+            .iter()
+            .chain(told)
+            .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+            .collect(),
     };
     let mut writer = SeriesWriter::create(&path, &info).unwrap();
     for shot in 0..5_u64 {
@@ -68,6 +83,40 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
 
 fn measured(files: &[PathBuf]) -> Measurement {
     measure(files, &Options::default(), &())
+}
+
+#[test]
+fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_options_say_more() {
+    let folder = folder("high-pass");
+    let told = [("high_pass_hz", "160")];
+    let files = [told_series(&folder, "dry", 0.5, 9000.0, &told)];
+    let flights = |options: &Options| {
+        let measured = measure(&files, options, &());
+        let notes = measured.notes.iter();
+        let told = notes.filter(|note| note.text.contains("high-pass of 160 Hz"));
+        let told = told.count();
+        let flights = measured.shots.into_iter().map(|shot| shot.flight.unwrap());
+        (told, flights.collect::<Vec<Flight>>())
+    };
+    let given = |hz: f64| Options {
+        measuring: Measuring {
+            high_pass_s: Some((std::f64::consts::TAU * hz).recip()),
+            ..Measuring::default()
+        },
+        ..Options::default()
+    };
+    let kept = Options {
+        keep_droop: true,
+        ..Options::default()
+    };
+    let (unasked, of_options) = (flights(&Options::default()), flights(&given(160.0)));
+    assert_eq!((unasked.0, of_options.0), (1, 0));
+    assert_eq!(unasked.1, of_options.1);
+    for other in [given(80.0), kept] {
+        let (told, flights) = flights(&other);
+        assert_eq!(told, 0);
+        assert_ne!(flights, unasked.1);
+    }
 }
 
 #[test]

@@ -26,6 +26,9 @@ pub(crate) fn chosen(
         };
         return options.channels.iter().map(one).collect();
     }
+    if let Some(both) = by_title(names) {
+        return Ok(both.to_vec());
+    }
     match names.len() {
         0 => Err(RecordError::Empty {
             source_name: name(file),
@@ -37,6 +40,32 @@ pub(crate) fn chosen(
         }),
         count => Ok((0..count).collect()),
     }
+}
+
+/// The sensor bead's channel and the wall's, where titles tell one of each. Of two, one
+/// that is the wall's makes the other the bead's.
+fn by_title(names: &[String]) -> Option<[usize; 2]> {
+    let only = |is: &dyn Fn(&str) -> bool| {
+        let mut such = (0..names.len()).filter(|at| is(&names[*at]));
+        such.next().filter(|_| such.next().is_none())
+    };
+    let wall = only(&is_of_wall)?;
+    let bead = match names.len() {
+        2 => only(&|name| !is_of_wall(name)),
+        _ => only(&|name| !is_of_wall(name) && has_word(name, &["bead", "sensor"])),
+    };
+    Some([bead?, wall])
+}
+
+fn is_of_wall(name: &str) -> bool {
+    has_word(name, &["wall"])
+}
+
+/// Whether a word of a title begins so: "Wall (V)", "bead_7".
+fn has_word(title: &str, beginnings: &[&str]) -> bool {
+    let title = title.to_lowercase();
+    let mut words = title.split(|letter: char| !letter.is_alphanumeric());
+    words.any(|word| beginnings.iter().any(|begin| word.starts_with(begin)))
 }
 
 /// By name, by name in other letters, or by number from 1.
@@ -86,6 +115,22 @@ mod tests {
         }
         let error = chosen(Path::new("x"), &names(), &asking("4")).unwrap_err();
         assert!(error.to_string().contains("Time, Ch A, Ch B"), "{error}");
+    }
+
+    #[test]
+    fn channels_that_are_called_after_wall_and_bead_are_these_in_whatever_order() {
+        let asked = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            chosen(Path::new("x"), &names, &ReadOptions::default())
+        };
+        assert_eq!(asked(&["wall", "bead"]).unwrap(), [1, 0]);
+        assert_eq!(asked(&["Sensor_7", "Wall (V)"]).unwrap(), [0, 1]);
+        assert_eq!(asked(&["wall sensor", "CH2"]).unwrap(), [1, 0]);
+        assert_eq!(asked(&["trigger", "wall", "bead 7"]).unwrap(), [2, 1]);
+        // Nothing is told by these.
+        assert_eq!(asked(&["CH1", "CH2"]).unwrap(), [0, 1]);
+        assert_eq!(asked(&["sensor 1", "sensor 2"]).unwrap(), [0, 1]);
+        assert!(asked(&["wall", "CH1", "CH2"]).is_err());
     }
 
     #[test]

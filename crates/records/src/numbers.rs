@@ -14,6 +14,7 @@ pub(crate) enum Kind {
     U32,
     I64,
     U64,
+    F16,
     F32,
     F64,
 }
@@ -42,7 +43,7 @@ impl Number {
     pub fn width(&self) -> usize {
         match self.kind {
             Kind::I8 | Kind::U8 => 1,
-            Kind::I16 | Kind::U16 => 2,
+            Kind::I16 | Kind::U16 | Kind::F16 => 2,
             Kind::I24 => 3,
             Kind::I32 | Kind::U32 | Kind::F32 => 4,
             Kind::I64 | Kind::U64 | Kind::F64 => 8,
@@ -80,6 +81,7 @@ impl Number {
             Kind::U32 => self.each(bytes, first, every, |b| f64::from(u32::from_le_bytes(b))),
             Kind::I64 => self.each(bytes, first, every, |b| i64::from_le_bytes(b) as f64),
             Kind::U64 => self.each(bytes, first, every, |b| u64::from_le_bytes(b) as f64),
+            Kind::F16 => self.each(bytes, first, every, |b| half(u16::from_le_bytes(b))),
             Kind::F32 => self.each(bytes, first, every, |b| f64::from(f32::from_le_bytes(b))),
             Kind::F64 => self.each(bytes, first, every, f64::from_le_bytes),
         }
@@ -109,6 +111,18 @@ impl Number {
     }
 }
 
+/// A number of half precision: a sign, five bits of exponent, ten of fraction (IEEE 754).
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
+    let fraction = f64::from(bits & 0x3ff);
+    sign * match i32::from(bits >> 10 & 0x1f) {
+        0 => fraction * 2.0_f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        exponent => (1024.0 + fraction) * 2.0_f64.powi(exponent - 25),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,6 +143,25 @@ mod tests {
         assert_eq!(read(Kind::U16, &[1, 0], true), [256.0]);
         assert_eq!(read(Kind::F32, &1.5_f32.to_be_bytes(), true), [1.5]);
         assert_eq!(read(Kind::F64, &1.5_f64.to_le_bytes(), false), [1.5]);
+    }
+
+    #[test]
+    fn half_precision_is_what_its_bits_say() {
+        // Ends of its range, by hand from the standard's form.
+        for (bits, value) in [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x7bff, 65504.0),
+            (0x0400, 2.0_f64.powi(-14)),
+            (0x0001, 2.0_f64.powi(-24)),
+            (0x3555, 0.333_251_953_125),
+            (0xfc00, f64::NEG_INFINITY),
+        ] {
+            assert_eq!(half(bits), value, "{bits:x}");
+        }
+        assert!(half(0x7e00).is_nan());
+        let read = Number::plain(Kind::F16, true).samples(&[0x3c, 0x00], 0, 1);
+        assert_eq!(read.volts(), [1.0]);
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub struct Record {
     pub speed_error_m_s: Option<f64>,
     /// Which section of the chain was wet and with what, if the file says.
     pub case: Option<String>,
+    /// Corner of the amplifier's high-pass in Hz, 0 for none, if the file says.
+    pub high_pass_hz: Option<f64>,
     /// Samples before the trigger, if the file says.
     pub pretrigger: Option<usize>,
     /// Whether the trigger fired, if the file says; if not, the recorder gave up waiting.
@@ -62,6 +64,7 @@ impl Record {
             speeds_m_s: Vec::new(),
             speed_error_m_s: None,
             case: None,
+            high_pass_hz: None,
             pretrigger: None,
             triggered: None,
             first_sample: 0,

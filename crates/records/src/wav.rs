@@ -74,6 +74,13 @@ fn refused(file: &Path, error: hound::Error) -> RecordError {
             RecordError::truncated(name(file), "its header is not whole")
         }
         hound::Error::IoError(cause) => RecordError::reading(file, cause),
+        // What it says of floating-point numbers alone.
+        hound::Error::FormatError("bits per sample is not 32") => RecordError::malformed(
+            file,
+            "WAV",
+            "its samples are floating-point numbers of another width than 32 bits, which are not \
+             read; save them as float32, or as NPY",
+        ),
         error => RecordError::malformed(file, "WAV", error),
     }
 }

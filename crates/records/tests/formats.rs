@@ -48,7 +48,7 @@ fn arrays_of_numpy_are_read_in_every_type_order_and_shape() {
     let program = WAVE.to_owned()
         + r#"
 shots = numpy.array([wave(shot) for shot in range(3)])
-for name in ["<f8", ">f8", "<f4", ">f4"]:
+for name in ["<f8", ">f8", "<f4", ">f4", "<f2", ">f2"]:
     numpy.save(f"shots{ord(name[0])}{name[1:]}.npy", shots.astype(name))
 for name in ["<i2", ">i2", "<i4", ">i4", "<i8", "|i1"]:
     numpy.save(f"shots{ord(name[0])}{name[1:]}.npy", (shots * 128).astype(name))
@@ -61,6 +61,7 @@ numpy.savez("shots.npz", samples=shots, dt=1e-6, speeds=[0.1, 0.2, 0.3])
 numpy.savez_compressed("packed.npz", samples=(shots * 128).astype("i2"), fs=1e6)
 numpy.savez("channels.npz", bead=wave(0), wall=wave(1), time=numpy.arange(200) * 1e-6)
 numpy.savez("positional.npz", wave(0), wave(1), wave(2))
+numpy.save("long.npy", shots.astype(numpy.longdouble))
 "#;
     if python(&folder, &program).is_none() {
         return;
@@ -70,6 +71,8 @@ numpy.savez("positional.npz", wave(0), wave(1), wave(2))
         ("62f8", 1.0),
         ("60f4", 1.0),
         ("62f4", 1.0),
+        ("60f2", 1.0),
+        ("62f2", 1.0),
         ("60i2", 1.0 / 128.0),
         ("62i2", 1.0 / 128.0),
         ("60i4", 1.0 / 128.0),
@@ -99,6 +102,12 @@ numpy.savez("positional.npz", wave(0), wave(1), wave(2))
     assert_wave(&cube[1], 1, 3, 1.0);
     assert_wave(&all(&folder.join("one.npy"), &at_1_mhz())[0], 0, 0, 1.0);
     npz(&folder);
+    let long = read(&folder.join("long.npy"), &at_1_mhz()).next().unwrap();
+    match long {
+        // Where the compiler has no longer numbers, these are doubles.
+        Ok(record) => assert_wave(&record, 0, 0, 1.0),
+        Err(error) => assert!(error.to_string().contains("float64"), "{error}"),
+    }
 }
 
 fn npz(folder: &Path) {
@@ -149,6 +158,7 @@ both = numpy.array([wave(0), wave(1)]).T
 wavfile.write("i2.wav", 1000000, (both * 32768).astype("int16"))
 wavfile.write("i4.wav", 1000000, (both * 2**31).astype("int32"))
 wavfile.write("f4.wav", 1000000, both.astype("float32"))
+wavfile.write("f8.wav", 1000000, both)
 wavfile.write("u1.wav", 1000000, (wave(0) * 128 + 128).astype("uint8"))
 long = numpy.concatenate([wave(shot) for shot in range(3)])
 wavfile.write("long.wav", 500000, (long * 32768).astype("int16"))
@@ -162,6 +172,9 @@ wavfile.write("long.wav", 500000, (long * 32768).astype("int16"))
         assert_wave(&records[0], 0, 0, 1.0);
         assert_wave(&records[0], 1, 1, 1.0);
     }
+    let wide = read(&folder.join("f8.wav"), &ReadOptions::default());
+    let told: Vec<String> = wide.map(|record| record.unwrap_err().to_string()).collect();
+    assert!(told.len() == 1 && told[0].contains("float32"), "{told:?}");
     assert_wave(&all(&folder.join("u1.wav"), &at_1_mhz())[0], 0, 0, 1.0);
     let cut = ReadOptions {
         parts: Parts::Shots(200),

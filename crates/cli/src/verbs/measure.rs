@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_measure::{
-    Curves, Measurement, Note, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv,
+    Curves, Measurement, Note, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
 };
 use hertzchain_verbs::arguments::measure::Measure as Arguments;
 use hertzchain_verbs::measure;
@@ -24,13 +24,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
-    let all = measure::json(&measured, &curves);
     match arguments.json {
-        true => print::print_json(&all)?,
+        true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
     }
     if let Some(folder) = folder {
-        write(folder, &measured, (&curves, &grouping.reference), &all)?;
+        write(folder, &measured, (&curves, &grouping.reference))?;
     }
     measure::judge(&measured)
 }
@@ -79,15 +78,18 @@ fn write(
     mut folder: Folder,
     measured: &Measurement,
     (curves, reference): (&Curves, &str),
-    all: &serde_json::Value,
 ) -> Result<(), Failure> {
-    folder.write("shots.csv", shots_csv(&measured.shots).as_bytes())?;
-    folder.write("measured.json", format!("{all:#}\n").as_bytes())?;
+    folder.write_with("shots.csv", |out| write_shots(&measured.shots, out))?;
+    folder.write_with("measured.json", |out| {
+        measure::write_json(measured, curves, out)
+    })?;
     if let Some(figure) = pictures::signals(&measured.examples) {
         folder.figure("signals", &figure)?;
     }
-    if !curves.cases.is_empty() {
+    if !(curves.cases.is_empty() && curves.lost.is_empty()) {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
+    }
+    if !curves.cases.is_empty() {
         folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
         folder.figure("times-of-flight", &pictures::times(curves))?;
     }

@@ -218,5 +218,7 @@ fn foretold(models: &[Compared<'_>], best: usize, second: usize) -> String {
         z if z < -2.0 => "but points left out are foretold worse by it",
         _ => "points left out are foretold about equally well by both",
     };
-    format!("; {verdict} (mean square error differs by {mean:.2} ± {error:.2})")
+    format!(
+        "; {verdict} (the cross-validated score r² + 2 ln σ, mean of all numbers, differs by {mean:.2} ± {error:.2})"
+    )
 }

@@ -10,6 +10,7 @@ mod model;
 mod problem;
 mod stencil;
 mod surrogate;
+mod units;
 mod whiten;
 
 pub use advice::{Advice, Prospect};

@@ -15,13 +15,17 @@ const MICROSECONDS_FROM: f64 = 20.0;
 /// What is wrong with a speed of a striker in m/s, if anything is.
 #[must_use]
 pub fn wrong_speed(value: f64) -> Option<String> {
+    let most = value > MOST_SPEED_M_S;
+    // Nine digits tell what stands in a file; further ones are rounding.
+    let value: f64 = format!("{value:.8e}").parse().unwrap_or(value);
     if value <= 0.0 || !value.is_finite() {
         return Some(format!(
             "{value} is no speed of a striker; expected more than 0 m/s"
         ));
     }
-    (value > MOST_SPEED_M_S)
-        .then(|| format!("{value} m/s is no speed of a striker; it looks like mm/s, expected m/s"))
+    most.then(|| {
+        format!("{value} m/s is no speed of a striker; it looks like mm/s or cm/s, expected m/s")
+    })
 }
 
 /// What is wrong with a measured value.

@@ -7,6 +7,7 @@ use crate::identify::{in_words, sized};
 use crate::{Fit, Parameter};
 use information::Information;
 use space::Space;
+use std::cmp::Ordering;
 
 /// Something that could be measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,25 +169,32 @@ fn ranked(
 ) -> (Vec<Expected>, Vec<Expected>) {
     let expected = |sum: &Information<'_>, i: usize| sum.expected(&candidates[i], i);
     let mut ranked: Vec<Expected> = (0..candidates.len()).map(|i| expected(now, i)).collect();
-    ranked.sort_by(|a, b| b.gain_per_cost.total_cmp(&a.gain_per_cost));
+    ranked.sort_by(|a, b| before(candidates, a, b));
     let mut greedy = Vec::new();
     let mut sum = now.clone();
     for _ in 0..picks {
         let all = (0..candidates.len()).map(|i| expected(&sum, i));
-        // Of equal ones the first.
-        let best = all.reduce(|best, next| {
-            if next.gain_per_cost > best.gain_per_cost {
-                next
-            } else {
-                best
-            }
-        });
-        let Some(best) = best else { break };
+        let Some(best) = all.min_by(|a, b| before(candidates, a, b)) else {
+            break;
+        };
         sum = sum.with(&candidates[best.candidate].rows);
         greedy.push(best);
     }
     (ranked, greedy)
 }
+
+/// The better one first: by gain over cost; of two that differ by less than anybody could
+/// measure the cheaper, then that with fewer numbers, then the first.
+fn before(candidates: &[Candidate], a: &Expected, b: &Expected) -> Ordering {
+    let gain = |one: &Expected| (one.gain_per_cost / NO_DIFFERENCE).round();
+    let [one, other] = [a, b].map(|one| &candidates[one.candidate]);
+    let gains = gain(b).total_cmp(&gain(a));
+    let costs = gains.then(one.cost.total_cmp(&other.cost));
+    costs.then(one.rows.len().cmp(&other.rows.len()))
+}
+
+/// A change of ln(standard error) that counts for nothing: a tenth of a percent.
+const NO_DIFFERENCE: f64 = 1e-3;
 
 fn check(
     parameters: usize,

@@ -69,6 +69,16 @@ pub enum FreeError {
         /// As asked.
         name: String,
     },
+    /// Friction: no time of flight depends on it.
+    #[error(
+        "{name} can't be fitted: the wave knows no friction, which acts between shots alone and decides how beads come \
+         to lie. No data that a fit takes can tell it; what it leaves behind are loads (preload, near_end.force, or \
+         --own of `gauge`)"
+    )]
+    Friction {
+        /// As asked.
+        name: String,
+    },
     /// One number, twice free.
     #[error("{name} and {other} are the same number")]
     Twice {

@@ -120,7 +120,14 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeErr
     }
 }
 
+/// Friction between beads and track.
+const FRICTION: &str = "track.friction";
+
 fn of_place(name: &str, place: Place) -> Result<Found, FreeError> {
+    if place.path == FRICTION {
+        let name = name.to_owned();
+        return Err(FreeError::Friction { name });
+    }
     match place.is_count {
         true => Err(FreeError::Count {
             name: name.to_owned(),

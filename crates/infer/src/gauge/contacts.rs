@@ -1,11 +1,13 @@
 //! K and A of the wet contacts, speed by speed.
 
 use super::dry::shifts;
-use super::neighbours::smoothest;
+use super::neighbours::{Chosen, smoothest};
+use super::scan::Scan;
+use super::solutions::{Solution, Solved};
 use super::{CONTACT, Gauge};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::data::{Data, Observable};
-use crate::{Covariance, FitError, Fitting, Parameter, Problem, fit};
+use crate::{FitError, Parameter, Problem};
 use rayon::prelude::*;
 
 /// What one speed tells of the wet contacts.
@@ -31,8 +33,35 @@ pub struct Contact {
     pub shared: Vec<[f64; 2]>,
     /// Other pairs ln K, ln A that fit as well.
     pub others: Vec<[f64; 2]>,
+    /// Why this pair stands before the others.
+    pub branch: Branch,
+    /// How far pairs were looked for; `None` where one number alone was measured.
+    pub scan: Option<Scan>,
     /// Where only one number was measured: what it determines.
     pub combination: Option<Combination>,
+}
+
+/// Why a pair stands before the others of its row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// There is no other.
+    Only,
+    /// It goes on from those of neighbouring speeds; every way through another bends much more.
+    Smooth,
+    /// Nothing tells it from the others.
+    Unknown,
+}
+
+impl Branch {
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Only => "only",
+            Self::Smooth => "smooth",
+            Self::Unknown => "unknown",
+        }
+    }
 }
 
 /// The combination K · (A/A₀)^`exponent` that one number determines.
@@ -46,6 +75,20 @@ pub struct Combination {
 }
 
 impl Contact {
+    /// Whether both numbers are told, and by which pair.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        self.combination.is_none() && self.branch != Branch::Unknown
+    }
+
+    /// All pairs ln K, ln A, the smallest A first.
+    #[must_use]
+    pub fn pairs(&self) -> Vec<[f64; 2]> {
+        let mut all = [&[self.ln], &self.others[..]].concat();
+        all.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        all
+    }
+
     /// Whole covariance of ln K and ln A.
     #[must_use]
     pub fn covariance(&self) -> [[f64; 2]; 2] {
@@ -71,19 +114,9 @@ impl Contact {
     }
 }
 
-/// K and A that fit a row.
-struct Solution {
-    point: [f64; 2],
-    covariance: Covariance,
-    cost: f64,
-}
-
-/// All solutions of a row, the smallest A first, at least one; or why there is none.
-type Solved = Result<Vec<Solution>, FitError>;
-
 /// What is free in a row, by the number of its measurements.
 #[derive(Clone, Copy, PartialEq)]
-enum Free {
+pub(super) enum Free {
     Both,
     StiffnessAlone,
 }
@@ -95,17 +128,20 @@ impl Gauge {
         let shifts = shifts(&self.dry_covariance.matrix);
         let numbers = (0..self.data.rows.len()).into_par_iter();
         let solved: Vec<Solved> = numbers
-            .map(|at| self.solutions(at, self.free(at)))
+            .map(|at| self.solutions(at, self.free(at), &shifts))
             .collect();
         let taken = self.taken(&solved);
         let all = solved.into_par_iter().zip(taken).enumerate();
-        let row = |(at, (solutions, taken)): (usize, (Solved, usize))| {
+        let row = |(at, (solved, chosen)): (usize, (Solved, Chosen))| {
             let row = &self.data.rows[at];
-            let told = solutions.and_then(|found| self.contact(at, (found, taken), &shifts));
+            let told = solved.and_then(|found| {
+                let told = self.contact(at, (found, chosen), &shifts);
+                told.map_err(|error| error.to_string())
+            });
             WetRow {
                 line: row.line,
                 speed_m_s: row.speed_m_s.value,
-                told: told.map_err(|error| error.to_string()),
+                told,
             }
         };
         all.map(row).collect()
@@ -119,10 +155,10 @@ impl Gauge {
     }
 
     /// Of each row's solutions the one that goes on most smoothly from its neighbours'.
-    fn taken(&self, solved: &[Solved]) -> Vec<usize> {
+    fn taken(&self, solved: &[Solved]) -> Vec<Chosen> {
         let both = |at: &usize| self.free(*at) == Free::Both;
         let known = |at: usize| {
-            let pairs = solved[at].as_ref().ok()?.iter();
+            let pairs = solved[at].as_ref().ok()?.0.iter();
             let speed = self.data.rows[at].speed_m_s.value;
             Some((
                 at,
@@ -133,9 +169,9 @@ impl Gauge {
             (0..solved.len()).filter(both).filter_map(known).collect();
         rows.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
         let (places, rows): (Vec<usize>, Vec<(f64, Vec<f64>)>) = rows.into_iter().unzip();
-        let mut taken = vec![0; solved.len()];
-        for (place, number) in places.into_iter().zip(smoothest(&rows)) {
-            taken[place] = number;
+        let mut taken = vec![Chosen::default(); solved.len()];
+        for (place, chosen) in places.into_iter().zip(smoothest(&rows)) {
+            taken[place] = chosen;
         }
         taken
     }
@@ -143,13 +179,18 @@ impl Gauge {
     fn contact(
         &self,
         row: usize,
-        (mut solutions, taken): (Vec<Solution>, usize),
+        ((mut solutions, scan), chosen): ((Vec<Solution>, Option<Scan>), Chosen),
         shifts: &[Vec<f64>],
     ) -> Result<Contact, FitError> {
         let free = self.free(row);
         let Solution {
             point, covariance, ..
-        } = solutions.remove(taken);
+        } = solutions.remove(chosen.pair);
+        let branch = match (solutions.is_empty(), chosen.is_clear) {
+            (true, _) => Branch::Only,
+            (_, true) => Branch::Smooth,
+            (_, false) => Branch::Unknown,
+        };
         let mut shared = Vec::new();
         // Those after them move nothing but the dry chain's own numbers.
         for shift in &shifts[..self.common()] {
@@ -170,76 +211,12 @@ impl Gauge {
                 .into_iter()
                 .map(|s| s.point.map(f64::ln))
                 .collect(),
+            branch,
+            scan,
             combination: match free {
                 Free::Both => None,
                 Free::StiffnessAlone => Some(self.combination(row, point)?),
             },
-        })
-    }
-
-    /// All that fit as well as the best, from several starts, the smallest A first:
-    /// times of flight need not determine K and A uniquely.
-    fn solutions(&self, row: usize, free: Free) -> Result<Vec<Solution>, FitError> {
-        let [stiffness, relaxation] = self.dry_contact;
-        let starts = match free {
-            Free::Both => &TIMES_DRY[..],
-            Free::StiffnessAlone => &TIMES_DRY[..1],
-        };
-        let mut found: Vec<Solution> = Vec::new();
-        let mut failed = None;
-        for times in starts {
-            match self.from(row, free, [stiffness, times * relaxation]) {
-                Ok(solution) => found.push(solution),
-                Err(error) => failed = Some(error),
-            }
-        }
-        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        let Some(best) = found.first().map(|best| best.cost) else {
-            return Err(failed.unwrap_or(FitError::NothingFree));
-        };
-        let mut distinct: Vec<Solution> = Vec::new();
-        for solution in found {
-            let same = |other: &Solution| (solution.point[1] / other.point[1]).ln().abs() < SAME;
-            if solution.cost < best + AS_GOOD && !distinct.iter().any(same) {
-                distinct.push(solution);
-            }
-        }
-        distinct.sort_by(|a, b| a.point[1].total_cmp(&b.point[1]));
-        Ok(distinct)
-    }
-
-    /// The solution next to an A: first the K that suits it, then both.
-    fn from(&self, row: usize, free: Free, start: [f64; 2]) -> Result<Solution, FitError> {
-        let dry = &self.dry_fit.point;
-        let along = self.solved(row, Free::StiffnessAlone, dry, start)?;
-        match free {
-            Free::StiffnessAlone => Ok(along),
-            Free::Both => self.solved(row, free, dry, along.point),
-        }
-    }
-
-    /// K and A that one row asks for, with given numbers of the dry contacts.
-    fn solved(
-        &self,
-        row: usize,
-        free: Free,
-        dry: &[f64],
-        start: [f64; 2],
-    ) -> Result<Solution, FitError> {
-        let problem = self.row_problem(row, (free, start), dry);
-        let how = Fitting {
-            iterations: ITERATIONS,
-            tolerance: TOLERANCE,
-            ..Fitting::default()
-        };
-        let fitted = fit(&problem, &how)?;
-        Ok(Solution {
-            covariance: Covariance::new(problem.parameters(), &fitted),
-            point: [
-                fitted.point[0],
-                fitted.point.get(1).copied().unwrap_or(start[1]),
-            ],
-            cost: fitted.cost,
         })
     }
 
@@ -250,7 +227,12 @@ impl Gauge {
         contact.flat_map(|number| number.parameters(&[])).collect()
     }
 
-    fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> Joint {
+    pub(super) fn row_problem(
+        &self,
+        row: usize,
+        (free, at): (Free, [f64; 2]),
+        dry: &[f64],
+    ) -> Joint {
         let data = Data {
             rows: vec![self.data.rows[row].clone()],
             ..self.data.clone()
@@ -301,19 +283,6 @@ impl Gauge {
         })
     }
 
-    /// What would tell solutions apart that fit one row equally well.
-    #[must_use]
-    pub fn ambiguous(rows: &[WetRow]) -> Option<&'static str> {
-        let told = rows.iter().filter_map(|row| row.told.as_ref().ok());
-        let several = told.into_iter().any(|contact| !contact.others.is_empty());
-        several.then_some(
-            "At some speeds several pairs of K and A give the same times. Ratios of peaks tell them apart \
-             (--use incident,reflected,returning-ratio). Told first, and taken for power laws and the figure, \
-             is the pair whose A goes on most smoothly from speed to speed (of fewer than three speeds, the \
-             smallest A); the others stand beside it.",
-        )
-    }
-
     /// Whether any row has more than one number, so that K and A come apart.
     #[must_use]
     pub fn tells_both(&self) -> bool {
@@ -332,21 +301,6 @@ impl Gauge {
         )
     }
 }
-
-/// Iterations of one row's fit: two equations with two unknowns are solved in some ten.
-const ITERATIONS: usize = 30;
-
-/// Starts of A in a row's fit, times that of the dry contacts: oils make it larger.
-pub(super) const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
-
-/// Difference of cost within which two solutions are equally good.
-pub(super) const AS_GOOD: f64 = 1.0;
-
-/// Difference in ln A below which two solutions are one.
-pub(super) const SAME: f64 = 0.02;
-
-/// Fall of chi-square/2 below which a row is solved: a thousandth of a standard error.
-const TOLERANCE: f64 = 1e-6;
 
 /// Half the step in ln K and ln A of the derivatives.
 const STEP: f64 = 0.01;

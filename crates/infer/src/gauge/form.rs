@@ -4,9 +4,9 @@
 //! which incident times alone can determine, where each speed for itself tells one
 //! combination of K and A.
 
-use super::contacts::{AS_GOOD, SAME, TIMES_DRY};
 use super::dry::shifts;
 use super::oils::Oil;
+use super::solutions::{AS_GOOD, SAME, TIMES_DRY};
 use super::verdict::{LEAST_PROBABILITY, Match, OwnNumber, Verdict};
 use super::{CONTACT, Gauge, GaugeError};
 use crate::curve::{CurveProblem, Joint, Part, Supply};

@@ -27,14 +27,15 @@ pub struct GaugeLaws {
 }
 
 impl GaugeLaws {
-    /// Through all rows that tell both.
+    /// Through all rows that tell both, and by which pair.
     ///
     /// # Errors
     /// Fewer than three such rows.
     pub fn through(rows: &[WetRow]) -> Result<Self, FitError> {
         let both = |row: &WetRow| {
             let contact = row.told.as_ref().ok()?;
-            let both = contact.combination.is_none();
+            // A law through pairs of several branches is none.
+            let both = contact.is_known();
             both.then(|| (row.speed_m_s, contact.clone()))
         };
         let known: Vec<(f64, Contact)> = rows.iter().filter_map(both).collect();

@@ -10,12 +10,16 @@ mod form;
 mod laws;
 mod neighbours;
 mod oils;
+mod scan;
+mod solutions;
+mod told;
 mod verdict;
 
-pub use contacts::{Combination, Contact, WetRow};
+pub use contacts::{Branch, Combination, Contact, WetRow};
 pub use form::{AtSpeed, LAWS, PowerForm};
 pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
+pub use scan::Scan;
 use verdict::LEAST_PROBABILITY;
 pub use verdict::{Match, OwnNumber, Verdict};
 

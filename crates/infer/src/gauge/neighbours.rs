@@ -3,13 +3,50 @@
 //! One row alone can't tell. But contacts change smoothly with speed, and the pairs that
 //! belong to nothing do not: they come near the true ones at some speed and part from them.
 
-/// For each row, given as ln speed and ln A of its pairs, the number of the pair to take:
-/// of all ways to take them that with the least sum of squared changes of the slope
-/// d ln A/d ln v from speed to speed (dynamic programming over neighbours). The first of
-/// each row where there are fewer than three.
-pub(super) fn smoothest(rows: &[(f64, Vec<f64>)]) -> Vec<usize> {
+/// The pair of a row to take, and whether that is clear.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Chosen {
+    /// Its number.
+    pub pair: usize,
+    /// Whether every way through another pair of the row bends much more.
+    pub is_clear: bool,
+}
+
+/// Rows given as ln speed and ln A of their pairs.
+type Row = (f64, Vec<f64>);
+
+/// For each row the pair to take: of all ways to take them that with the least sum of
+/// squared changes of the slope d ln A/d ln v from speed to speed. The first of each row
+/// where there are fewer than three.
+pub(super) fn smoothest(rows: &[Row]) -> Vec<Chosen> {
+    let Some((least, way)) = straightest(rows) else {
+        return vec![Chosen::default(); rows.len()];
+    };
+    let others = |row: usize| {
+        let mut others = rows.to_vec();
+        others[row].1.remove(way[row]);
+        straightest(&others).map_or(f64::INFINITY, |(cost, _)| cost)
+    };
+    let enough = rows.len() >= ENOUGH;
+    let chosen = |row: usize| Chosen {
+        pair: way[row],
+        is_clear: rows[row].1.len() == 1 || enough && others(row) > MUCH_MORE * least,
+    };
+    (0..rows.len()).map(chosen).collect()
+}
+
+/// Rows that make three bends: of fewer, chance alone makes a way straight.
+const ENOUGH: usize = 5;
+
+/// How many times larger the sum of squared bends of every other way is where one is clear:
+/// as the ratio of two variances.
+const MUCH_MORE: f64 = 4.0;
+
+/// The way of least cost, and that (dynamic programming over neighbours); `None` of fewer
+/// than three rows, or where one has no pair.
+fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
     if rows.len() < 3 || rows.iter().any(|(_, pairs)| pairs.is_empty()) {
-        return vec![0; rows.len()];
+        return None;
     }
     let slope = |row: usize, before: usize, at: usize| {
         let [(v0, from), (v1, to)] = [&rows[row - 1], &rows[row]];
@@ -36,8 +73,7 @@ pub(super) fn smoothest(rows: &[(f64, Vec<f64>)]) -> Vec<usize> {
         }
         ways = next;
     }
-    let best = ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or_else(|| vec![0; rows.len()], |(_, way)| way)
+    ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -49,18 +85,40 @@ mod tests {
     #[test]
     fn a_line_is_followed_through_a_crossing() {
         let row = |at: usize| {
-            let x = at as f64 / 4.0;
+            // None of them where both cross.
+            let x = 0.1 + at as f64 / 4.0;
             let mut pairs = vec![2.0 - x, 1.0 + (x - 1.0).powi(3)];
             pairs.sort_by(f64::total_cmp);
             (x, pairs)
         };
         let rows: Vec<(f64, Vec<f64>)> = (0..9).map(row).collect();
         let taken = smoothest(&rows);
-        for ((x, pairs), number) in rows.iter().zip(&taken) {
+        for ((x, pairs), chosen) in rows.iter().zip(&taken) {
             // One subtraction, twice the same.
-            assert_eq!(pairs[*number], 2.0 - x, "{taken:?}");
+            assert_eq!(pairs[chosen.pair], 2.0 - x, "{taken:?}");
+            assert!(chosen.is_clear, "{taken:?}");
         }
-        assert_eq!((taken[0], taken[8]), (1, 0));
-        assert_eq!(smoothest(&rows[..2]), [0, 0]);
+        assert_eq!((taken[0].pair, taken[8].pair), (1, 0));
+        assert_eq!(smoothest(&rows[..2]), [Chosen::default(); 2]);
+        // One bend tells nothing, however much smaller it is.
+        assert!(smoothest(&rows[..3]).iter().all(|chosen| !chosen.is_clear));
+    }
+
+    /// Two lines side by side.
+    #[test]
+    fn two_ways_as_straight_leave_the_choice_open() {
+        let row = |at: usize| {
+            (
+                at as f64,
+                vec![0.5 * at as f64, 1.0 + 0.4 * at as f64 + 1e-3],
+            )
+        };
+        let rows: Vec<Row> = (0..9).map(row).collect();
+        let bent = |(at, (x, pairs)): (usize, Row)| {
+            let wave = 0.01 * (at as f64).sin();
+            (x, pairs.into_iter().map(|a| a + wave).collect())
+        };
+        let rows: Vec<Row> = rows.into_iter().enumerate().map(bent).collect();
+        assert!(smoothest(&rows).iter().all(|chosen| !chosen.is_clear));
     }
 }

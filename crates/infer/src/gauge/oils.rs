@@ -137,7 +137,21 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, OilError> {
         };
         row.oil().map_err(|what| wrong(line, what))
     };
-    reader.records().map(oil).collect()
+    let mut all: Vec<Oil> = Vec::new();
+    for (at, record) in reader.records().enumerate() {
+        let line = record.as_ref().ok().and_then(StringRecord::position);
+        let line = line.map_or(at as u64 + 2, csv::Position::line);
+        let found = oil(record)?;
+        if all.iter().any(|known| known.name == found.name) {
+            let what = format!(
+                "{} stands in the table twice: give each oil its own name",
+                found.name
+            );
+            return Err(wrong(line, what));
+        }
+        all.push(found);
+    }
+    Ok(all)
 }
 
 struct Row<'a> {

@@ -282,7 +282,7 @@ impl<'a> Descent<'a> {
             return Stage::Done(Ending::Iterations { expected_fall });
         }
         if self.idle >= IDLE {
-            return Stage::Done(resting(expected_fall));
+            return Stage::Done(resting(expected_fall, self.misfit()));
         }
         self.iterations += 1;
         Stage::Trials(Box::new(trials))
@@ -381,15 +381,24 @@ impl<'a> Descent<'a> {
                 self.at = Some(valued);
                 Stage::Slopes(self.stencils())
             }
-            _ if trials.expected_fall < QUIET_FALL => Stage::Done(resting(trials.expected_fall)),
+            _ if trials.expected_fall < QUIET_FALL => {
+                Stage::Done(resting(trials.expected_fall, self.misfit()))
+            }
             _ if trials.most() < LARGEST_DAMPING => {
                 self.damping = 1e3 * trials.most();
                 self.sure = false;
                 self.spread(&mut trials, self.damping);
                 Stage::Trials(trials)
             }
-            _ => Stage::Done(resting(trials.expected_fall)),
+            _ => Stage::Done(resting(trials.expected_fall, self.misfit())),
         }
+    }
+
+    /// Chi-square over degrees of freedom.
+    fn misfit(&self) -> f64 {
+        let rows = self.at.as_ref().map_or(&[][..], |at| &at.rows);
+        let freedom = rows.len().saturating_sub(self.free.len()).max(1);
+        dot(rows, rows) / freedom as f64
     }
 
     /// Where the descent stands, and why it ended.
@@ -409,8 +418,10 @@ impl<'a> Descent<'a> {
     }
 }
 
-fn resting(expected_fall: f64) -> Ending {
-    if expected_fall < SMALL_FALL {
+/// A rest where the cost should fall by so much: far from the data, chi-square is large and
+/// changes by its own share where no conclusion does.
+fn resting(expected_fall: f64, misfit: f64) -> Ending {
+    if expected_fall < SMALL_FALL * misfit.max(1.0) {
         Ending::Floor { expected_fall }
     } else {
         Ending::Stuck { expected_fall }

@@ -207,6 +207,8 @@ class Measured:
         Times of flight of each case over the reference's.
     refused : list of str
         What could not be read.
+    lost : list
+        Speeds of cases at which no shot has a time that counts, with the number of shots.
     notes, unmatched : list
         What was taken for granted; what table and recordings do not find in each other.
     verdict : str or None
@@ -224,6 +226,7 @@ class Measured:
     ratios: list[dict[str, Any]]
     notes: list[dict[str, Any]]
     unmatched: list[str]
+    lost: list[dict[str, Any]]
     refused: list[str]
     verdict: str | None
     tables: dict[str, str]

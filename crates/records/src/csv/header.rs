@@ -16,22 +16,38 @@ pub(super) struct Header {
     pub time: Option<(usize, Option<f64>)>,
     /// Its title.
     pub time_name: String,
+    /// Its unit, if one is named that nobody here knows.
+    pub strange_unit: Option<String>,
     /// Sampling interval in s that a line states.
     pub interval_s: Option<f64>,
 }
 
-/// Units of time in s.
-const TIMES: &[(&str, f64)] = &[
-    ("s", 1.0),
-    ("sec", 1.0),
-    ("second", 1.0),
-    ("seconds", 1.0),
-    ("ms", 1e-3),
-    ("us", 1e-6),
-    ("µs", 1e-6),
-    ("μs", 1e-6),
-    ("ns", 1e-9),
+/// How seconds are called.
+const SECONDS: &[&str] = &[
+    "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden", "seconde", "secondes",
+    "segundos",
 ];
+
+/// What stands before them, and what it makes of them.
+const PREFIXES: &[(&str, f64)] = &[
+    ("", 1.0),
+    ("m", 1e-3),
+    ("milli", 1e-3),
+    ("u", 1e-6),
+    ("µ", 1e-6),
+    ("μ", 1e-6),
+    ("micro", 1e-6),
+    ("mikro", 1e-6),
+    ("n", 1e-9),
+    ("nano", 1e-9),
+];
+
+/// What one of a unit of time is in s, in whatever way that is written.
+fn seconds(unit: &str) -> Option<f64> {
+    let unit = unit.trim().trim_end_matches('.').to_lowercase();
+    let of = |name: &&str| look_up(PREFIXES, unit.strip_suffix(*name)?);
+    SECONDS.iter().find_map(of)
+}
 
 /// Units of rates in Hz.
 const RATES: &[(&str, f64)] = &[
@@ -88,15 +104,17 @@ const RATES_CALLED: &[&str] = &[
 ];
 
 impl Header {
-    /// Reads the lines before the first row, and what stands beside the first rows.
-    pub fn of(beginning: &str, dialect: &Dialect) -> Self {
+    /// Reads the lines before the first row, and what stands beside the first rows. What
+    /// counts is times if `counts_time`.
+    pub fn of(beginning: &str, dialect: &Dialect, counts_time: bool) -> Self {
         let rows = sampled(beginning, dialect);
         let (names, units) = titles(beginning, dialect, rising(&rows, 0) == Some(1.0));
         let title = |column: usize| names.get(column).map_or("", String::as_str);
-        let unit = |column: usize| {
-            let own = bracketed(title(column)).or_else(|| units.get(column).cloned());
-            own.and_then(|unit| look_up(TIMES, &unit))
+        let named_unit = |column: usize| {
+            let own = bracketed(title(column)).or_else(|| within(title(column)));
+            own.or_else(|| units.get(column).cloned())
         };
+        let unit = |column: usize| named_unit(column).and_then(|unit| seconds(&unit));
         let is_time = |column: usize| called(TIME_NAMES, title(column)) || unit(column).is_some();
         let first = dialect.columns.first().copied();
         let counts = |column: usize| called(INDEX_NAMES, title(column));
@@ -111,6 +129,9 @@ impl Header {
                 None if even::rises(&risen(beginning, dialect, first)) => time = Some(first),
                 None => {}
             }
+        }
+        if counts_time && time.is_none() {
+            time = index.take();
         }
         let time = time.filter(|_| several);
         let index = index.filter(|_| several);
@@ -128,6 +149,9 @@ impl Header {
             names: names.collect(),
             channels,
             time: time.map(|column| (column, unit(column).or_else(|| ending(title(column))))),
+            strange_unit: time
+                .and_then(named_unit)
+                .filter(|unit| !unit.is_empty() && seconds(unit).is_none()),
             time_name: time.map_or(String::new(), |column| plain(title(column))),
             interval_s: stated_s(beginning, dialect),
         }
@@ -225,7 +249,7 @@ fn is_unit(field: &str) -> bool {
     let inside = |open, close| field.strip_prefix(open)?.strip_suffix(close);
     let bare = inside('(', ')').or_else(|| inside('[', ']'));
     let whole = bare.unwrap_or(field).to_lowercase();
-    bare.is_some() || look_up(TIMES, &whole).is_some() || VOLTS.contains(&whole.as_str())
+    bare.is_some() || seconds(&whole).is_some() || VOLTS.contains(&whole.as_str())
 }
 
 /// What stands in brackets at the end: "Time (ms)" is in ms.
@@ -234,6 +258,12 @@ fn bracketed(text: &str) -> Option<String> {
     let inside = text.strip_suffix([')', ']'])?;
     let at = inside.rfind(['(', '['])?;
     Some(inside[at + 1..].trim().to_owned())
+}
+
+/// What stands after "in": "Zeit in ms" is in ms.
+fn within(text: &str) -> Option<String> {
+    let (_, unit) = text.rsplit_once(" in ")?;
+    Some(unit.trim().to_owned())
 }
 
 /// A title without its unit.
@@ -247,15 +277,21 @@ fn plain(title: &str) -> String {
 
 fn called(names: &[&str], title: &str) -> bool {
     let title = plain(title).to_lowercase();
-    let stem = title
-        .rsplit_once(['_', '/'])
-        .filter(|_| ending(&title).is_some());
-    names.contains(&title.as_str()) || stem.is_some_and(|(stem, _)| names.contains(&stem))
+    let stem = title.rsplit_once(" in ").or_else(|| {
+        title
+            .rsplit_once(APART)
+            .filter(|_| ending(&title).is_some())
+    });
+    let is_named = |name: &str| names.contains(&name.trim());
+    is_named(&title) || stem.is_some_and(|(stem, _)| is_named(stem))
 }
+
+/// What keeps a name and its unit apart.
+const APART: [char; 4] = ['_', '/', ' ', ','];
 
 /// The unit that a title ends in: "time_us", "t/ms".
 fn ending(title: &str) -> Option<f64> {
-    look_up(TIMES, title.rsplit_once(['_', '/'])?.1)
+    seconds(title.rsplit_once(APART)?.1)
 }
 
 fn look_up(units: &[(&str, f64)], unit: &str) -> Option<f64> {
@@ -292,7 +328,7 @@ fn line_states_s(line: &str, dialect: &Dialect) -> Option<f64> {
     };
     if let Some(rest) = after(INTERVALS) {
         let (value, unit) = quantity(rest, dialect)?;
-        return Some(value * look_up(TIMES, &unit).unwrap_or(1.0));
+        return Some(value * seconds(&unit).unwrap_or(1.0));
     }
     let (value, unit) = quantity(after(RATES_CALLED)?, dialect)?;
     Some((value * look_up(RATES, &unit).unwrap_or(1.0)).recip())
@@ -318,7 +354,7 @@ mod tests {
     use super::*;
 
     fn header(text: &str) -> Header {
-        Header::of(text, &Dialect::of(text).unwrap())
+        Header::of(text, &Dialect::of(text).unwrap(), false)
     }
 
     #[test]
@@ -339,6 +375,46 @@ mod tests {
         assert_eq!((strange.time, strange.channels), (Some((0, None)), vec![1]));
         let counted = header("0,5.5\n1,7.5\n2,1.5\n3,3.5\n");
         assert_eq!((counted.time, counted.channels), (None, vec![1]));
+    }
+
+    #[test]
+    fn units_of_time_are_read_however_they_are_written() {
+        for (title, unit_s) in [
+            ("Time (microseconds)", 1e-6),
+            ("Zeit in ms", 1e-3),
+            ("time [usec]", 1e-6),
+            ("t (msec)", 1e-3),
+            ("Time/milliseconds", 1e-3),
+            ("Zeit (Mikrosekunden)", 1e-6),
+            ("Time in seconds", 1.0),
+            ("time ns", 1e-9),
+            ("Time (sec.)", 1.0),
+            ("Moment in µs", 1e-6),
+        ] {
+            let found = header(&format!("{title};a\n0.5;1\n1;2\n1.5;4\n"));
+            assert_eq!(found.time, Some((0, Some(unit_s))), "{title}");
+            assert_eq!(found.strange_unit, None, "{title}");
+        }
+    }
+
+    #[test]
+    fn a_unit_that_nobody_knows_is_named() {
+        for title in ["Time (shakes)", "Zeit in shakes", "t [shakes]"] {
+            let found = header(&format!("{title};a\n0.5;1\n1;2\n1.5;4\n"));
+            assert_eq!(found.time, Some((0, None)), "{title}");
+            assert_eq!(found.strange_unit.as_deref(), Some("shakes"), "{title}");
+        }
+        assert_eq!(header("Time;a\n0.5;1\n1;2\n1.5;4\n").strange_unit, None);
+    }
+
+    #[test]
+    fn counts_are_times_where_somebody_says_what_one_is() {
+        for text in ["0,5.5\n1,7.5\n2,1.5\n3,3.5\n", "n,a\n0,5\n1,7\n2,1\n3,3\n"] {
+            let dialect = Dialect::of(text).unwrap();
+            assert_eq!(Header::of(text, &dialect, false).time, None);
+            let times = Header::of(text, &dialect, true);
+            assert_eq!((times.time, times.channels), (Some((0, None)), vec![1]));
+        }
     }
 
     #[test]

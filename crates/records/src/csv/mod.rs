@@ -20,7 +20,10 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
     let beginning = dialect::beginning(file).map_err(|e| RecordError::reading(file, e))?;
     let dialect = dialect::Dialect::of(&beginning)
         .ok_or_else(|| RecordError::malformed(file, "text", "no columns of numbers were found"))?;
-    let header = header::Header::of(&beginning, &dialect);
+    let header = header::Header::of(&beginning, &dialect, options.time_unit_s.is_some());
+    if let Some(unit) = header.strange_unit.as_ref().filter(|_| !told(options)) {
+        return Err(RecordError::malformed(file, "text", strange(&header, unit)));
+    }
     let picked = chosen(file, &header.names, options)?;
     let columns = picked
         .iter()
@@ -56,4 +59,17 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
     };
     let rows = rows::Rows::open(file, plan).map_err(|e| RecordError::reading(file, e))?;
     Ok(Box::new(rows))
+}
+
+/// Whether nobody need know the unit of times.
+fn told(options: &ReadOptions) -> bool {
+    options.time_unit_s.is_some() || (options.trust_rate && options.rate_hz.is_some())
+}
+
+fn strange(header: &header::Header, unit: &str) -> String {
+    format!(
+        "its times, {:?}, are in {unit:?}, which is no unit of time that is known here, as s, ms, \
+         us and ns are; say with --time-unit what they are in",
+        header.time_name
+    )
 }

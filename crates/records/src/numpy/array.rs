@@ -27,12 +27,7 @@ impl Array {
     pub fn open(place: Place, part: Option<String>) -> Result<Self, RecordError> {
         let (header, bytes) = opened(&place)?;
         let refused = |detail: String| RecordError::malformed(&place.file, "a NumPy array", detail);
-        let number = number(&header.dtype()).ok_or_else(|| {
-            refused(format!(
-                "its items are {}, not real numbers; save a plain array",
-                header.dtype().descr()
-            ))
-        })?;
+        let number = number(&header.dtype()).ok_or_else(|| refused(why_not(&header.dtype())))?;
         let sizes = header.shape().iter();
         let shape: Option<Vec<usize>> = sizes.map(|size| usize::try_from(*size).ok()).collect();
         let shape = shape.ok_or_else(|| refused("an axis is beyond all bounds".to_owned()))?;
@@ -183,6 +178,21 @@ fn opened(place: &Place) -> Result<(NpyHeader, Bytes), RecordError> {
     Ok((header, bytes))
 }
 
+/// Why items are not read.
+fn why_not(dtype: &DType) -> String {
+    match dtype {
+        DType::Plain(plain) if plain.type_char() == TypeChar::Float => format!(
+            "its items are floating-point numbers of {} bytes, of which every machine has others; \
+             save them as float64",
+            plain.size_field()
+        ),
+        _ => format!(
+            "its items are {}, not real numbers; save a plain array",
+            dtype.descr()
+        ),
+    }
+}
+
 /// A number that a plain item is.
 fn number(dtype: &DType) -> Option<Number> {
     let DType::Plain(plain) = dtype else {
@@ -197,6 +207,7 @@ fn number(dtype: &DType) -> Option<Number> {
         (TypeChar::Uint, 4) => Kind::U32,
         (TypeChar::Int, 8) => Kind::I64,
         (TypeChar::Uint, 8) => Kind::U64,
+        (TypeChar::Float, 2) => Kind::F16,
         (TypeChar::Float, 4) => Kind::F32,
         (TypeChar::Float, 8) => Kind::F64,
         _ => return None,

@@ -38,3 +38,5 @@ pub(super) const SEED: &str = "seed";
 pub(super) const EXPERIMENT: &str = "experiment";
 /// Standard error of the measured speed in m/s; written if the rig tells one.
 pub(super) const SPEED_ERROR: &str = "measured_speed_error_m_s";
+/// Corner of the amplifier's high-pass in Hz; written if the rig tells one.
+pub(super) const HIGH_PASS: &str = "high_pass_hz";

@@ -48,8 +48,8 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
         offset_v: number(layout::OFFSET)?,
         pretrigger: number(layout::PRETRIGGER)? as usize,
         case: attribute_text(open, layout::CASE),
-        speed_error_m_s: attribute_text(open, layout::SPEED_ERROR)
-            .and_then(|text| text.trim().parse().ok()),
+        speed_error_m_s: told(open, layout::SPEED_ERROR),
+        high_pass_hz: told(open, layout::HIGH_PASS).filter(|hz| hz.is_finite() && *hz >= 0.0),
         numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
         speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
         programmed: column(open, layout::PROGRAMMED, shots).map_err(foreign)?,
@@ -70,6 +70,7 @@ struct Shelf {
     pretrigger: usize,
     case: Option<String>,
     speed_error_m_s: Option<f64>,
+    high_pass_hz: Option<f64>,
     numbers: Vec<i64>,
     speeds: Vec<f64>,
     programmed: Vec<f64>,
@@ -101,6 +102,7 @@ impl Shelf {
             speed_error_m_s: self.speed_error_m_s,
             triggered: self.triggered.get(row).map(|fired| *fired != 0),
             case: self.case.clone(),
+            high_pass_hz: self.high_pass_hz,
             pretrigger: Some(self.pretrigger),
             ..Record::new(source, &self.file, self.interval_s, channels)
         })
@@ -169,6 +171,11 @@ pub(crate) fn column<T: rust_hdf5::H5Type>(
             column.len()
         ))),
     }
+}
+
+/// A number that the file tells as text, if it does.
+fn told(open: &H5File, name: &str) -> Option<f64> {
+    attribute_text(open, name)?.trim().parse().ok()
 }
 
 pub(super) fn attribute_text(open: &H5File, name: &str) -> Option<String> {

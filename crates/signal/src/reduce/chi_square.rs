@@ -33,8 +33,10 @@ pub fn chi_square(measured: &[Estimate], expected: &[f64], fitted: usize) -> Opt
 }
 
 impl ChiSquare {
-    /// `None` if the value is not finite or no degree of freedom is left.
-    pub(crate) fn of(value: f64, freedom: usize) -> Option<Self> {
+    /// A sum of squares of so many independent standard errors, and how often chance alone
+    /// makes it as large; `None` if it is not finite or no degree of freedom is left.
+    #[must_use]
+    pub fn of(value: f64, freedom: usize) -> Option<Self> {
         (value.is_finite() && freedom > 0).then(|| Self {
             value,
             freedom,

@@ -94,8 +94,8 @@ pub struct Picking {
     /// Low-pass without delay, forward and backward, at so many Hz
     #[arg(long, value_name = "RATE", value_parser = rate)]
     pub low_pass: Option<f64>,
-    /// Take out the droop of the amplifier's high-pass, whose corner is at so many Hz
-    #[arg(long, value_name = "RATE", value_parser = rate)]
+    /// Take out the droop of the amplifier's high-pass, whose corner is at so many Hz; 0 leaves it, also where a recording tells of one
+    #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
     pub high_pass: Option<f64>,
 }
 
@@ -174,6 +174,14 @@ pub fn rate(text: &str) -> Result<f64, String> {
     let rate = number.parse().ok().map(|number: f64| number * size);
     let rate = rate.filter(|rate| rate.is_normal() && *rate > 0.0);
     rate.ok_or_else(|| "expected a rate such as 1MHz, 500kS/s or 1e6".to_owned())
+}
+
+/// A rate, or 0.
+fn rate_or_none(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(0.0) => Ok(0.0),
+        _ => rate(text),
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -1,6 +1,6 @@
 //! Options that a fit could not heed are refused before anything is computed.
 
-use super::{Arguments, CHAIN, partial};
+use super::{Arguments, CHAIN, partial, words};
 use crate::failure::Failure;
 
 /// Of a fit of a table.
@@ -45,14 +45,15 @@ pub fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
 
 fn of_any(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) = arguments.out.as_deref().filter(|_| arguments.resume) else {
-        return Ok(());
+        return words::left(arguments);
     };
     let nothing = !partial::begun(out) && !out.join(CHAIN).exists();
     let why = format!(
         "goes on with what a run that was broken off left, and {} holds nothing of one: leave it out",
         out.display()
     );
-    refuse("--resume", nothing, &why)
+    refuse("--resume", nothing, &why)?;
+    words::left(arguments)
 }
 
 fn refuse(option: &str, given: bool, why: &str) -> Result<(), Failure> {

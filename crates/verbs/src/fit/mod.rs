@@ -8,6 +8,7 @@ pub mod pulses;
 mod results;
 mod rivals;
 mod tables;
+mod words;
 
 pub use limits::{Limit, Limits};
 pub use more::{CHAIN, Curves, More, Sampled, leave, saved};
@@ -63,6 +64,9 @@ pub struct Fitted {
     pub advice: Option<Advice>,
     /// Other models of the same data.
     pub rivals: Option<Rivals>,
+    /// The unit that speeds seem to be in, where the model does not follow and they seem not
+    /// to be in m/s.
+    pub unit_of_speed: Option<&'static str>,
 }
 
 impl Inferred {
@@ -151,8 +155,11 @@ fn told(
     let label = |at: usize| problem.residual_label(at);
     let identifiability = Identifiability::new(problem.parameters(), &fit, label);
     let open = !identifiability.confused.is_empty() && fit.ending.converged();
+    let goodness = Goodness::new(problem.parameters(), &fit);
+    let rejected = goodness.is_rejected();
     let limits = limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?;
     Ok(Fitted {
+        unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
         advice: open.then(|| problem.would_separate(&fit)),
         rivals: rivals::rivals(&problem, &fit, arguments)?,
         curve: problem.fitted_curve(&fit, &covariance).map_err(user)?,
@@ -160,7 +167,7 @@ fn told(
         inferred: Inferred {
             parameters: problem.parameters().to_vec(),
             identifiability,
-            goodness: Goodness::new(problem.parameters(), &fit),
+            goodness,
             more,
             limits,
             covariance,

@@ -4,7 +4,7 @@
 //! come to it from a file: so no state of any of them is saved, but what the model
 //! said. The sampler has its [own file](super::CHAIN), as it asks a million times.
 
-use super::Arguments;
+use super::{Arguments, words};
 use crate::failure::Failure;
 use hertzchain_infer::{ModelError, Parameter, Problem, Residuals};
 use hertzchain_study::reproduce::write_atomically;
@@ -237,6 +237,7 @@ pub fn begun(out: &Path) -> bool {
 /// Removes what a run leaves to the next from an output folder: its result is there.
 pub fn finished(out: &Path) {
     forget(&out.join(PARTIAL));
+    words::finished(out);
 }
 
 impl Problem for Remembered<'_> {

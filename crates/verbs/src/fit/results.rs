@@ -75,6 +75,7 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         "chi_square": goodness.chi_square.map(|c| json!({
             "value": c.value, "freedom": c.freedom, "probability": c.probability,
         })),
+        "follows_data": !goodness.is_rejected(),
         "runs": goodness.runs.map(|r| json!({
             "count": r.count, "expected": r.expected,
             "probability_fewer": r.probability_fewer, "probability_more": r.probability_more,

@@ -2,7 +2,7 @@
 
 use super::Gauged;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Gauge, LAWS, PowerForm, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Gauge, LAWS, PowerForm, Scan, SharedLaw, WetRow};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -49,6 +49,8 @@ fn row(row: &WetRow) -> Value {
                 None => {
                     all["relaxation_time_s"] = json!({ "value": a, "standard_error": a_sd });
                     all["ln_covariance"] = json!(contact.covariance());
+                    all["branch"] = json!(contact.branch.name());
+                    all["scan"] = contact.scan.as_ref().map(scan).into();
                     all["others"] = contact
                         .others
                         .iter()
@@ -68,6 +70,13 @@ fn row(row: &WetRow) -> Value {
         }
     }
     all
+}
+
+/// How far pairs were looked for.
+fn scan(scan: &Scan) -> Value {
+    json!({
+        "between_s": scan.between_s, "complete": scan.is_complete(), "missing_s": scan.missing_s,
+    })
 }
 
 /// Power laws of the whole curve.

@@ -3,7 +3,9 @@
 use super::Gauged;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, Match, OwnNumber, PowerForm, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{
+    Branch, Contact, Match, OwnNumber, PowerForm, Scan, SharedLaw, WetRow,
+};
 
 /// Every table: files' names and what stands in them.
 #[must_use]
@@ -59,11 +61,11 @@ fn dry(gauged: &Gauged) -> String {
     table.with_all(numbered, line).text()
 }
 
-/// One line a pair of K and A that a speed allows, the one taken first; one line a
+/// One line a pair of K and A that a speed allows, the one taken first if any is; one line a
 /// speed that tells a combination, or nothing.
 fn contacts(gauged: &Gauged) -> String {
     let titles = "line,speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error,ln_covariance,\
-                  combination_exponent,combination_reference_s,taken,missing";
+                  combination_exponent,combination_reference_s,taken,missing,branch,scan_complete";
     let lines = gauged.rows.iter().flat_map(|row| match &row.told {
         Err(why) => vec![missing(row, why)],
         Ok(contact) => pairs(row, contact),
@@ -74,10 +76,10 @@ fn contacts(gauged: &Gauged) -> String {
 }
 
 /// Cells of a table of contacts.
-type Line = [Cell; 11];
+type Line = [Cell; 13];
 
 fn begun(row: &WetRow) -> Line {
-    let mut cells = [const { Cell::Empty }; 11];
+    let mut cells = [const { Cell::Empty }; 13];
     cells[0] = row.line.to_string().into();
     cells[1] = row.speed_m_s.into();
     cells
@@ -92,7 +94,14 @@ fn missing(row: &WetRow, why: &str) -> Line {
 fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
     let [(k, k_sd), (a, a_sd)] = contact.estimates();
     let mut taken = begun(row);
-    (taken[2], taken[3], taken[9]) = (k.into(), k_sd.into(), true.into());
+    (taken[2], taken[3]) = (k.into(), k_sd.into());
+    taken[9] = (contact.branch != Branch::Unknown).into();
+    taken[11] = contact.branch.name().into();
+    taken[12] = contact
+        .scan
+        .as_ref()
+        .map(Scan::is_complete)
+        .map_or(Cell::Empty, Cell::from);
     match &contact.combination {
         None => {
             (taken[4], taken[5]) = (a.into(), a_sd.into());

@@ -12,7 +12,7 @@ pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let free = model.numbers().as_slice().iter().map(|n| n.name());
     let free = paths(experiment, free);
     let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
-    let mut told = Vec::new();
+    let mut told: Vec<String> = beside(model, sets);
     for steering in free.iter().chain(&set) {
         let followers = experiment.followers(steering).unwrap_or_default();
         let is_free = free.contains(steering);
@@ -27,6 +27,36 @@ pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
     }
     told
 }
+
+/// What a Young modulus still does where a stiffness that would follow from it has a
+/// number of its own.
+fn beside(model: &Model, sets: &[Assignment]) -> Vec<String> {
+    let free: Vec<&str> = model
+        .numbers()
+        .as_slice()
+        .iter()
+        .map(|n| n.name())
+        .collect();
+    let all = free
+        .iter()
+        .copied()
+        .chain(sets.iter().map(|set| set.name.as_str()));
+    let Some(stiffness) = all.into_iter().find(|name| STIFFNESS.contains(&last(name))) else {
+        return Vec::new();
+    };
+    let young = free.iter().filter(|name| YOUNG.contains(&last(name)));
+    let told = |young: &&str| {
+        format!(
+            "{young} is free and {stiffness} has a number of its own: where contacts have that stiffness, the Young \
+             modulus acts through the relaxation time A alone"
+        )
+    };
+    young.map(told).collect()
+}
+
+/// What the stiffness of Hertz contacts is called, and the Young modulus.
+const STIFFNESS: [&str; 2] = ["K", "stiffness"];
+const YOUNG: [&str; 2] = ["Y", "young_modulus"];
 
 fn paths<'a>(experiment: &Experiment, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let path = |name| experiment.place(name).ok().map(|place| place.path);

@@ -2,7 +2,7 @@
 
 mod results;
 
-pub use results::json;
+pub use results::{json, write_json};
 
 use crate::arguments::Input;
 use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
@@ -82,7 +82,9 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
                 .to_owned(),
         ));
     }
+    let high_pass_hz = high_pass_hz(&arguments.picking, rig.as_ref());
     Ok(Options {
+        keep_droop: high_pass_hz == Some(0.0),
         reading: ReadOptions {
             rate_hz: reading.rate,
             trust_rate: reading.trust_rate,
@@ -107,7 +109,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
             (None, true) => Cut::Never,
             (None, false) => Cut::Plain,
         },
-        measuring: measuring(&arguments.picking, rig.as_ref())?,
+        measuring: measuring(&arguments.picking, rig.as_ref(), high_pass_hz)?,
         list: arguments.shots.as_deref().map(list).transpose()?,
         speed_error_m_s: arguments
             .speed_error
@@ -137,7 +139,17 @@ pub fn list(file: &Path) -> Result<ShotList, Failure> {
     ShotList::parse(&text).map_err(|error| wrong(&error))
 }
 
-fn measuring(picking: &Picking, rig: Option<&Experiment>) -> Result<Measuring, Failure> {
+/// Corner of the amplifier's high-pass, 0 for none, if an option or the rig's file tells.
+fn high_pass_hz(picking: &Picking, rig: Option<&Experiment>) -> Option<f64> {
+    let of_rig = || Some(rig?.campaign().amplifier.high_pass_hz);
+    picking.high_pass.or_else(of_rig)
+}
+
+fn measuring(
+    picking: &Picking,
+    rig: Option<&Experiment>,
+    high_pass_hz: Option<f64>,
+) -> Result<Measuring, Failure> {
     let beads = picking.beads.zip(picking.sensor);
     if let Some((beads, sensor)) = beads.filter(|(beads, sensor)| sensor >= beads) {
         return Err(Failure::User(format!(
@@ -145,9 +157,6 @@ fn measuring(picking: &Picking, rig: Option<&Experiment>) -> Result<Measuring, F
         )));
     }
     let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
-    let high_pass_hz = picking
-        .high_pass
-        .or_else(|| Some(rig?.campaign().amplifier.high_pass_hz));
     Ok(Measuring {
         finding: Finding {
             polarity: polarity(picking.polarity),
@@ -199,25 +208,33 @@ pub fn grouping(arguments: &Arguments) -> Grouping {
     }
 }
 
-/// Refused records make the run one with mistakes, whatever else was measured;
-/// so does a run in which no record had a time of flight.
+/// Refused records and such without a time of flight make the run one with mistakes,
+/// whatever else was measured.
 ///
 /// # Errors
 /// What was refused or not found.
 pub fn judge(measured: &Measurement) -> Result<(), Failure> {
     let refused = measured.refused.len();
     let all = refused + measured.shots.len();
-    let timed = measured.shots.iter().any(|shot| shot.flight.is_ok());
-    match (refused, timed) {
-        (0, true) => Ok(()),
-        (0, false) => Err(Failure::User(
-            "no record had a time of flight; its flags tell why".to_owned(),
+    let timeless = measured.shots.iter().filter(|shot| shot.flight.is_err());
+    let timeless = timeless.count();
+    let wrong = match (refused, timeless) {
+        (0, 0) => None,
+        (0, _) => Some(no_time(timeless, all)),
+        (_, 0) => Some(format!("{refused} of {all} records were refused")),
+        _ => Some(format!(
+            "{refused} of {all} records were refused, and {}",
+            no_time(timeless, measured.shots.len())
         )),
-        (_, true) => Err(Failure::User(format!(
-            "{refused} of {all} records were refused; the others were measured"
-        ))),
-        (_, false) => Err(Failure::User(format!(
-            "nothing was measured: {refused} of {all} records were refused"
-        ))),
-    }
+    };
+    let told = match refused + timeless < all {
+        true => wrong.map(|wrong| wrong + "; the others were measured"),
+        false => Some("nothing was measured: ".to_owned() + &wrong.unwrap_or_default()),
+    };
+    told.map_or(Ok(()), |told| Err(Failure::User(told)))
+}
+
+fn no_time(timeless: usize, all: usize) -> String {
+    let have = if all == 1 { "has" } else { "have" };
+    format!("{timeless} of {all} that were read {have} no time of flight, as their flags tell")
 }

@@ -2,7 +2,7 @@
 
 use crate::format::{self, digits};
 use crate::print::heading;
-use crate::words::{chi_square_text, doubt, estimate, percent};
+use crate::words::{chi_square_text, doubt, estimate, misfit, percent};
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Observable, Parameter, Problem, Profile,
 };
@@ -37,7 +37,18 @@ pub fn text(fitted: &Fitted) -> String {
     });
     text += &more(&fitted.inferred);
     text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
-    text + &beware(&fitted.inferred)
+    text + &beware(&fitted.inferred) + &unit(fitted)
+}
+
+/// That speeds seem to be in another unit.
+fn unit(fitted: &Fitted) -> String {
+    fitted.unit_of_speed.map_or(String::new(), |unit| {
+        format!(
+            "Beware: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
+             times of flight at speeds that many times slower\n",
+            fitted.problem.data().file
+        )
+    })
 }
 
 /// Correlations and how well the data are described.
@@ -58,6 +69,7 @@ fn derivatives(fitted: &Inferred) -> String {
 pub fn beware(fitted: &Inferred) -> String {
     let doubt = doubt(&fitted.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("Beware: {told}.\n"));
     if let Err(why) = &fitted.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
@@ -173,6 +185,9 @@ pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String
             .to_owned();
     }
     let (known, all) = (found.determined(), found.singular_values.len());
+    if known == all && fitted.goodness.is_rejected() {
+        return String::new();
+    }
     if known == all {
         return match all {
             1 => "The data determine it.\n".to_owned(),
@@ -319,7 +334,7 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
         "chi-square",
         "AICc above best",
         "BIC",
-        "cross-validated error",
+        "cross-validated score",
     ];
     let table = format::table(&head.map(str::to_owned), &rows);
     let without = rivals.all.iter().filter(|rival| !rival.without.is_empty());

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
-use hertzchain_infer::gauge::{Contact, Oil, PowerForm};
+use hertzchain_infer::gauge::{Branch, Contact, Oil, PowerForm};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Standard errors that the band of power laws spans to either side: 95 %.
@@ -61,6 +61,9 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     });
     let known = gauged.rows.iter().filter_map(|row| {
         let contact = row.told.as_ref().ok()?;
+        if contact.branch == Branch::Unknown {
+            return None;
+        }
         // A combination's K is not that of a law.
         if gauged.form.is_some() && contact.combination.is_some() {
             return None;
@@ -76,8 +79,13 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         .marker(Marker::Circle)
         .colour(Colour::BLACK);
     let others = gauged.rows.iter().filter_map(|row| {
-        let others = &row.told.as_ref().ok()?.others;
-        Some(others.iter().map(|ln| (row.speed_m_s, unit * ln[of].exp())))
+        let contact = row.told.as_ref().ok()?;
+        let others = match contact.branch {
+            Branch::Unknown => contact.pairs(),
+            _ => contact.others.clone(),
+        };
+        let value = move |ln: [f64; 2]| (row.speed_m_s, unit * ln[of].exp());
+        Some(others.into_iter().map(value))
     });
     let (speeds, values): (Vec<f64>, Vec<f64>) = others.flatten().unzip();
     match values.is_empty() {

@@ -2,14 +2,15 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{chi_square_of, chi_square_text, estimate, percent};
+use crate::words::{chi_square_of, chi_square_text, estimate, misfit, percent};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, Gauge, PowerForm, SharedLaw, WetRow};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Everything that is to be said.
 pub fn text(gauged: &Gauged) -> String {
-    let mut text = format!("{}\n{}\n", heading("Dry contacts"), dry(gauged));
+    let mut text = dry_doubt(gauged);
+    text += &format!("{}\n{}\n", heading("Dry contacts"), dry(gauged));
     text += &format!("{}\n{}", heading("Wet contacts"), contacts(gauged));
     if let Some(laws) = &gauged.laws {
         text += &law("K", "N/m^1.5", &laws.stiffness);
@@ -40,6 +41,14 @@ pub fn text(gauged: &Gauged) -> String {
     text + &doubts.map_or(String::new(), |doubts| format!("Beware: {doubts}\n"))
 }
 
+/// Before all else: that nothing below can hold.
+fn dry_doubt(gauged: &Gauged) -> String {
+    let told = misfit(&gauged.gauge.dry_goodness());
+    told.map_or(String::new(), |told| {
+        format!("Beware: of the dry curve, on which all below rests, {told}.\n\n")
+    })
+}
+
 fn dry(gauged: &Gauged) -> String {
     let gauge = &gauged.gauge;
     let parameters = gauge.dry().parameters().iter().enumerate();
@@ -54,11 +63,15 @@ fn dry(gauged: &Gauged) -> String {
 fn shown(contact: &Contact) -> [String; 3] {
     let [(k, k_sd), (a, a_sd)] = contact.estimates();
     let both = |value: f64, sd: f64| {
+        if sd >= value {
+            return "not determined".to_owned();
+        }
         let (value, sd) = with_error(value, sd);
         format!("{value} ± {sd}")
     };
     let stiffness = both(1e-9 * k, 1e-9 * k_sd);
     match &contact.combination {
+        None if !contact.is_known() => ["–".to_owned(), "–".to_owned(), either(contact)],
         None => [stiffness, both(1e9 * a, 1e9 * a_sd), others(contact)],
         Some(combination) => [
             stiffness,
@@ -72,18 +85,22 @@ fn shown(contact: &Contact) -> [String; 3] {
     }
 }
 
+/// K in GN/m^1.5 and A in ns.
+fn pair(ln: &[f64; 2]) -> String {
+    let (k, a) = (digits(1e-9 * ln[0].exp(), 4), digits(1e9 * ln[1].exp(), 4));
+    format!("{k}, {a}")
+}
+
 /// Other pairs that fit as well.
 fn others(contact: &Contact) -> String {
-    let pair = |ln: &[f64; 2]| {
-        let (k, a) = (digits(1e-9 * ln[0].exp(), 4), digits(1e9 * ln[1].exp(), 4));
-        format!("or {k}, {a}")
-    };
-    contact
-        .others
-        .iter()
-        .map(pair)
-        .collect::<Vec<_>>()
-        .join(" ")
+    let or = |ln: &[f64; 2]| format!("or {}", pair(ln));
+    contact.others.iter().map(or).collect::<Vec<_>>().join(" ")
+}
+
+/// All pairs, none before the others.
+fn either(contact: &Contact) -> String {
+    let pairs: Vec<String> = contact.pairs().iter().map(pair).collect();
+    format!("one of {}", pairs.join(" or "))
 }
 
 fn contacts(gauged: &Gauged) -> String {

@@ -21,6 +21,15 @@ pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String 
     for case in &curves.cases {
         text += &curve(case);
     }
+    for lost in &curves.lost {
+        text += &format!(
+            "{} at {} m/s: none of {} shot{} has a time of flight that counts\n",
+            named(&lost.case),
+            format::digits(lost.speed_m_s, 4),
+            lost.shots,
+            if lost.shots == 1 { "" } else { "s" }
+        );
+    }
     for wet in &curves.ratios {
         text += &format!(
             "\n{}\n",
@@ -32,7 +41,7 @@ pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String 
             text += &format!("  incident at {speed} m/s: {value} ± {error}\n");
         }
     }
-    if !measured.shots.is_empty() && curves.cases.is_empty() {
+    if !measured.shots.is_empty() && curves.cases.is_empty() && curves.lost.is_empty() {
         text += "No speeds are known: give --shots for curves.\n";
     }
     text
@@ -43,7 +52,7 @@ fn counted(measured: &Measurement) -> String {
     let flagged = measured
         .shots
         .iter()
-        .filter(|shot| !shot.remarks().is_empty());
+        .filter(|shot| !shot.flags().is_empty());
     let all = measured.shots.len() + measured.refused.len();
     format!(
         "{all} record{}, {} with times of flight, {} flagged, {} refused",
@@ -136,18 +145,19 @@ fn curve(case: &Case) -> String {
         ]
     });
     let rows: Vec<Vec<String>> = rows.collect();
+    let speeds_known = case.rows.iter().all(|row| row.speed_m_s.sigma > 0.0);
     format!(
         "\n{}\n{}{}{}",
         heading(named(&case.name)),
         format::table(&head.map(str::to_owned), &rows),
-        law("incident", &case.laws.incident),
-        law("reflected", &case.laws.reflected)
+        law("incident", &case.laws.incident, speeds_known),
+        law("reflected", &case.laws.reflected, speeds_known)
     )
 }
 
 /// A fit, judged; too few speeds for one are plain to see. Errors are widened to
 /// the points' scatter where that is larger.
-fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
+fn law(name: &str, law: &Result<PowerLaw, FitError>, speeds_known: bool) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;
@@ -162,7 +172,7 @@ fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
     match law.exponent_error.is_finite() {
         true => format!(
             "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
-            judgement(law)
+            judgement(law, speeds_known)
         ),
         false => {
             format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
@@ -171,9 +181,12 @@ fn law(name: &str, law: &Result<PowerLaw, FitError>) -> String {
 }
 
 /// Whether the points follow the law within their errors.
-fn judgement(law: &PowerLaw) -> String {
+fn judgement(law: &PowerLaw, speeds_known: bool) -> String {
     let Some(judged) = &law.chi_square else {
-        return String::new();
+        return match law.residuals.len() {
+            2 => ", from two speeds, which cannot test it".to_owned(),
+            _ => String::new(),
+        };
     };
     let squares = format!(
         ", chi-square {} of {}, probability {}",
@@ -181,11 +194,19 @@ fn judgement(law: &PowerLaw) -> String {
         judged.freedom,
         format::digits(judged.probability, 2)
     );
-    match law.is_supported() {
-        Some(false) => format!(
-            "{squares}: NOT a power law within the errors; those given here are widened {} times, to the scatter about it",
-            format::digits(law.excess(), 2)
+    if law.is_supported() != Some(false) {
+        return squares;
+    }
+    let widened = format!(
+        "those given here are widened {} times, to the scatter about it",
+        format::digits(law.excess(), 2)
+    );
+    match speeds_known {
+        true => format!("{squares}: NOT a power law within the errors; {widened}"),
+        false => format!(
+            "{squares}: not a power law within the errors of times alone; those of speeds are \
+             not known and were taken for 0 (the column `speed error` of the table of --shots, or \
+             --speed-error, tells them), so this judges nothing; {widened}"
         ),
-        _ => squares,
     }
 }
