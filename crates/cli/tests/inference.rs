@@ -346,8 +346,10 @@ fn a_design_ranks_what_to_measure() {
     let now = found["standard_errors_now"][0].as_f64().unwrap();
     let ranked = found["ranked"].as_array().unwrap();
     assert!(ranked.len() > 30);
+    let nats = |one: &Value| one["information_nats"].as_f64().unwrap();
     for pair in ranked.windows(2) {
-        assert!(pair[0]["information_nats"].as_f64() >= pair[1]["information_nats"].as_f64());
+        // What differs by less than a thousandth ranks by cost.
+        assert!(nats(&pair[0]) + 1e-3 >= nats(&pair[1]));
     }
     assert!(ranked[0]["standard_errors"][0].as_f64().unwrap() < now);
     let message = refused(&with_errors(&[

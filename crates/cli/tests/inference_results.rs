@@ -264,7 +264,11 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     let (titles, pairs) = table(&gauged, "contacts.csv");
     let taken = titles.iter().position(|title| title == "taken").unwrap();
     let taken: Vec<_> = pairs.iter().filter(|line| line[taken] == "true").collect();
-    for (line, row) in taken.iter().zip(found["contacts"].as_array().unwrap()) {
+    let rows = found["contacts"].as_array().unwrap().iter();
+    // Where the branch is not known no pair stands before the others.
+    let known: Vec<&Value> = rows.filter(|row| row["branch"] != "unknown").collect();
+    assert_eq!(taken.len(), known.len());
+    for (line, row) in taken.iter().zip(known) {
         assert_eq!(
             line[2].parse::<f64>().ok(),
             row["stiffness"]["value"].as_f64()
@@ -278,7 +282,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     let others: usize = others
         .map(|row| row["others"].as_array().unwrap().len())
         .sum();
-    assert_eq!((taken.len(), pairs.len() - taken.len()), (6, others));
+    assert_eq!(pairs.len(), 6 + others);
     let (_, summary) = table(&gauged, "summary.csv");
     assert_eq!(Some(summary[0][1].as_str()), found["verdict"].as_str());
 
