@@ -546,4 +546,19 @@ fn whole_pulses_of_a_campaign_give_back_what_its_rig_was_made_of() {
     ]);
     assert!(message.contains("no record is left"), "{message}");
     assert!(message.contains("was the sensor connected"), "{message}");
+    let untitled = file(&folder, "untitled.csv", "0.5,7e-4,1e-7\n0.6,6.8e-4,1e-7\n");
+    let message = refused(&[
+        "fit",
+        &untitled,
+        "-m",
+        &rig,
+        "--case",
+        "dry",
+        "--free",
+        "steel.eta",
+    ]);
+    assert!(
+        message.contains("names its columns, speed_m_s"),
+        "{message}"
+    );
 }

@@ -71,7 +71,10 @@ fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {
         .take(TOLD)
         .map(|r| format!("\n  {r}"))
         .collect();
-    Failure::User(format!("{error}{}", lines.concat()))
+    Failure::User(format!(
+        "{error}{}\n(A table of curves, which is no record, begins with a line that names its columns, speed_m_s among them.)",
+        lines.concat()
+    ))
 }
 
 /// Every record that can be fitted, and why others can't.
