@@ -53,6 +53,7 @@ pub(super) struct Scaled<N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
+    /// Of lanes that step so.
     pub fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
         let none = [N::default(); W];
         let (mut velocity, mut position) = ([none; USED], [none; USED]);

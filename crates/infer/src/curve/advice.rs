@@ -8,8 +8,8 @@ use super::problem::CurveProblem;
 use crate::data::{Data, Observable};
 use crate::free::Form;
 use crate::identify::{Determined, Scaled, sized};
-use crate::least_squares::{JUMPING, Merit, jacobian};
-use crate::{Fit, Loss, ModelError, Parameter, Prior, Problem};
+use crate::least_squares::{JUMPING, jacobian_at};
+use crate::{Fit, ModelError, Parameter, Prior, Problem};
 use hertzchain_signal::Estimate;
 
 /// What could be done where data leave combinations of the parameters open.
@@ -254,13 +254,7 @@ impl CurveProblem {
         let sized = sized(self.parameters(), &fit.point).into_iter();
         let parameters: Vec<Parameter> = sized.map(flat).collect();
         let problem = Self::part(model.for_slopes(), data).with_parameters(parameters);
-        let merit = Merit::new(&problem, Loss::Squares);
-        let found = problem
-            .residuals(std::slice::from_ref(&fit.point))
-            .remove(0);
-        let at = merit.value(&fit.point, &found)?;
-        let here = (fit.point.as_slice(), &at);
-        let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
+        let jacobian = jacobian_at(&problem, fit)?;
         Ok(Scaled::doubting(problem.parameters(), &jacobian, JUMPING))
     }
 

@@ -4,9 +4,9 @@ use super::model::{Model, Speeds};
 use super::problem::CurveProblem;
 use crate::data::{Data, DataRow, Freedom, Observable};
 use crate::free::Form;
-use crate::least_squares::{JUMPING, Merit, jacobian};
+use crate::least_squares::{JUMPING, jacobian_at};
 use crate::linear::norm;
-use crate::{Candidate, Fit, Loss, ModelError, Problem};
+use crate::{Candidate, Fit, ModelError};
 use hertzchain_experiment::reading::PreloadReading;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_signal::Estimate;
@@ -271,13 +271,7 @@ fn of_way(
 ) -> Result<Vec<Candidate>, ModelError> {
     let data = expected(&model, fit, way, speeds_m_s, errors)?;
     let problem = CurveProblem::part(model.for_slopes(), data);
-    let merit = Merit::new(&problem, Loss::Squares);
-    let found = problem
-        .residuals(std::slice::from_ref(&fit.point))
-        .remove(0);
-    let at = merit.value(&fit.point, &found)?;
-    let here = (fit.point.as_slice(), &at);
-    let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
+    let jacobian = jacobian_at(&problem, fit)?;
     let measured = problem.measured();
     let candidate = |(row, speed): (usize, &f64)| {
         let own = measured.iter().enumerate();

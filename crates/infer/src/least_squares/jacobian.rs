@@ -1,5 +1,7 @@
 //! Derivatives at the optimum, checked.
 
+use super::fit::Fit;
+use super::loss::Loss;
 use super::merit::{Merit, Valued};
 use super::slopes::{Slopes, Stencil, slopes};
 use crate::linear::norm;
@@ -43,6 +45,18 @@ impl Jacobian {
     pub fn worst_disagreement(&self) -> f64 {
         self.disagreement.iter().copied().fold(0.0, f64::max)
     }
+}
+
+/// Derivatives of another problem with the same parameters where a fit ended, with its steps.
+pub(crate) fn jacobian_at(problem: &dyn Problem, fit: &Fit) -> Result<Jacobian, ModelError> {
+    let merit = Merit::new(problem, Loss::Squares);
+    let found = problem
+        .residuals(std::slice::from_ref(&fit.point))
+        .remove(0);
+    let at = merit.value(&fit.point, &found)?;
+    let here = (fit.point.as_slice(), &at);
+    let (jacobian, _) = jacobian(&merit, here, &fit.jacobian.steps, &[])?;
+    Ok(jacobian)
 }
 
 /// Derivatives by steps and by doubled steps, in one call of the model; `known` are the

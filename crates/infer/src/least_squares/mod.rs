@@ -20,6 +20,6 @@ pub use loss::Loss;
 pub(crate) use descent::Descent;
 pub(crate) use drive::drive;
 pub(crate) use fit::check;
-pub(crate) use jacobian::{EXTRAPOLATED, JUMPING, ROUNDING, jacobian};
+pub(crate) use jacobian::{EXTRAPOLATED, JUMPING, ROUNDING, jacobian_at};
 pub(crate) use merit::Merit;
 pub(crate) use slopes::Slopes;
