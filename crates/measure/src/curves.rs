@@ -1,7 +1,7 @@
 //! Shots into curves: means a speed, ratios, power laws.
 
 use crate::Shot;
-use crate::lost::{Lost, lost};
+use crate::lost::{At, Lost, lost};
 use hertzchain_signal::{
     Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
     power_law_both_errors, ratios_at_common, shared, summary,
@@ -37,7 +37,8 @@ pub struct SpeedRow {
     pub speed_m_s: Estimate,
     /// Shots from whose scatter that error comes; 0 if it is that of measuring, and known.
     pub speed_error_shots: usize,
-    /// Shots that count, and shots that do not.
+    /// Shots that count, and shots of this speed that do not: doubtful ones, and those without a time
+    /// or a speed of their own.
     pub shots: (usize, usize),
     /// Incident time of flight in s.
     pub incident_s: Summary,
@@ -129,27 +130,42 @@ impl Curves {
 
 /// A shot that has speed and time.
 struct Timed<'a> {
+    at: At,
     speed: Estimate,
     programmed: Option<f64>,
     flight: &'a Flight,
     counts: bool,
 }
 
+impl<'a> Timed<'a> {
+    fn of(shot: &'a Shot, grouping: &Grouping) -> Option<Self> {
+        Some(Self {
+            at: At::of(shot)?,
+            speed: shot.true_speed()?,
+            programmed: shot.programmed_speed_m_s,
+            flight: shot.flight.as_ref().ok()?,
+            counts: grouping.keep_dubious || !shot.is_dubious(),
+        })
+    }
+}
+
 impl Case {
     fn of(name: &str, shots: &[Shot], grouping: &Grouping) -> Self {
-        let timed = shots.iter().filter(|shot| shot.case == name);
-        let timed: Vec<Timed<'_>> = timed
-            .filter_map(|shot| {
-                Some(Timed {
-                    speed: shot.speed_m_s.filter(|speed| speed.value > 0.0)?,
-                    programmed: shot.programmed_speed_m_s,
-                    flight: shot.flight.as_ref().ok()?,
-                    counts: grouping.keep_dubious || !shot.is_dubious(),
-                })
-            })
-            .collect();
-        let groups = grouped(&timed, grouping.gap_m_s);
-        let mut rows: Vec<SpeedRow> = groups.iter().filter_map(|group| row(group)).collect();
+        let own: Vec<&Shot> = shots.iter().filter(|shot| shot.case == name).collect();
+        let untimed = own
+            .iter()
+            .filter(|shot| Timed::of(shot, grouping).is_none());
+        let untimed: Vec<At> = untimed.filter_map(|shot| At::of(shot)).collect();
+        let timed = own.iter().filter_map(|shot| Timed::of(shot, grouping));
+        let timed: Vec<Timed<'_>> = timed.collect();
+        let gap_m_s = grouping.gap_m_s;
+        let rows = grouped(&timed, gap_m_s).into_iter().filter_map(|group| {
+            let of_this = |at: &&At| group.iter().any(|timed| timed.at.is_like(at, gap_m_s));
+            let mut row = row(&group)?;
+            row.shots.1 += untimed.iter().filter(of_this).count();
+            Some(row)
+        });
+        let mut rows: Vec<SpeedRow> = rows.collect();
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
         Self {
             name: name.to_owned(),

@@ -15,15 +15,16 @@ pub struct Lost {
 
 /// Where a shot belongs.
 #[derive(Clone, Copy)]
-struct At {
+pub(crate) struct At {
     programmed_m_s: Option<f64>,
     speed_m_s: f64,
 }
 
 impl At {
-    fn of(shot: &Shot) -> Option<Self> {
+    pub(crate) fn of(shot: &Shot) -> Option<Self> {
         let programmed_m_s = shot.programmed_speed_m_s;
-        let speed_m_s = shot.speed_m_s.map(|speed| speed.value).or(programmed_m_s)?;
+        let speed_m_s = shot.true_speed().map(|speed| speed.value);
+        let speed_m_s = speed_m_s.or(programmed_m_s)?;
         Some(Self {
             programmed_m_s,
             speed_m_s: programmed_m_s.unwrap_or(speed_m_s),
@@ -31,7 +32,7 @@ impl At {
     }
 
     /// Whether both are of one speed, as shots are grouped.
-    fn is_like(&self, other: &Self, gap_m_s: f64) -> bool {
+    pub(crate) fn is_like(&self, other: &Self, gap_m_s: f64) -> bool {
         let gap_m_s = match (self.programmed_m_s, other.programmed_m_s) {
             (Some(_), Some(_)) => 0.0,
             (None, None) => gap_m_s,
@@ -45,7 +46,7 @@ impl At {
 pub(crate) fn lost(case: &str, shots: &[Shot], grouping: &Grouping) -> Vec<Lost> {
     let counts = |shot: &Shot| {
         shot.flight.is_ok()
-            && shot.speed_m_s.is_some()
+            && shot.true_speed().is_some()
             && (grouping.keep_dubious || !shot.is_dubious())
     };
     let of_case = shots.iter().filter(|shot| shot.case == case);

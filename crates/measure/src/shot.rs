@@ -122,9 +122,19 @@ impl Shot {
         self.holds_several || self.gap_in_pulse || self.doubts.iter().any(Doubt::is_grave)
     }
 
+    /// Its speed, if that is one: a photogate with a large error may tell speeds below zero.
+    pub(crate) fn true_speed(&self) -> Option<Estimate> {
+        self.speed_m_s.filter(|speed| speed.value > 0.0)
+    }
+
     /// What is doubtful, as it is told to people.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
+        let none = self.speed_m_s.filter(|_| self.true_speed().is_none());
+        let none = none.map(|speed| {
+            let speed = speed.value;
+            format!("a measured speed of {speed:.4} m/s is none: left out of curves")
+        });
         let several = "several shots: cut the recording with --level or --shot-samples";
         let several = self.holds_several.then(|| several.to_owned());
         let untriggered =
@@ -143,7 +153,11 @@ impl Shot {
             )
         });
         let doubts = self.doubts.iter().map(ToString::to_string);
-        let of_record = several.into_iter().chain(untriggered).chain(gaps);
+        let of_record = none
+            .into_iter()
+            .chain(several)
+            .chain(untriggered)
+            .chain(gaps);
         of_record.chain(doubts).collect()
     }
 

@@ -5,7 +5,7 @@ use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
 };
-use hertzchain_signal::{Doubt, Flight, Measuring, alone};
+use hertzchain_signal::{Doubt, Flight, Measuring, SignalError, alone};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -169,6 +169,23 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
         Curves::of(&measured.shots, &keep).cases[0].rows[0].shots.0,
         5
     );
+}
+
+#[test]
+fn shots_without_a_time_or_a_speed_of_their_own_are_counted_as_left_out_of_their_speed() {
+    let folder = folder("left-out");
+    let mut shots = measured(&[series(&folder, "dry", 0.5, 9000.0)]).shots;
+    // What a photogate with a large error may tell.
+    shots[0].speed_m_s.as_mut().unwrap().value = -0.1;
+    shots[1].flight = Err(SignalError::TooShort {
+        found: 3,
+        needed: 30,
+    });
+    let curves = Curves::of(&shots, &Grouping::default());
+    assert_eq!(curves.cases[0].rows[0].shots, (3, 2));
+    assert!(curves.lost.is_empty());
+    let flags = shots[0].flags();
+    assert!(flags.contains("speed of -0.1000 m/s is none"), "{flags}");
 }
 
 #[test]

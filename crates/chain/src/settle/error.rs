@@ -44,7 +44,7 @@ pub enum SettleError {
     InState,
     /// Time is over.
     #[error(
-        "not at rest after {time_s} s: body {body} (0 is the striker) still moves at {speed_m_s:.2e} m/s. \
+        "not at rest after {time_s:.3} s: body {body} (0 is the striker) still moves at {speed_m_s:.2e} m/s. \
          Allow more time, or look at friction: a coefficient of 0 stops nothing, and on an incline \
          a bead slides where the coefficient is below the tangent of the angle"
     )]

@@ -45,7 +45,11 @@ fn judge(done: &Done) -> Result<(), Failure> {
     match done.failed.len() {
         0 => Ok(()),
         n => Err(Failure::User(format!(
-            "{n} series can't be computed; the others are finished"
+            "{n} series can't be computed{}",
+            match done.run + done.kept {
+                0 => "",
+                _ => "; the others are finished",
+            }
         ))),
     }
 }

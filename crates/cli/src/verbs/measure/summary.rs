@@ -115,11 +115,13 @@ fn curve(case: &Case) -> String {
         "wall/passing",
         "returning/passing",
     ];
-    let mean = |summary: Option<Summary>| {
+    // With what all shots share, which no scatter shows; one shot's own error holds it.
+    let mean = |summary: Option<Summary>, shared_s: f64| {
         summary.map_or(String::new(), |s| {
+            let shared_s = if s.count > 1 { shared_s } else { 0.0 };
             micro(Estimate {
                 value: s.mean,
-                sigma: s.error,
+                sigma: s.error.hypot(shared_s),
             })
         })
     };
@@ -134,11 +136,11 @@ fn curve(case: &Case) -> String {
             format::digits(row.speed_m_s.value, 4),
             match row.shots.1 {
                 0 => row.shots.0.to_string(),
-                out => format!("{} (+{out} doubtful)", row.shots.0),
+                out => format!("{} (+{out} left out)", row.shots.0),
             },
-            mean(Some(row.incident_s)),
+            mean(Some(row.incident_s), row.shared_s[0]),
             deviation(Some(row.incident_s)),
-            mean(row.reflected_s),
+            mean(row.reflected_s, row.shared_s[1]),
             deviation(row.reflected_s),
             share(Some(row.wall_over_passing)),
             share(row.returning_over_passing),
