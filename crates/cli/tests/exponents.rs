@@ -1,6 +1,6 @@
 //! An exponent of a law, on which the unit of its stiffness depends, freed or set alone.
 
-use crate::inference::{curve, file, folder, json, run, with_errors};
+use crate::common::{curve, file, folder, json, run, with_errors};
 
 const EXPONENT: &str = "contacts[1].laws.elastic_power.exponent";
 

@@ -137,6 +137,9 @@ fn correlations(fitted: &Inferred) -> String {
 
 /// Chi-square, runs and the worst residual.
 fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
+    if goodness.chi_square.is_none() {
+        return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
+    }
     let mut text = chi_square_text(goodness);
     if let Some(runs) = goodness.runs {
         text += &format!(
