@@ -56,7 +56,7 @@ fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more(
     let folder = folder("design-unfit");
     let data = curve(&folder, "dry");
     let ranked = |eta: &str| {
-        let eta = format!("shear_viscosity={eta}");
+        let eta = format!("shear_viscosity={eta} Pa s");
         let design = [
             "design", &data, "-p", "dry", "--free", "B", "--speeds", "0.5",
         ];
