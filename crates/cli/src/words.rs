@@ -1,7 +1,7 @@
 //! Numbers of inference in words.
 
 use crate::format::{digits, with_error};
-use hertzchain_infer::{Ending, Goodness, Parameter};
+use hertzchain_infer::{Ending, Goodness, Jacobian, Parameter};
 use hertzchain_signal::ChiSquare;
 
 /// A value and its standard error, with the unit of its parameter: both over a
@@ -56,6 +56,23 @@ pub fn misfit(goodness: &Goodness) -> Option<String> {
     ))
 }
 
+/// Disagreement of derivatives by two step sizes from which they are doubtful. Between steps
+/// that a smooth curve suits it is far below one percent; the extrapolated derivatives are
+/// usually some ten times better than it, but not where curves jump.
+const ROUGH: f64 = 0.05;
+
+/// That derivatives are doubtful, if they are: by which parameter, and what to do.
+pub fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<String> {
+    let (at, share) = jacobian.least_agreeing()?;
+    let name = parameters.get(at).filter(|_| share > ROUGH)?.name.as_str();
+    Some(format!(
+        "derivatives by {name} differ by {} between two step sizes, as where curves jump: standard errors by the \
+         covariance, and what is said to be determined, may be wrong. Take intervals that need no derivatives \
+         (--method profile), or smoother curves (a smaller --accuracy)",
+        percent(share)
+    ))
+}
+
 /// A share in percent.
 pub fn percent(share: f64) -> String {
     match share {
@@ -82,8 +99,29 @@ pub fn doubt(ending: &Ending) -> Option<String> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {
+        let free = ["wet.K at 0.31 m/s", "wet.A at 0.31 m/s"].map(|n| Parameter::new(n, "", 1.0));
+        let with = |disagreement: Vec<f64>| Jacobian {
+            columns: vec![vec![1.0]; 2],
+            data_rows: 1,
+            steps: vec![1e-3; 2],
+            disagreement,
+        };
+        let told = rough(&free, &with(vec![0.02, 0.43])).unwrap();
+        for word in [
+            "wet.A at 0.31 m/s differ by 43 %",
+            "--method profile",
+            "--accuracy",
+        ] {
+            assert!(told.contains(word), "{told}");
+        }
+        assert_eq!(rough(&free, &with(vec![0.04, 1e-6])), None);
+    }
 
     #[test]
     fn a_value_that_its_error_dwarfs_is_shown_in_the_errors_size() {

@@ -2,11 +2,11 @@
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{combine, dot, norm, svd};
-use crate::{Fit, Loss, Parameter};
+use crate::{Fit, Loss, Parameter, robust};
 
 /// Covariance of the parameters at the optimum, (JᵀJ)⁻¹ with the priors' rows in
 /// J: right where residuals are linear in the parameters over a few standard
-/// errors.
+/// errors. Of a robust loss see [`Covariance::loss_factor`].
 ///
 /// Parameters held by a bound are left out, as if they were known.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +20,8 @@ pub struct Covariance {
     pub held: Vec<usize>,
     /// Directions in which the Jacobian is zero as far as its own error tells.
     pub unresolved: Vec<Vec<f64>>,
-    /// What a robust loss multiplies the covariance by: mean ψ²/(mean ψ′)²
-    /// [Huber1964]; 1 for least squares.
+    /// What a robust loss multiplies the data's share of the covariance by, the
+    /// priors' staying as it is; 1 for least squares. See `robust.rs` for the equation.
     pub loss_factor: f64,
     /// Resolved directions, each as long as its standard error: the matrix is
     /// the sum of their dyads.
@@ -37,14 +37,18 @@ impl Covariance {
     pub fn new(parameters: &[Parameter], fit: &Fit) -> Self {
         let count = parameters.len();
         let (held, loose): (Vec<usize>, Vec<usize>) = (0..count).partition(|k| fit.is_bound(*k));
-        let columns = &fit.jacobian.columns;
+        let curvature = robust::curvature(fit);
+        let data = fit.jacobian.data_rows;
+        let columns = data_times(curvature.sqrt(), &fit.jacobian.columns, data);
         let lengths: Vec<f64> = loose.iter().map(|k| norm(&columns[*k])).collect();
         let unit: Vec<Vec<f64>> = (loose.iter().zip(&lengths))
             .map(|(k, length)| columns[*k].iter().map(|x| x / length).collect())
             .collect();
         let found = svd(&unit);
         let least = ROUNDING.max(EXTRAPOLATED * fit.jacobian.worst_disagreement());
-        let factor = loss_factor(fit.loss, &fit.residuals);
+        let resolved = found.values.iter().take_while(|v| **v > least).count();
+        let left = &found.left[..resolved];
+        let factor = robust::factor(fit, left);
         // Directions of unit columns in the parameters' own units.
         let own = |direction: &[f64], size: f64| {
             let mut all = vec![0.0; count];
@@ -54,10 +58,20 @@ impl Covariance {
             all
         };
         let directions = || found.values.iter().zip(&found.right);
-        let axes = directions().filter(|(value, _)| **value > least);
-        let axes = axes
-            .map(|(value, v)| own(v, factor.sqrt() / value))
-            .collect();
+        let axis = |shares: &Vec<f64>| {
+            let sizes: Vec<f64> = (shares.iter().zip(&found.values))
+                .map(|(share, value)| share / value)
+                .collect();
+            own(&combine(&found.right[..resolved], &sizes), 1.0)
+        };
+        let axes = match fit.loss {
+            Loss::Squares => (directions().take(resolved))
+                .map(|(value, v)| own(v, value.recip()))
+                .collect(),
+            _ => (scatter(left, data, factor * curvature).iter())
+                .map(axis)
+                .collect(),
+        };
         let flat = directions().filter(|(value, _)| **value <= least);
         let unresolved: Vec<Vec<f64>> = flat.map(|(_, v)| own(v, 1.0)).collect();
         let share = |direction: &[f64], k: usize| (direction[k] * norm(&columns[k])).abs();
@@ -115,13 +129,21 @@ impl Covariance {
     }
 }
 
-fn loss_factor(loss: Loss, residuals: &[f64]) -> f64 {
-    if loss == Loss::Squares || residuals.is_empty() {
-        return 1.0;
-    }
-    let n = residuals.len() as f64;
-    let influences = || residuals.iter().map(|r| loss.influence(*r));
-    let square = influences().map(|(psi, _)| psi * psi).sum::<f64>() / n;
-    let slope = influences().map(|(_, slope)| slope).sum::<f64>() / n;
-    square / (slope * slope)
+/// Columns with the data's rows, but not the priors', times a factor.
+fn data_times(factor: f64, columns: &[Vec<f64>], data: usize) -> Vec<Vec<f64>> {
+    let one = |column: &Vec<f64>| {
+        let rows = column.iter().enumerate();
+        rows.map(|(i, x)| if i < data { factor * x } else { *x })
+            .collect()
+    };
+    columns.iter().map(one).collect()
+}
+
+/// How the coordinates along the left singular vectors U scatter where data's rows have a
+/// variance and priors' rows have 1: vectors whose dyads sum to Uᵀ D U.
+fn scatter(left: &[Vec<f64>], data: usize, variance: f64) -> Vec<Vec<f64>> {
+    let found = svd(&data_times(variance.sqrt(), left, data));
+    let pairs = found.values.iter().zip(&found.right);
+    let axis = |(value, v): (&f64, &Vec<f64>)| v.iter().map(|x| value * x).collect();
+    pairs.map(axis).collect()
 }

@@ -21,6 +21,7 @@ mod parameter;
 mod problem;
 mod profile;
 mod pulses;
+mod robust;
 mod sampler;
 
 pub use batch::{Batch, Compute, Outcomes, Spread};

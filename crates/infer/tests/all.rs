@@ -15,6 +15,7 @@ mod nonlinear;
 mod peers;
 mod posterior;
 mod pulses;
+mod robust;
 mod round_trip;
 mod shots;
 mod surrogate;

@@ -138,6 +138,13 @@ impl Fit {
         self.starts.iter().filter(agrees).count()
     }
 
+    /// How many residuals are farther out than where the loss stops being a square.
+    #[must_use]
+    pub fn beyond_loss(&self) -> usize {
+        let beyond = |r: &&f64| self.loss != Loss::Squares && r.abs() > self.loss.scale();
+        self.residuals.iter().filter(beyond).count()
+    }
+
     /// Whether a parameter is held by a bound.
     #[must_use]
     pub fn is_bound(&self, parameter: usize) -> bool {

@@ -40,6 +40,14 @@ pub struct Jacobian {
 }
 
 impl Jacobian {
+    /// The parameter on whose derivatives both step sizes agree least, and by which share
+    /// they differ.
+    #[must_use]
+    pub fn least_agreeing(&self) -> Option<(usize, f64)> {
+        let numbered = self.disagreement.iter().copied().enumerate();
+        numbered.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Largest disagreement of any parameter.
     #[must_use]
     pub fn worst_disagreement(&self) -> f64 {

@@ -44,7 +44,20 @@ pub(crate) struct Cost {
 const LEAST_CURVATURE: f64 = 0.1;
 
 impl Loss {
-    pub(crate) fn scale(self) -> f64 {
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Squares => "squares",
+            Self::SoftL1 { .. } => "soft L1",
+            Self::Huber { .. } => "Huber",
+            Self::Cauchy { .. } => "Cauchy",
+        }
+    }
+
+    /// Where it turns, in standard deviations; 1 for squares, which turn nowhere.
+    #[must_use]
+    pub const fn scale(self) -> f64 {
         match self {
             Self::Squares => 1.0,
             Self::SoftL1 { scale } | Self::Huber { scale } | Self::Cauchy { scale } => scale,

@@ -62,6 +62,10 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         "free": arguments.freed.free,
         "seed": arguments.seed,
         "robust": arguments.robust,
+        "robust_loss": arguments.robust.then(|| json!({
+            "name": fit.loss.name(), "scale": fit.loss.scale(), "residuals_beyond": fit.beyond_loss(),
+            "covariance_factor": fitted.covariance.loss_factor,
+        })),
         "parameters": parameters(fitted),
         "covariance": fitted.covariance.matrix,
         "correlation": correlations(fitted),

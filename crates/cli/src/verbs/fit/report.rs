@@ -2,9 +2,9 @@
 
 use crate::format::{self, digits};
 use crate::print::heading;
-use crate::words::{chi_square_text, doubt, estimate, misfit, percent};
+use crate::words::{chi_square_text, doubt, estimate, misfit, percent, rough};
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Observable, Parameter, Problem, Profile,
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Problem, Profile,
 };
 use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 use hertzchain_verbs::inference::widened;
@@ -53,7 +53,27 @@ fn unit(fitted: &Fitted) -> String {
 
 /// Correlations and how well the data are described.
 pub fn described(fitted: &Inferred, problem: &dyn Problem) -> String {
-    correlations(fitted) + &goodness(&fitted.goodness, problem) + &derivatives(fitted)
+    correlations(fitted)
+        + &goodness(&fitted.goodness, problem)
+        + &robust(fitted)
+        + &derivatives(fitted)
+}
+
+/// Which loss was robust, and what it makes of the errors.
+fn robust(fitted: &Inferred) -> String {
+    let loss = fitted.fit.loss;
+    if loss == Loss::Squares {
+        return String::new();
+    }
+    format!(
+        "Robust loss ({}): {} of {} residuals, those beyond {} standard errors, count by their size; \
+         the covariance is {} times that of least squares, but for what priors say\n",
+        loss.name(),
+        fitted.fit.beyond_loss(),
+        fitted.fit.residuals.len(),
+        loss.scale(),
+        digits(fitted.covariance.loss_factor, 3)
+    )
 }
 
 /// How far derivatives by two step sizes agree.
@@ -69,6 +89,8 @@ fn derivatives(fitted: &Inferred) -> String {
 pub fn beware(fitted: &Inferred) -> String {
     let doubt = doubt(&fitted.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
+    text += &rough.map_or(String::new(), |told| format!("Beware: {told}.\n"));
     text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("Beware: {told}.\n"));
     if let Err(why) = &fitted.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
@@ -137,6 +159,9 @@ fn correlations(fitted: &Inferred) -> String {
 
 /// Chi-square, runs and the worst residual.
 fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
+    if goodness.chi_square.is_none() {
+        return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
+    }
     let mut text = chi_square_text(goodness);
     if let Some(runs) = goodness.runs {
         text += &format!(
