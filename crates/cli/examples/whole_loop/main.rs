@@ -29,7 +29,7 @@ const COMPACT: [(&str, &str); 7] = [
 /// Seeds, that is shots a speed.
 const SEEDS: u64 = 20;
 /// Ends of the ranges of speed that coverage is told for, in m/s.
-const RANGES_M_S: [(f64, f64); 4] = [(0.0, 0.2), (0.2, 0.5), (0.5, 2.5), (0.0, 2.5)];
+const RANGES_M_S: [(f64, f64); 5] = [(0.0, 0.09), (0.0, 0.2), (0.2, 0.5), (0.5, 2.5), (0.0, 2.5)];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let own = std::env::temp_dir().join(format!("hertzchain-loop-{}", std::process::id()));

@@ -150,12 +150,20 @@ pub struct Pulse {
 /// From so many times as slow a fall as rise on, at half the height, a pulse trails: those of
 /// dry chains have 0.9 to 1.2.
 const TRAILS: f64 = 2.0;
+/// From so many times on it begins to.
+const BEGINS: f64 = 1.2;
 
 impl Pulse {
     /// Whether it falls so much more slowly than it rises that its top is flat.
     #[must_use]
     pub fn trails(&self) -> bool {
         self.sides_samples.1 > TRAILS * self.sides_samples.0
+    }
+
+    /// How near it comes to that: 0 for a fall like those of dry chains, 1 for one that trails.
+    pub(crate) fn trailing(&self) -> f64 {
+        let (rise, fall) = self.sides_samples;
+        ((fall / rise - BEGINS) / (TRAILS - BEGINS)).clamp(0.0, 1.0)
     }
 
     /// Whether a sample is clipped, or next to one that is: recorders round the corner.
