@@ -104,7 +104,7 @@ fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Moved; 2]>) {
             value: flight.incident_s.value - truth_s,
             ..flight.incident_s
         };
-        (error, flight.picks.moved()[0])
+        (error, flight.moved()[0])
     };
     (0..shots).map(shot).unzip()
 }
