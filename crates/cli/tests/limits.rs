@@ -1,6 +1,6 @@
 //! Parameters at bounds: a limit on the other side in place of a standard error.
 
-use crate::inference::{curve, folder, json, run, with_errors};
+use crate::common::{curve, folder, json, run, with_errors};
 
 #[test]
 fn a_parameter_at_its_bound_has_a_limit_by_profile_and_no_standard_error() {
@@ -20,6 +20,9 @@ fn a_parameter_at_its_bound_has_a_limit_by_profile_and_no_standard_error() {
     let free = json(&with_errors(
         &[&fit[..6], &["--start", "B=90", "--json"]].concat(),
     ));
+    // Twelve numbers, and what a bound holds is not fitted.
+    let freedom = |of: &serde_json::Value| of["chi_square"]["freedom"].as_u64().unwrap();
+    assert_eq!((freedom(&found), freedom(&free)), (11, 10));
     let sd = free["parameters"][1]["standard_error"].as_f64().unwrap();
     let best = free["parameters"][1]["value"].as_f64().unwrap();
     for (limit, rise) in limits.into_iter().zip([1.0, 3.841_459]) {

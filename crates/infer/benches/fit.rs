@@ -90,6 +90,48 @@ fn likelihoods_of_the_surrogate(bencher: Bencher<'_, '_>) {
     likelihoods(bencher, &found, &best, &covariance.sd);
 }
 
+/// Numbers of the pump oil: five of its laws, and with three of the dry contacts eight.
+const MANY: [&str; 6] = [
+    "pump-oil.Y",
+    "pump-oil.nu:power",
+    "pump-oil.eta:power",
+    "aisi316.Y",
+    "aisi316.eta",
+    "dry.B",
+];
+
+fn pump(count: usize) -> CurveProblem {
+    // Laws have two numbers each.
+    let free = &MANY[..count - 2];
+    let experiment = preset("pump").unwrap();
+    let truth = Truth::of(&experiment, &speeds_m_s(25));
+    problem(&model(&experiment, free), truth.measured(1))
+}
+
+/// Polynomials of many numbers, by two threads.
+#[divan::bench(args = [5, 8], sample_count = 1)]
+fn surrogate_of_many(bencher: Bencher<'_, '_>, count: usize) {
+    let pump = pump(count);
+    let (best, covariance) = fitted(&pump);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    let pool = pool.unwrap();
+    bencher.bench_local(|| pool.install(|| Surrogate::new(&pump, &best, &covariance).unwrap()));
+}
+
+/// Their likelihoods, by one thread.
+#[divan::bench(args = [5, 8], sample_count = 10)]
+fn likelihoods_of_many(bencher: Bencher<'_, '_>, count: usize) {
+    let pump = pump(count);
+    let (best, covariance) = fitted(&pump);
+    let found = Surrogate::new(&pump, &best, &covariance).unwrap();
+    eprintln!(
+        "{count} numbers: right to {:.3} standard errors, computed at {:?} m/s",
+        found.error,
+        found.computed_speeds_m_s()
+    );
+    likelihoods(bencher, &found, &best, &covariance.sd);
+}
+
 /// Steps of 64 walkers that make a million.
 const STEPS: u64 = 15_625;
 

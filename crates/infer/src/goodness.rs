@@ -11,7 +11,7 @@ pub struct Goodness {
     pub chi_square: Option<ChiSquare>,
     /// √(χ²/degrees of freedom): what all σ would have to be multiplied by.
     pub birge_ratio: Option<f64>,
-    /// Runs of equal sign in the order of the data.
+    /// Runs of equal sign in the order of the data; `None` where there is no chi-square.
     pub runs: Option<Runs>,
     /// Residual farthest from 0: its number and value.
     pub farthest: Option<(usize, f64)>,
@@ -40,7 +40,8 @@ impl Goodness {
         Self {
             birge_ratio: chi_square.map(ratio),
             chi_square,
-            runs: runs(&fit.residuals),
+            // As many numbers as parameters are met, but for rounding: its signs mean nothing.
+            runs: chi_square.and_then(|_| runs(&fit.residuals)),
             farthest: numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
         }
     }

@@ -47,12 +47,23 @@ impl std::fmt::Display for Prior {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Flat => write!(f, "no prior"),
-            Self::Normal { mean, sd } => write!(f, "a prior {mean} ± {sd}"),
+            Self::Normal { mean, sd } => write!(f, "a prior {} ± {}", short(mean), short(sd)),
             Self::LogNormal { median, ln_sd } => {
-                write!(f, "a prior {median} times or over {}", ln_sd.exp())
+                write!(
+                    f,
+                    "a prior {} times or over {}",
+                    short(median),
+                    short(&ln_sd.exp())
+                )
             }
         }
     }
+}
+
+/// A number as people write it: conversions of units and logarithms leave a last digit that
+/// nobody gave.
+fn short(value: &f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(*value)
 }
 
 /// Why a parameter cannot be free as described.
@@ -60,7 +71,7 @@ impl std::fmt::Display for Prior {
 #[non_exhaustive]
 pub enum ParameterError {
     /// Bounds in the wrong order, or not numbers.
-    #[error("{name}: the bounds {lower} to {upper} leave nothing between them")]
+    #[error("{name}: the bounds {} to {} leave nothing between them", short(.lower), short(.upper))]
     Bounds {
         /// The parameter.
         name: String,
@@ -71,7 +82,8 @@ pub enum ParameterError {
     },
     /// The start is outside the bounds or not finite.
     #[error(
-        "{name} starts at {start}, outside its bounds {lower} to {upper}: start within them, or move them"
+        "{name} starts at {}, outside its bounds {} to {}: start within them, or move them",
+        short(.start), short(.lower), short(.upper)
     )]
     Start {
         /// The parameter.
@@ -85,7 +97,8 @@ pub enum ParameterError {
     },
     /// The scale is not positive and finite.
     #[error(
-        "{name} has the scale {scale}: expected a positive number, the size of a change that matters"
+        "{name} has the scale {}: expected a positive number, the size of a change that matters",
+        short(.scale)
     )]
     Scale {
         /// The parameter.
@@ -103,7 +116,8 @@ pub enum ParameterError {
     },
     /// The prior makes the start all but impossible.
     #[error(
-        "{name} starts at {start}, {deviation:.1} standard deviations from the middle of its prior: start nearer, or widen the prior"
+        "{name} starts at {}, {deviation:.1} standard deviations from the middle of its prior: start nearer, or widen the prior",
+        short(.start)
     )]
     PriorExcludesStart {
         /// The parameter.

@@ -1,10 +1,11 @@
 //! Curves of many points as lanes of one ensemble.
 
+use crate::Parameter;
 use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_study::{
-    InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
+    Inputs, InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
 };
 use rayon::prelude::*;
 use std::fmt::Display;
@@ -91,6 +92,17 @@ impl Model {
 
     /// Accuracy beyond which rounding tells.
     const FINEST: f64 = 1e-9;
+
+    /// What names any problem of this model begins with: the experiment as it is understood,
+    /// its free numbers, what is known of their parameters, accuracy and instruction set.
+    pub(crate) fn inputs(&self, kind: &str, parameters: &[Parameter]) -> Inputs {
+        Inputs::of(kind)
+            .text("experiment", &self.experiment.understood())
+            .text("free", &format!("{:?}", self.numbers))
+            .text("parameters", &format!("{parameters:?}"))
+            .text("set", self.set.name())
+            .numbers("accuracy", &[self.accuracy])
+    }
 
     /// Its free numbers.
     #[must_use]

@@ -126,13 +126,7 @@ impl CurveProblem {
     /// build of the program; not where the data lie.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
-        let model = &self.model;
-        let rows = Inputs::of("curve problem")
-            .text("experiment", &model.experiment().understood())
-            .text("free", &format!("{:?}", model.numbers()))
-            .text("parameters", &format!("{:?}", self.parameters))
-            .text("set", model.set.name())
-            .numbers("accuracy", &[model.accuracy]);
+        let rows = self.model.inputs("curve problem", &self.parameters);
         let row = |inputs: Inputs, row: &DataRow| inputs.text("row", &format!("{row:?}"));
         self.data.rows.iter().fold(rows, row).fingerprint()
     }

@@ -24,6 +24,21 @@ pub struct WetRow {
 /// K and A of the wet contacts at one speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
+    /// The pair that is told, or that stands first of several.
+    pub first: Pair,
+    /// Other pairs that fit as well.
+    pub others: Vec<Pair>,
+    /// Why the first pair stands before the others.
+    pub branch: Branch,
+    /// How far pairs were looked for; `None` where one number alone was measured.
+    pub scan: Option<Scan>,
+    /// Where only one number was measured: what it determines.
+    pub combination: Option<Combination>,
+}
+
+/// K and A that fit a row, and how well they are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
     /// ln K, K in N/m^{3/2}, and ln A, A in s.
     pub ln: [f64; 2],
     /// Covariance of both from this row's measurements alone.
@@ -31,14 +46,51 @@ pub struct Contact {
     /// Shifts of both by one standard error of each independent shift of the dry
     /// contacts' numbers: common to all rows.
     pub shared: Vec<[f64; 2]>,
-    /// Other pairs ln K, ln A that fit as well.
-    pub others: Vec<[f64; 2]>,
-    /// Why this pair stands before the others.
-    pub branch: Branch,
-    /// How far pairs were looked for; `None` where one number alone was measured.
-    pub scan: Option<Scan>,
-    /// Where only one number was measured: what it determines.
-    pub combination: Option<Combination>,
+}
+
+/// A value of which so many standard errors reach 0 is not determined, as neither K nor A can
+/// be less: its error is no ellipse's any more.
+const REACH: f64 = 2.0;
+
+/// Whether a positive number is known well enough to be told with its standard error.
+#[must_use]
+pub fn is_told(value: f64, standard_error: f64) -> bool {
+    REACH * standard_error < value
+}
+
+impl Pair {
+    /// One whose errors could not be computed.
+    fn unknown(ln: [f64; 2]) -> Self {
+        Self {
+            ln,
+            own: [[f64::INFINITY, 0.0], [0.0, f64::INFINITY]],
+            shared: Vec::new(),
+        }
+    }
+
+    /// Whole covariance of ln K and ln A.
+    #[must_use]
+    pub fn covariance(&self) -> [[f64; 2]; 2] {
+        let mut sum = self.own;
+        for shift in &self.shared {
+            for i in 0..2 {
+                for j in 0..2 {
+                    sum[i][j] += shift[i] * shift[j];
+                }
+            }
+        }
+        sum
+    }
+
+    /// K in N/m^{3/2} (or the combination) and A in s, each with its standard error.
+    #[must_use]
+    pub fn estimates(&self) -> [(f64, f64); 2] {
+        let covariance = self.covariance();
+        [0, 1].map(|i| {
+            let value = self.ln[i].exp();
+            (value, value * covariance[i][i].sqrt())
+        })
+    }
 }
 
 /// Why a pair stands before the others of its row.
@@ -81,36 +133,12 @@ impl Contact {
         self.combination.is_none() && self.branch != Branch::Unknown
     }
 
-    /// All pairs ln K, ln A, the smallest A first.
+    /// All pairs, the smallest A first.
     #[must_use]
-    pub fn pairs(&self) -> Vec<[f64; 2]> {
-        let mut all = [&[self.ln], &self.others[..]].concat();
-        all.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    pub fn pairs(&self) -> Vec<&Pair> {
+        let mut all: Vec<&Pair> = std::iter::once(&self.first).chain(&self.others).collect();
+        all.sort_by(|a, b| a.ln[1].total_cmp(&b.ln[1]));
         all
-    }
-
-    /// Whole covariance of ln K and ln A.
-    #[must_use]
-    pub fn covariance(&self) -> [[f64; 2]; 2] {
-        let mut sum = self.own;
-        for shift in &self.shared {
-            for i in 0..2 {
-                for j in 0..2 {
-                    sum[i][j] += shift[i] * shift[j];
-                }
-            }
-        }
-        sum
-    }
-
-    /// K in N/m^{3/2} (or the combination) and A in s, each with its standard error.
-    #[must_use]
-    pub fn estimates(&self) -> [(f64, f64); 2] {
-        let covariance = self.covariance();
-        [0, 1].map(|i| {
-            let value = self.ln[i].exp();
-            (value, value * covariance[i][i].sqrt())
-        })
     }
 }
 
@@ -183,40 +211,47 @@ impl Gauge {
         shifts: &[Vec<f64>],
     ) -> Result<Contact, FitError> {
         let free = self.free(row);
-        let Solution {
-            point, covariance, ..
-        } = solutions.remove(chosen.pair);
+        let first = solutions.remove(chosen.pair);
         let branch = match (solutions.is_empty(), chosen.is_clear) {
             (true, _) => Branch::Only,
             (_, true) => Branch::Smooth,
             (_, false) => Branch::Unknown,
         };
+        let other = |solution: Solution| {
+            let known = self.pair(row, &solution, shifts);
+            known.unwrap_or_else(|_| Pair::unknown(solution.point.map(f64::ln)))
+        };
+        Ok(Contact {
+            first: self.pair(row, &first, shifts)?,
+            others: solutions.into_iter().map(other).collect(),
+            branch,
+            scan,
+            combination: match free {
+                Free::Both => None,
+                Free::StiffnessAlone => Some(self.combination(row, first.point)?),
+            },
+        })
+    }
+
+    /// A solution with its errors: the row's own, and those of the dry contacts' numbers.
+    fn pair(&self, row: usize, solution: &Solution, shifts: &[Vec<f64>]) -> Result<Pair, FitError> {
+        let point = solution.point;
         let mut shared = Vec::new();
         // Those after them move nothing but the dry chain's own numbers.
         for shift in &shifts[..self.common()] {
             let moved = self.dry_fit.point.iter().zip(shift).map(|(x, s)| x + s);
             let moved: Vec<f64> = moved.collect();
-            let other = self.solved(row, free, &moved, point)?.point;
+            let other = self.solved(row, self.free(row), &moved, point)?.point;
             shared.push([0, 1].map(|i| (other[i] / point[i]).ln()));
         }
         let entry = |i: usize, j: usize| {
-            let of = covariance.matrix.get(i).and_then(|row| row.get(j));
+            let of = solution.covariance.matrix.get(i).and_then(|row| row.get(j));
             of.map_or(0.0, |c| c / (point[i] * point[j]))
         };
-        Ok(Contact {
+        Ok(Pair {
             ln: point.map(f64::ln),
             own: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
             shared,
-            others: solutions
-                .into_iter()
-                .map(|s| s.point.map(f64::ln))
-                .collect(),
-            branch,
-            scan,
-            combination: match free {
-                Free::Both => None,
-                Free::StiffnessAlone => Some(self.combination(row, point)?),
-            },
         })
     }
 
@@ -241,6 +276,12 @@ impl Gauge {
         for (parameter, value) in start.iter_mut().zip(at) {
             parameter.start = value;
             parameter.scale = value;
+        }
+        // Beyond the line nobody looked, and shots through contacts that hardly move take ages.
+        if let Some(relaxation) = start.last_mut() {
+            let [lower, upper] = self.scanned_s();
+            relaxation.start = relaxation.start.clamp(lower, upper);
+            (relaxation.lower, relaxation.upper) = (lower, upper);
         }
         let own = self.wet_own(&data.speeds_m_s());
         let own = own.iter().map(|parameter| parameter.start);
@@ -304,3 +345,30 @@ impl Gauge {
 
 /// Half the step in ln K and ln A of the derivatives.
 const STEP: f64 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_two_of_its_errors_wipe_out_is_not_told() {
+        assert!(!is_told(11.8, 7.3));
+        assert!(is_told(11.8, 5.8));
+        assert!(!is_told(1.0, f64::INFINITY) && !is_told(1.0, f64::NAN));
+    }
+
+    /// Row's own and dry numbers' errors are independent: variances add.
+    #[test]
+    fn errors_of_a_pair_hold_those_of_the_dry_numbers() {
+        let pair = Pair {
+            ln: [0.0, 2.0_f64.ln()],
+            own: [[9e-4, 0.0], [0.0, 25e-4]],
+            shared: vec![[0.04, 0.12]],
+        };
+        let [(k, k_sd), (a, a_sd)] = pair.estimates();
+        // Rounding.
+        assert!((k - 1.0).abs() < 1e-15 && (k_sd - 0.05).abs() < 1e-15);
+        assert!((a - 2.0).abs() < 1e-15 && (a_sd - 2.0 * 0.13).abs() < 1e-15);
+        assert!((pair.covariance()[0][1] - 0.04 * 0.12).abs() < 1e-18);
+    }
+}

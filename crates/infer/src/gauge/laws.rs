@@ -1,6 +1,6 @@
 //! Power laws through K and A of the wet contacts.
 
-use super::contacts::{Contact, WetRow};
+use super::contacts::{Pair, WetRow};
 use hertzchain_signal::{FitError, PowerLaw, power_law};
 
 /// A power law of speed through values that share a part of their errors.
@@ -36,9 +36,9 @@ impl GaugeLaws {
             let contact = row.told.as_ref().ok()?;
             // A law through pairs of several branches is none.
             let both = contact.is_known();
-            both.then(|| (row.speed_m_s, contact.clone()))
+            both.then(|| (row.speed_m_s, contact.first.clone()))
         };
-        let known: Vec<(f64, Contact)> = rows.iter().filter_map(both).collect();
+        let known: Vec<(f64, Pair)> = rows.iter().filter_map(both).collect();
         Ok(Self {
             stiffness: law(&known, 0)?,
             relaxation: law(&known, 1)?,
@@ -46,14 +46,14 @@ impl GaugeLaws {
     }
 }
 
-fn law(known: &[(f64, Contact)], of: usize) -> Result<SharedLaw, FitError> {
+fn law(known: &[(f64, Pair)], of: usize) -> Result<SharedLaw, FitError> {
     if known.len() < 3 {
         return Err(FitError::TooFew);
     }
     let speeds: Vec<f64> = known.iter().map(|(speed, _)| *speed).collect();
     let relative: Vec<f64> = known.iter().map(|(_, c)| c.own[of][of].sqrt()).collect();
-    let through = |shift: &dyn Fn(&Contact) -> f64| {
-        let value = |(_, contact): &(f64, Contact)| (contact.ln[of] + shift(contact)).exp();
+    let through = |shift: &dyn Fn(&Pair) -> f64| {
+        let value = |(_, pair): &(f64, Pair)| (pair.ln[of] + shift(pair)).exp();
         let values: Vec<f64> = known.iter().map(value).collect();
         let sigmas: Vec<f64> = values.iter().zip(&relative).map(|(v, r)| v * r).collect();
         power_law(&speeds, &values, Some(&sigmas))
@@ -65,7 +65,7 @@ fn law(known: &[(f64, Contact)], of: usize) -> Result<SharedLaw, FitError> {
         own.exponent_error.powi(2),
     ];
     for number in 0..shifts {
-        let moved = through(&|contact| contact.shared[number][of])?;
+        let moved = through(&|pair| pair.shared[number][of])?;
         variances[0] += (moved.prefactor / own.prefactor).ln().powi(2);
         variances[1] += (moved.exponent - own.exponent).powi(2);
     }

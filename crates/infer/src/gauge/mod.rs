@@ -15,7 +15,7 @@ mod solutions;
 mod told;
 mod verdict;
 
-pub use contacts::{Branch, Combination, Contact, WetRow};
+pub use contacts::{Branch, Combination, Contact, Pair, WetRow, is_told};
 pub use form::{AtSpeed, LAWS, PowerForm};
 pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};

@@ -30,7 +30,7 @@ pub(super) fn smoothest(rows: &[Row]) -> Vec<Chosen> {
     let enough = rows.len() >= ENOUGH;
     let chosen = |row: usize| Chosen {
         pair: way[row],
-        is_clear: rows[row].1.len() == 1 || enough && others(row) > MUCH_MORE * least,
+        is_clear: rows[row].1.len() == 1 || enough && others(row) > much_more(rows.len()) * least,
     };
     (0..rows.len()).map(chosen).collect()
 }
@@ -38,9 +38,22 @@ pub(super) fn smoothest(rows: &[Row]) -> Vec<Chosen> {
 /// Rows that make three bends: of fewer, chance alone makes a way straight.
 const ENOUGH: usize = 5;
 
-/// How many times larger the sum of squared bends of every other way is where one is clear:
-/// as the ratio of two variances.
-const MUCH_MORE: f64 = 4.0;
+/// How many times larger the sum of squared bends S of every other way is where one is clear.
+///
+/// Of n bends that are normal with one unknown variance, a way has the likelihood S^(−n/2): odds
+/// of a thousand to one are a factor 1000^(2/n). Bends that are errors of A are not
+/// independent of their neighbours, so that many of them tell less than that: at least
+/// [`LEAST`].
+fn much_more(rows: usize) -> f64 {
+    let bends = rows.saturating_sub(2).max(1) as f64;
+    ODDS.powf(2.0 / bends).max(LEAST)
+}
+
+/// Odds against every other way where one is clear.
+const ODDS: f64 = 1000.0;
+
+/// Least ratio of two sums of squares that means anything.
+const LEAST: f64 = 4.0;
 
 /// The way of least cost, and that (dynamic programming over neighbours); `None` of fewer
 /// than three rows, or where one has no pair.
@@ -102,6 +115,29 @@ mod tests {
         assert_eq!(smoothest(&rows[..2]), [Chosen::default(); 2]);
         // One bend tells nothing, however much smaller it is.
         assert!(smoothest(&rows[..3]).iter().all(|chosen| !chosen.is_clear));
+    }
+
+    /// At the end of a row of speeds one bend alone tells: a curve that bends toward it looks
+    /// straighter by a pair that is none, which four bends can't tell.
+    #[test]
+    fn an_end_that_bends_is_not_taken_for_straight() {
+        let bends = [0.27, 0.17, 0.10, 0.06];
+        let mut slope = -0.9;
+        let mut ln_a = vec![1.4];
+        for bend in [0.0].iter().chain(&bends) {
+            slope += bend;
+            ln_a.push(ln_a[ln_a.len() - 1] + 0.56 * slope);
+        }
+        let mut rows: Vec<Row> = (0..6)
+            .map(|at| (0.56 * at as f64, vec![ln_a[at]]))
+            .collect();
+        // A pair of A a fifth smaller straightens the first bend to less than nothing.
+        rows[0].1.insert(0, ln_a[0] - 0.2);
+        assert!(!smoothest(&rows)[0].is_clear);
+        // One five times as large is no way at all.
+        rows[0].1[0] = ln_a[0] + 1.6;
+        let chosen = smoothest(&rows)[0];
+        assert!(chosen.is_clear && chosen.pair == 1, "{chosen:?}");
     }
 
     /// Two lines side by side.

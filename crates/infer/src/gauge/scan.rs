@@ -43,15 +43,15 @@ impl Place {
 }
 
 impl Gauge {
-    /// Points K, A from which every pair of a row is near, best first, and how far the line
-    /// was followed; `None` for rows without any time, whose K no A tells.
+    /// Points K, A from which every pair of a row is near, best first, those too far from its
+    /// numbers left out, and how far the line was followed; `None` for rows without any time, whose K no A tells.
     pub(super) fn scan(&self, row: usize) -> Option<(Vec<[f64; 2]>, Scan)> {
         let first = self.data.rows[row].observables().next()?;
         if !first.is_time() {
             return None;
         }
-        let [stiffness, relaxation] = self.dry_contact;
-        let low = (relaxation * LEAST_TIMES_DRY).ln();
+        let between_s = self.scanned_s();
+        let (low, stiffness) = (between_s[0].ln(), self.dry_contact[0]);
         let grid = (0..=STEPS).map(|at| (low + at as f64 * STEP, stiffness.ln()));
         let mut line = self.places(row, first, grid.collect());
         for _ in 0..HALVINGS {
@@ -63,10 +63,16 @@ impl Gauge {
             line.sort_by(|a, b| a.ln_a.total_cmp(&b.ln_a));
         }
         let scan = Scan {
-            between_s: [low, low + STEPS as f64 * STEP].map(f64::exp),
+            between_s,
             missing_s: missing(&line),
         };
         Some((candidates(&line), scan))
+    }
+
+    /// The smallest and the largest A in s among which pairs are looked for.
+    pub(super) fn scanned_s(&self) -> [f64; 2] {
+        let low = self.dry_contact[1] * LEAST_TIMES_DRY;
+        [low, low * (STEPS as f64 * STEP).exp()]
     }
 
     /// The line at some ln A, each with a guess of ln K.
@@ -248,8 +254,13 @@ fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
         .map(|at| &line[at])
         .collect();
     all.sort_by(|a, b| a.chi_square().total_cmp(&b.chi_square()));
+    let far = |place: &Place| place.chi_square() > HOPELESS;
     let mut apart: Vec<&Place> = Vec::new();
     for place in all {
+        // The best stays, to be told how far it is.
+        if !apart.is_empty() && far(place) {
+            break;
+        }
         if apart
             .iter()
             .all(|known| (known.ln_a - place.ln_a).abs() > FINEST)
@@ -292,6 +303,11 @@ const FINEST: f64 = 0.0055;
 
 /// How many times faster than beside it a residual changes where it jumps.
 const JUMP: f64 = 4.0;
+
+/// Chi-square on the line from which no pair is near: the finest step changes a row's other
+/// numbers by a few standard errors, and errors of the dry contacts' numbers by as many; a jump
+/// from one side of a number to the other is no pair.
+const HOPELESS: f64 = 400.0;
 
 /// d ln(time of flight)/d ln K of waves in a row of beads that hardly damps: −2/5.
 const SLOPE: f64 = -0.4;

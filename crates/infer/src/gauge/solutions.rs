@@ -12,6 +12,8 @@ pub(super) struct Solution {
     pub(super) point: [f64; 2],
     pub(super) covariance: Covariance,
     pub(super) chi_square: f64,
+    /// Whether the row would have an A beyond those that are looked at.
+    is_beyond: bool,
     /// Residuals, and their derivatives to ln K and ln A.
     residuals: Vec<f64>,
     slopes: Vec<Vec<f64>>,
@@ -112,6 +114,7 @@ impl Gauge {
                 fitted.point.get(1).copied().unwrap_or(start[1]),
             ],
             chi_square: fitted.chi_square(),
+            is_beyond: free == Free::Both && fitted.is_bound(1),
             slopes: (fitted.jacobian.columns.iter().zip(&fitted.point))
                 .map(|(column, at)| column.iter().map(|slope| slope * at).collect())
                 .collect(),
@@ -135,9 +138,16 @@ fn sound(
             Err(error) => failed = Some(error),
         }
     }
+    let count = found.len();
+    found.retain(|solution| !solution.is_beyond);
     found.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));
     let Some(best) = found.first() else {
-        return Err(failed.unwrap_or(FitError::NothingFree).to_string());
+        return Err(match count {
+            0 => failed.unwrap_or(FitError::NothingFree).to_string(),
+            _ => format!(
+                "does not follow: no K and A among those looked at give these {values} numbers"
+            ),
+        });
     };
     if free == Free::Both && !is_followed(best.chi_square, values) {
         return Err(format!(

@@ -2,19 +2,20 @@
 
 use super::Gauge;
 use super::contacts::{Branch, Contact, WetRow};
+use crate::data::Observable;
 
 impl Gauge {
     /// Of rows that several pairs fit: that they do, which stands first and why, and whether
     /// all were found.
     #[must_use]
-    pub fn ambiguous(rows: &[WetRow]) -> Option<String> {
+    pub fn ambiguous(&self, rows: &[WetRow]) -> Option<String> {
         let several = |contact: &Contact| !contact.others.is_empty();
         told(rows).any(|(_, contact)| several(contact)).then(|| {
             let branches = [Branch::Smooth, Branch::Unknown].map(|branch| of(rows, branch));
             format!(
                 "At some speeds several pairs of K and A give the same numbers; those found are listed. {}{}{}",
                 smooth(&branches[0]),
-                unknown(&branches[1]),
+                unknown(&branches[1], self.wet().has(Observable::ReturningOverPassing)),
                 scanned(rows)
             )
         })
@@ -42,12 +43,18 @@ fn smooth(speeds: &[String]) -> &'static str {
     }
 }
 
-fn unknown(speeds: &[String]) -> String {
+fn unknown(speeds: &[String], has_ratios: bool) -> String {
+    let more = match has_ratios {
+        true => "More speeds, or smaller errors, may tell which",
+        false => {
+            "More speeds, or ratios of peaks (--use incident,reflected,returning-ratio), may tell which"
+        }
+    };
     match speeds {
         [] => String::new(),
         speeds => format!(
             "The branch is not known at {} m/s: none of the pairs stands for the result there, and no power law goes \
-             through them. More speeds, or ratios of peaks (--use incident,reflected,returning-ratio), may tell which. ",
+             through them. {more}. ",
             speeds.join(", ")
         ),
     }
@@ -70,5 +77,21 @@ fn scanned(rows: &[WetRow]) -> String {
             "{looked}, but not completely at {} m/s, where for some A no K gives such times: there may be others.",
             open.join(", ")
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_used_already_is_not_advised() {
+        let speeds = ["0.0759".to_owned()];
+        assert!(unknown(&speeds, false).contains("--use incident,reflected,returning-ratio"));
+        let told = unknown(&speeds, true);
+        assert!(
+            told.contains("smaller errors") && !told.contains("--use"),
+            "{told}"
+        );
     }
 }

@@ -160,13 +160,7 @@ impl PulseProblem {
     /// build of the program; not where the records lie.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
-        let model = &self.model;
-        let all = Inputs::of("pulse problem")
-            .text("experiment", &model.experiment().understood())
-            .text("free", &format!("{:?}", model.numbers()))
-            .text("parameters", &format!("{:?}", self.parameters))
-            .text("set", model.set.name())
-            .numbers("accuracy", &[model.accuracy]);
+        let all = self.model.inputs("pulse problem", &self.parameters);
         let record = |all: Inputs, record: &Pulses| {
             let speed = record.speed_m_s;
             let speeds = [speed.value, speed.sigma, record.programmed_m_s];

@@ -167,20 +167,39 @@ impl Truth {
 
     /// A repetition of the measurement: the true speeds are not quite what was set.
     pub fn measured_with(&self, noise: Noise, seed: u64) -> Data {
+        self.repeated(noise, None, seed)
+    }
+
+    /// The same with the returning over the passing peak, to this relative error.
+    pub fn measured_with_ratios(&self, noise: Noise, relative: f64, seed: u64) -> Data {
+        self.repeated(noise, Some(relative), seed)
+    }
+
+    fn repeated(&self, noise: Noise, ratio: Option<f64>, seed: u64) -> Data {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        // Ratios leave times as they are without them.
+        let mut of_peaks = generator.clone();
+        of_peaks.set_stream(1);
         let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
         let (speed_error, time_error) = (noise.speed_m_s, noise.time_s);
         let mut row = |at: usize| {
             let speed = self.speeds_m_s[at];
             let moved = speed_error * normal() / speed;
-            let values = [Observable::Incident, Observable::Reflected].map(|of| {
+            let shifted = |of: Observable| {
                 let exact = self.curve[at][of as usize].unwrap();
-                let shifted = exact * (self.slopes[at][of as usize] * moved).exp();
-                let value = shifted + time_error * normal();
+                exact * (self.slopes[at][of as usize] * moved).exp()
+            };
+            let times = [Observable::Incident, Observable::Reflected].map(|of| {
                 Some(Estimate {
-                    value,
+                    value: shifted(of) + time_error * normal(),
                     sigma: time_error,
                 })
+            });
+            let peaks = ratio.map(|relative| {
+                let own: f64 = StandardNormal.sample(&mut of_peaks);
+                let value = shifted(Observable::ReturningOverPassing) * (1.0 + relative * own);
+                let sigma = relative * value;
+                Estimate { value, sigma }
             });
             DataRow {
                 line: at as u64 + 2,
@@ -188,7 +207,7 @@ impl Truth {
                     value: speed,
                     sigma: speed_error,
                 },
-                values: [values[0], values[1], None, None],
+                values: [times[0], times[1], None, peaks],
                 freedom: Freedom::KNOWN,
             }
         };

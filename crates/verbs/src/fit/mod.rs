@@ -158,8 +158,9 @@ pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Fa
     let fit = best(&kept, arguments)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more((&problem, &kept), (&fit, &covariance), arguments)?;
+    let found = judged((&problem, &kept), (fit, covariance, more), arguments)?;
     kept.sound()?;
-    told(problem, (fit, covariance, more), arguments)
+    told(problem, found)
 }
 
 /// The same where `computed` has the problem's residuals from elsewhere, such as
@@ -183,38 +184,49 @@ pub fn fitted_elsewhere(
         Curves::Computed(None),
         arguments,
     )?;
+    let found = judged((&problem, &kept), (fit, covariance, more), arguments)?;
     kept.sound()?;
-    told(problem, (fit, covariance, more), arguments)
+    told(problem, found)
+}
+
+/// What else takes many curves: limits at bounds, and other models.
+fn judged(
+    (problem, kept): (&CurveProblem, &Remembered<'_>),
+    (fit, covariance, more): (Fit, Covariance, More),
+    arguments: &Arguments,
+) -> Result<(Inferred, Option<Rivals>), Failure> {
+    let label = |at: usize| problem.residual_label(at);
+    let identifiability = Identifiability::new(problem.parameters(), &fit, label);
+    let limits = limits::limits(kept, (&fit, &covariance), &identifiability, &more)?;
+    let rivals = rivals::rivals((problem, kept), &fit, arguments)?;
+    let inferred = Inferred {
+        parameters: problem.parameters().to_vec(),
+        goodness: Goodness::new(problem.parameters(), &fit),
+        identifiability,
+        more,
+        limits,
+        covariance,
+        fit,
+    };
+    Ok((inferred, rivals))
 }
 
 fn told(
     problem: CurveProblem,
-    (fit, covariance, more): (Fit, Covariance, More),
-    arguments: &Arguments,
+    (inferred, rivals): (Inferred, Option<Rivals>),
 ) -> Result<Fitted, Failure> {
+    let (fit, covariance) = (&inferred.fit, &inferred.covariance);
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
-    let label = |at: usize| problem.residual_label(at);
-    let identifiability = Identifiability::new(problem.parameters(), &fit, label);
-    let open = !identifiability.confused.is_empty() && fit.ending.converged();
-    let goodness = Goodness::new(problem.parameters(), &fit);
-    let rejected = goodness.is_rejected();
-    let limits = limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?;
+    let open = !inferred.identifiability.confused.is_empty() && fit.ending.converged();
+    let rejected = inferred.goodness.is_rejected();
     Ok(Fitted {
         unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
-        advice: open.then(|| problem.would_separate(&fit)),
-        rivals: rivals::rivals(&problem, &fit, arguments)?,
-        curve: problem.fitted_curve(&fit, &covariance).map_err(user)?,
+        advice: open.then(|| problem.would_separate(fit)),
+        curve: problem.fitted_curve(fit, covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
-        inferred: Inferred {
-            parameters: problem.parameters().to_vec(),
-            identifiability,
-            goodness,
-            more,
-            limits,
-            covariance,
-            fit,
-        },
+        rivals,
+        inferred,
         problem,
     })
 }

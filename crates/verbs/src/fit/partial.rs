@@ -28,6 +28,9 @@ const HEAD: &str = "hertzchain residuals 1 ";
 /// What a part's name begins with.
 const PART: &str = "part-";
 
+/// What the name of another model's folder begins with, within that of the fit.
+const RIVAL: &str = "against-";
+
 /// Bytes of a number.
 const NUMBER: usize = 8;
 
@@ -61,17 +64,34 @@ impl<'a> Remembered<'a> {
         fingerprint: impl FnOnce() -> Fingerprint,
         arguments: &Arguments,
     ) -> Result<Self, Failure> {
-        let kept = match &arguments.out {
-            None => None,
-            Some(out) => {
-                let head = format!("{HEAD}{}\n", fingerprint()).into_bytes();
-                Some(Mutex::new(Kept::open(
-                    out.join(PARTIAL),
-                    head,
-                    arguments.resume,
-                )?))
-            }
+        let folder = arguments.out.as_ref().map(|out| out.join(PARTIAL));
+        Self::within((problem, folder), fingerprint, arguments.resume)
+    }
+
+    /// The same of another model, by its number among those that a fit is held against.
+    ///
+    /// # Errors
+    /// As [`Remembered::new`].
+    pub fn of_rival(
+        (problem, number): (&'a dyn Problem, usize),
+        fingerprint: impl FnOnce() -> Fingerprint,
+        arguments: &Arguments,
+    ) -> Result<Self, Failure> {
+        let out = arguments.out.as_ref();
+        let folder = out.map(|out| out.join(PARTIAL).join(format!("{RIVAL}{number}")));
+        Self::within((problem, folder), fingerprint, arguments.resume)
+    }
+
+    fn within(
+        (problem, folder): (&'a dyn Problem, Option<PathBuf>),
+        fingerprint: impl FnOnce() -> Fingerprint,
+        resume: bool,
+    ) -> Result<Self, Failure> {
+        let open = |folder| {
+            let head = format!("{HEAD}{}\n", fingerprint()).into_bytes();
+            Kept::open(folder, head, resume).map(Mutex::new)
         };
+        let kept = folder.map(open).transpose()?;
         Ok(Self { problem, kept })
     }
 
@@ -206,21 +226,29 @@ fn bits(point: &[f64]) -> Vec<u64> {
 
 /// Parts in a folder, in the order in which they were written.
 fn parts(folder: &Path) -> Vec<PathBuf> {
+    named(folder, PART)
+}
+
+/// What lies in a folder under names that begin so, in their order.
+fn named(folder: &Path, begin: &str) -> Vec<PathBuf> {
     let Ok(found) = fs::read_dir(folder) else {
         return Vec::new();
     };
-    let part = |path: &PathBuf| {
+    let is_one = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str());
-        name.is_some_and(|name| name.starts_with(PART))
+        name.is_some_and(|name| name.starts_with(begin))
     };
     let paths = found.filter_map(|entry: io::Result<fs::DirEntry>| Some(entry.ok()?.path()));
-    let mut paths: Vec<PathBuf> = paths.filter(part).collect();
+    let mut paths: Vec<PathBuf> = paths.filter(is_one).collect();
     paths.sort();
     paths
 }
 
-/// Removes parts, and their folder if nothing else is in it.
+/// Removes parts, other models' among them, and their folder if nothing else is in it.
 fn forget(folder: &Path) {
+    for rival in named(folder, RIVAL) {
+        forget(&rival);
+    }
     for part in parts(folder) {
         // What stays is refused by its fingerprint, or right.
         let _ = fs::remove_file(part);
@@ -352,6 +380,32 @@ mod tests {
         assert_eq!(parts(&out.join(PARTIAL)).len(), 1);
         finished(&out);
         assert!(!begun(&out));
+        let _ = fs::remove_dir_all(out);
+    }
+
+    #[test]
+    fn another_models_residuals_lie_beside_and_go_with_the_fits_own() {
+        let out = std::env::temp_dir().join(format!("hertzchain-rivals-{}", std::process::id()));
+        let of = |bytes: &[u8]| Fingerprint::of_bytes(bytes);
+        let points = vec![vec![3.0]];
+        let asked = |resume: bool| {
+            let (own, rival) = (Square::new(), Square::new());
+            let given = arguments(&out, resume);
+            let kept = Remembered::new(&own, || of(b"square"), &given).unwrap();
+            let beside = Remembered::of_rival((&rival, 0), || of(b"rival"), &given).unwrap();
+            for of in [&kept, &beside] {
+                assert_eq!(
+                    of.residuals(&points)[0].as_ref().unwrap().standardised,
+                    [9.0]
+                );
+                of.kept.as_ref().unwrap().lock().unwrap().save();
+            }
+            [own, rival].map(|of| of.asked.load(Ordering::Relaxed))
+        };
+        assert_eq!(asked(false), [1, 1]);
+        assert_eq!(asked(true), [0, 0]);
+        finished(&out);
+        assert!(!out.join(PARTIAL).exists());
         let _ = fs::remove_dir_all(out);
     }
 

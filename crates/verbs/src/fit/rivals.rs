@@ -1,12 +1,13 @@
 //! Other models of the same data.
 
 use super::Arguments;
+use super::partial::Remembered;
 use crate::arguments::infer::{Against, Assignment, Freed};
 use crate::failure::Failure;
-use crate::inference::{self, is_meant, kept, user};
+use crate::inference::{self, is_meant, kept, user, wanted};
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_infer::{
-    Compared, Comparison, CrossValidation, CurveProblem, Fit, Fitting, Folding, compare,
+    Compared, Comparison, CrossValidation, CurveProblem, Fit, Fitting, Folding, Problem, compare,
     cross_validate, fit, same_number,
 };
 
@@ -47,7 +48,7 @@ pub struct Rivals {
 
 /// Fits the other models to the same data, if any are asked for.
 pub fn rivals(
-    problem: &CurveProblem,
+    (problem, kept): (&CurveProblem, &dyn Problem),
     own: &Fit,
     arguments: &Arguments,
 ) -> Result<Option<Rivals>, Failure> {
@@ -59,10 +60,10 @@ pub fn rivals(
         problem.model().experiment().name(),
         arguments.freed.free.join(", ")
     );
-    let mut all = vec![rival(name, problem, own.clone(), arguments.seed)?];
+    let mut all = vec![rival(name, (problem, kept), own.clone(), arguments.seed)?];
     let mut lost = Vec::new();
-    for against in &arguments.against {
-        match other(against, problem, arguments)? {
+    for (number, against) in arguments.against.iter().enumerate() {
+        match other((number, against), problem, arguments)? {
             Ok(rival) => all.push(rival),
             Err(without) => lost.push(without),
         }
@@ -87,7 +88,7 @@ pub fn rivals(
 }
 
 fn other(
-    against: &Against,
+    (number, against): (usize, &Against),
     problem: &CurveProblem,
     arguments: &Arguments,
 ) -> Result<Result<Rival, Lost>, Failure> {
@@ -102,8 +103,11 @@ fn other(
         seed: arguments.seed,
         ..Fitting::default()
     };
-    let kept = kept(posed.model(), &arguments.modelled.set);
-    let fit = fit(&posed, &how).map_err(|error| of_rival(user(error)))?;
+    let told = kept(posed.model(), &arguments.modelled.set);
+    let kept = Remembered::of_rival((&posed, number), || posed.fingerprint(), arguments)?;
+    let fit = fit(&kept, &how);
+    wanted()?;
+    let fit = fit.map_err(|error| of_rival(user(error)))?;
     if !fit.ending.converged() {
         return Ok(Err(Lost {
             chi_square: fit.chi_square(),
@@ -111,10 +115,11 @@ fn other(
             name,
         }));
     }
-    let rival = rival(name.clone(), &posed, fit, arguments.seed)?;
+    let rival = rival(name.clone(), (&posed, &kept), fit, arguments.seed)?;
+    kept.sound()?;
     Ok(Ok(Rival {
         without,
-        kept,
+        kept: told,
         ..rival
     }))
 }
@@ -219,7 +224,12 @@ fn about(freed: Freed, parameters: &[&str]) -> Freed {
 /// Relative accuracy of other models' times of flight.
 const RIVALS_ACCURACY: f64 = 1e-6;
 
-fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Rival, Failure> {
+fn rival(
+    name: String,
+    (problem, kept): (&CurveProblem, &dyn Problem),
+    fit: Fit,
+    seed: u64,
+) -> Result<Rival, Failure> {
     // What was measured at one speed is left out together.
     let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
     let how = Folding {
@@ -227,13 +237,11 @@ fn rival(name: String, problem: &CurveProblem, fit: Fit, seed: u64) -> Result<Ri
         parts: Some(PARTS.min(problem.data().rows.len())),
         seed,
     };
-    let foretells = match enough(problem.data().rows.len(), fit.point.len()) {
-        false => None,
-        true => Some(
-            cross_validate(problem, &fit, &how)
-                .map_err(|error| Failure::User(format!("{name}: {error}")))?,
-        ),
-    };
+    let foretells = enough(problem.data().rows.len(), fit.point.len())
+        .then(|| cross_validate(kept, &fit, &how))
+        .transpose();
+    wanted()?;
+    let foretells = foretells.map_err(|error| Failure::User(format!("{name}: {error}")))?;
     Ok(Rival {
         name,
         fit,

@@ -2,7 +2,7 @@
 
 use super::Gauged;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Gauge, LAWS, PowerForm, Scan, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Gauge, LAWS, Pair, PowerForm, Scan, SharedLaw, WetRow, is_told};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -43,23 +43,15 @@ fn row(row: &WetRow) -> Value {
     match &row.told {
         Err(why) => all["missing"] = json!(why),
         Ok(contact) => {
-            let [(k, k_sd), (a, a_sd)] = contact.estimates();
-            all["stiffness"] = json!({ "value": k, "standard_error": k_sd });
+            let [(k, k_sd), (a, a_sd)] = contact.first.estimates();
+            all["stiffness"] = number(k, k_sd);
             match &contact.combination {
                 None => {
-                    all["relaxation_time_s"] = json!({ "value": a, "standard_error": a_sd });
-                    all["ln_covariance"] = json!(contact.covariance());
+                    all["relaxation_time_s"] = number(a, a_sd);
+                    all["ln_covariance"] = json!(contact.first.covariance());
                     all["branch"] = json!(contact.branch.name());
                     all["scan"] = contact.scan.as_ref().map(scan).into();
-                    all["others"] = contact
-                        .others
-                        .iter()
-                        .map(|ln| {
-                            json!({
-                                "stiffness": ln[0].exp(), "relaxation_time_s": ln[1].exp(),
-                            })
-                        })
-                        .collect();
+                    all["others"] = contact.others.iter().map(other).collect();
                 }
                 Some(combination) => {
                     all["stiffness_times_relaxation_to"] = json!({
@@ -70,6 +62,22 @@ fn row(row: &WetRow) -> Value {
         }
     }
     all
+}
+
+fn number(value: f64, standard_error: f64) -> Value {
+    json!({
+        "value": value, "standard_error": finite(standard_error), "determined": is_told(value, standard_error),
+    })
+}
+
+/// Another pair that fits as well.
+fn other(pair: &Pair) -> Value {
+    let [(k, k_sd), (a, a_sd)] = pair.estimates();
+    json!({
+        "stiffness": k, "stiffness_error": finite(k_sd),
+        "relaxation_time_s": a, "relaxation_time_s_error": finite(a_sd),
+        "ln_covariance": pair.covariance().map(|row| row.map(finite)),
+    })
 }
 
 /// How far pairs were looked for.
@@ -93,8 +101,8 @@ fn form_json(form: &PowerForm, gauge: &Gauge) -> Value {
         let [k, a] = at.ln.map(f64::exp);
         json!({
             "speed_m_s": speed,
-            "stiffness": { "value": k, "standard_error": finite(k * at.ln_sd[0]) },
-            "relaxation_time_s": { "value": a, "standard_error": finite(a * at.ln_sd[1]) },
+            "stiffness": number(k, k * at.ln_sd[0]),
+            "relaxation_time_s": number(a, a * at.ln_sd[1]),
         })
     };
     let other = |values: &[f64; LAWS]| {

@@ -4,7 +4,7 @@ use super::Gauged;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{
-    Branch, Contact, Match, OwnNumber, PowerForm, Scan, SharedLaw, WetRow,
+    Branch, Contact, Match, OwnNumber, Pair, PowerForm, Scan, SharedLaw, WetRow,
 };
 
 /// Every table: files' names and what stands in them.
@@ -92,9 +92,16 @@ fn missing(row: &WetRow, why: &str) -> Line {
 }
 
 fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
-    let [(k, k_sd), (a, a_sd)] = contact.estimates();
-    let mut taken = begun(row);
-    (taken[2], taken[3]) = (k.into(), k_sd.into());
+    let mut taken = match &contact.combination {
+        None => pair(row, &contact.first),
+        Some(combination) => {
+            let [(k, k_sd), _] = contact.first.estimates();
+            let mut cells = begun(row);
+            (cells[2], cells[3]) = (k.into(), k_sd.into());
+            (cells[7], cells[8]) = (combination.exponent.into(), combination.reference_s.into());
+            cells
+        }
+    };
     taken[9] = (contact.branch != Branch::Unknown).into();
     taken[11] = contact.branch.name().into();
     taken[12] = contact
@@ -102,23 +109,23 @@ fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
         .as_ref()
         .map(Scan::is_complete)
         .map_or(Cell::Empty, Cell::from);
-    match &contact.combination {
-        None => {
-            (taken[4], taken[5]) = (a.into(), a_sd.into());
-            taken[6] = contact.covariance()[0][1].into();
-        }
-        Some(combination) => {
-            (taken[7], taken[8]) = (combination.exponent.into(), combination.reference_s.into());
-        }
-    }
-    let other = |ln: &[f64; 2]| {
-        let mut cells = begun(row);
-        (cells[2], cells[4], cells[9]) = (ln[0].exp().into(), ln[1].exp().into(), false.into());
+    let other = |other: &Pair| {
+        let mut cells = pair(row, other);
+        cells[9] = false.into();
         cells
     };
     std::iter::once(taken)
         .chain(contact.others.iter().map(other))
         .collect()
+}
+
+fn pair(row: &WetRow, pair: &Pair) -> Line {
+    let [(k, k_sd), (a, a_sd)] = pair.estimates();
+    let mut cells = begun(row);
+    (cells[2], cells[3]) = (k.into(), k_sd.into());
+    (cells[4], cells[5]) = (a.into(), a_sd.into());
+    cells[6] = pair.covariance()[0][1].into();
+    cells
 }
 
 /// One line an oil, nearest first.

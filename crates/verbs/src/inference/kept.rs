@@ -1,6 +1,7 @@
 //! Numbers that are kept while their unit changes with another's value.
 
 use crate::arguments::infer::Assignment;
+use crate::quantity::digits;
 use hertzchain_experiment::{Experiment, Place};
 use hertzchain_infer::Model;
 
@@ -86,11 +87,14 @@ fn stays(steering: &str, follower: &Place, is_free: bool) -> String {
          ({unit}). So the force at an overlap of 1 m stays, and that at the overlaps of a contact, micrometres, \
          changes by orders of magnitude; {how} {} too if that is not meant",
         follower.path,
-        follower.value.unwrap_or(f64::NAN),
+        digits(follower.value.unwrap_or(f64::NAN), DIGITS),
         last(steering),
         last(&follower.path)
     )
 }
+
+/// Digits of a number that somebody gave: more are rounding.
+const DIGITS: usize = 10;
 
 /// The key at the end of a path.
 fn last(path: &str) -> &str {

@@ -100,6 +100,12 @@ fn residuals(fitted: &Fitted) -> Chart {
     let residuals = measured.into_iter().zip(&fitted.inferred.fit.residuals);
     let spreads = spreads(fitted);
     let all: Vec<_> = residuals.zip(&spreads).collect();
+    let sizes = all
+        .iter()
+        .map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
+    let reach = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
+    // Free paper above all points, or one may look like part of the legend.
+    let chart = chart.y_range(-1.1 * reach, LEGEND_ABOVE * reach);
     Observable::ALL
         .into_iter()
         .filter(|of| data.has(*of))
@@ -129,6 +135,9 @@ fn residuals(fitted: &Fitted) -> Chart {
             chart.with(points.colour(colour).marker(marker))
         })
 }
+
+/// Top of the residuals' axis over the largest of them: room for two lines of a legend.
+const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
 fn spreads(fitted: &Fitted) -> Vec<f64> {

@@ -124,5 +124,9 @@ fn residuals(shown: &Shown<'_>) -> Chart {
     over_time(shown, "Residual (standard errors)")
         .h_line(0.0, "")
         .legend(Legend::Off)
-        .with(Series::line("", &in_us(times), &residuals).colour(Colour::BLUE))
+        .with(
+            Series::points("", &in_us(times), &residuals)
+                .colour(Colour::BLUE)
+                .marker(Marker::Circle),
+        )
 }

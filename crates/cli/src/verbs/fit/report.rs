@@ -191,6 +191,9 @@ fn correlations(fitted: &Inferred) -> String {
 
 /// Chi-square, runs and the worst residual.
 fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
+    if goodness.chi_square.is_none() {
+        return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
+    }
     let mut text = chi_square_text(goodness);
     text += &goodness.runs.map_or(String::new(), runs_text);
     if let Some((at, residual)) = goodness.farthest {

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
-use hertzchain_infer::gauge::{Branch, Contact, Oil, PowerForm};
+use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_told};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Standard errors that the band of power laws spans to either side: 95 %.
@@ -68,8 +68,8 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         if gauged.form.is_some() && contact.combination.is_some() {
             return None;
         }
-        let (value, sd) = contact.estimates()[of];
-        Some((row.speed_m_s, unit * value, unit * sd))
+        let (value, sd) = contact.first.estimates()[of];
+        is_told(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
     });
     let known: Vec<(f64, f64, f64)> = known.collect();
     let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
@@ -82,9 +82,9 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         let contact = row.told.as_ref().ok()?;
         let others = match contact.branch {
             Branch::Unknown => contact.pairs(),
-            _ => contact.others.clone(),
+            _ => contact.others.iter().collect(),
         };
-        let value = move |ln: [f64; 2]| (row.speed_m_s, unit * ln[of].exp());
+        let value = move |pair: &Pair| (row.speed_m_s, unit * pair.ln[of].exp());
         Some(others.into_iter().map(value))
     });
     let (speeds, values): (Vec<f64>, Vec<f64>) = others.flatten().unzip();

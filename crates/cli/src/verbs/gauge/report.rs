@@ -4,7 +4,7 @@ use crate::format::{self, digits, with_error};
 use crate::print::heading;
 use crate::words::{chi_square_of, chi_square_text, estimate, misfit, percent};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, Gauge, PowerForm, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Contact, Pair, PowerForm, SharedLaw, WetRow, is_told};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Everything that is to be said.
@@ -26,7 +26,10 @@ pub fn text(gauged: &Gauged) -> String {
         );
     }
     text += &held_numbers(gauged);
-    text += &Gauge::ambiguous(&gauged.rows).map_or(String::new(), |why| format!("{why}\n"));
+    text += &gauged
+        .gauge
+        .ambiguous(&gauged.rows)
+        .map_or(String::new(), |why| format!("{why}\n"));
     let by_laws = gauged.form.as_ref().is_some_and(PowerForm::is_sound);
     let known = match by_laws {
         false => "Known oils",
@@ -60,60 +63,67 @@ fn dry(gauged: &Gauged) -> String {
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
-fn shown(contact: &Contact) -> [String; 3] {
-    let [(k, k_sd), (a, a_sd)] = contact.estimates();
-    let both = |value: f64, sd: f64| {
-        if sd >= value {
-            return "not determined".to_owned();
-        }
-        let (value, sd) = with_error(value, sd);
-        format!("{value} ± {sd}")
-    };
-    let stiffness = both(1e-9 * k, 1e-9 * k_sd);
-    match &contact.combination {
-        None if !contact.is_known() => ["–".to_owned(), "–".to_owned(), either(contact)],
-        None => [stiffness, both(1e9 * a, 1e9 * a_sd), others(contact)],
-        Some(combination) => [
-            stiffness,
-            "–".to_owned(),
-            format!(
-                "K·(A/{} ns)^{}",
-                digits(1e9 * combination.reference_s, 4),
-                digits(combination.exponent, 3)
-            ),
-        ],
+fn shown(pair: &Pair) -> [String; 2] {
+    let [(k, k_sd), (a, a_sd)] = pair.estimates();
+    [told(1e-9 * k, 1e-9 * k_sd), told(1e9 * a, 1e9 * a_sd)]
+}
+
+/// A positive number with its error, if it is known.
+fn told(value: f64, sd: f64) -> String {
+    if !is_told(value, sd) {
+        return "not determined".to_owned();
     }
+    let (value, sd) = with_error(value, sd);
+    format!("{value} ± {sd}")
 }
 
-/// K in GN/m^1.5 and A in ns.
-fn pair(ln: &[f64; 2]) -> String {
-    let (k, a) = (digits(1e-9 * ln[0].exp(), 4), digits(1e9 * ln[1].exp(), 4));
-    format!("{k}, {a}")
-}
-
-/// Other pairs that fit as well.
-fn others(contact: &Contact) -> String {
-    let or = |ln: &[f64; 2]| format!("or {}", pair(ln));
-    contact.others.iter().map(or).collect::<Vec<_>>().join(" ")
-}
-
-/// All pairs, none before the others.
-fn either(contact: &Contact) -> String {
-    let pairs: Vec<String> = contact.pairs().iter().map(pair).collect();
-    format!("one of {}", pairs.join(" or "))
+/// A line for each pair that a row allows.
+fn pairs(contact: &Contact) -> Vec<[String; 3]> {
+    let line = |pair: &Pair, words: &str| {
+        let [k, a] = shown(pair);
+        [k, a, words.to_owned()]
+    };
+    if let Some(combination) = &contact.combination {
+        let words = format!(
+            "K·(A/{} ns)^{}",
+            digits(1e9 * combination.reference_s, 4),
+            digits(combination.exponent, 3)
+        );
+        let [k, _] = shown(&contact.first);
+        return vec![[k, "–".to_owned(), words]];
+    }
+    // None before the others, where nothing tells which.
+    let (all, first) = match contact.is_known() {
+        true => (
+            std::iter::once(&contact.first)
+                .chain(&contact.others)
+                .collect(),
+            "",
+        ),
+        false => (contact.pairs(), "either"),
+    };
+    let words = std::iter::once(first).chain(std::iter::repeat("or"));
+    all.into_iter()
+        .zip(words)
+        .map(|(pair, words)| line(pair, words))
+        .collect()
 }
 
 fn contacts(gauged: &Gauged) -> String {
-    let row = |row: &WetRow| {
+    let lines = |row: &WetRow| -> Vec<Vec<String>> {
         let speed = digits(row.speed_m_s, 4);
-        let cells = match &row.told {
-            Ok(contact) => shown(contact),
-            Err(why) => ["–".to_owned(), "–".to_owned(), why.clone()],
+        let lines = match &row.told {
+            Ok(contact) => pairs(contact),
+            Err(why) => vec![["–".to_owned(), "–".to_owned(), why.clone()]],
         };
-        std::iter::once(speed).chain(cells).collect::<Vec<_>>()
+        let speeds = std::iter::once(speed).chain(std::iter::repeat(String::new()));
+        let whole = speeds.zip(lines);
+        whole
+            .map(|(speed, line)| std::iter::once(speed).chain(line).collect())
+            .collect()
     };
-    let rows: Vec<Vec<String>> = gauged.rows.iter().map(row).collect();
-    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", "also"];
+    let rows: Vec<Vec<String>> = gauged.rows.iter().flat_map(lines).collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
     let few = rows.iter().all(|row| row[3].is_empty());
     let shown = if few { 3 } else { 4 };
     let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
@@ -157,8 +167,7 @@ fn by_form(gauged: &Gauged, form: &PowerForm) -> String {
         let at = form.at(speed);
         let both = |of: usize, unit: f64| {
             let value = unit * at.ln[of].exp();
-            let (value, sd) = with_error(value, value * at.ln_sd[of]);
-            format!("{value} ± {sd}")
+            told(value, value * at.ln_sd[of])
         };
         vec![digits(speed, 4), both(0, 1e-9), both(1, 1e9)]
     };

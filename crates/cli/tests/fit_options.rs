@@ -1,7 +1,7 @@
 //! Options of fit and design: those that give the same bits again, those that hold for rivals,
 //! those that say what could be measured, those that would say nothing.
 
-use crate::inference::{compact, curve, file, folder, json, refused, run, with_errors};
+use crate::common::{compact, curve, file, folder, json, refused, run, with_errors};
 use serde_json::Value;
 
 #[test]

@@ -1,0 +1,52 @@
+//! design at the command line.
+
+use crate::common::{curve, folder, json, refused, run, with_errors};
+use serde_json::Value;
+
+#[test]
+fn a_design_ranks_what_to_measure() {
+    let folder = folder("design");
+    let data = curve(&folder, "dry");
+    let design = [
+        "design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json",
+    ];
+    let found = json(&with_errors(&design));
+    let now = found["standard_errors_now"][0].as_f64().unwrap();
+    let ranked = found["ranked"].as_array().unwrap();
+    assert!(ranked.len() > 30);
+    let nats = |one: &Value| one["information_nats"].as_f64().unwrap();
+    for pair in ranked.windows(2) {
+        // What differs by less than a thousandth ranks by cost.
+        assert!(nats(&pair[0]) + 1e-3 >= nats(&pair[1]));
+    }
+    assert!(ranked[0]["standard_errors"][0].as_f64().unwrap() < now);
+    let message = refused(&with_errors(&[
+        "design", &data, "--free", "eta", "--target", "B",
+    ]));
+    assert!(
+        message.contains("--target B is not free; free are eta"),
+        "{message}"
+    );
+    let fast = ["design", &data, "--free", "eta", "--speeds", "0.1,500"];
+    assert!(refused(&with_errors(&fast)).contains("it looks like mm/s"));
+    // Errors of what the data leave open are not told as if they meant something.
+    let three = ["design", &data, "--free", "Y,nu,eta"];
+    let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
+    assert!(text.contains("Not determined so far"), "{text}");
+    assert!(text.contains("free K and A instead"), "{text}");
+    // Nor is noise ranked: two combinations can be determined, and the third by nothing.
+    let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
+    let names = serde_json::json!(["combination 1", "combination 2"]);
+    assert_eq!(found["parameters"], names);
+    let told = found["hopeless"].to_string();
+    for words in [
+        "nu up 1.00 % with",
+        "So none of Y, nu, eta can be tightened by itself",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // A start from where no minimum is found tells nothing.
+    let far = ["design", &data, "--free", "Y,eta,B", "--start", "B=1e5"];
+    let told = refused(&with_errors(&far));
+    assert!(told.contains("found no minimum"), "{told}");
+}

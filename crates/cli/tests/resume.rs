@@ -1,0 +1,165 @@
+//! Fits that were broken off and go on.
+
+use crate::common::{ERRORS, curve, folder, json, with_errors};
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// The walkers are written as they stand, whole, under their name: a run that is
+/// killed goes on from there to the bits of one that was not.
+#[test]
+fn a_posterior_that_is_killed_goes_on_to_the_walkers_of_one_that_was_not() {
+    let folder = folder("killed");
+    let data = curve(&folder, "dry");
+    let posterior = |out: &str, steps: &str, more: &[&str]| {
+        let out = folder.join(out);
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+        program
+            .args(["fit", &data, "-p", "dry", "--free", "eta,B"])
+            .args(["--method", "posterior", "--seed", "5", "--steps", steps])
+            .args(ERRORS)
+            .arg("--out")
+            .arg(out)
+            .args(more)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        program
+    };
+    let chain = |out: &str| fs::read(folder.join(out).join("chain.json")).unwrap();
+    assert!(posterior("whole", "60", &[]).status().is_ok());
+    assert!(posterior("broken", "20", &[]).status().is_ok());
+    let begun = chain("broken");
+    for delay_ms in [50, 400] {
+        let mut child = posterior("broken", "60", &["--resume"]).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(delay_ms));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // Whole at any moment: what was there, or what the run came to.
+        assert!([&begun, &chain("whole")].contains(&&chain("broken")));
+    }
+    assert!(posterior("broken", "60", &["--resume"]).status().is_ok());
+    assert!(chain("broken") == chain("whole"));
+    assert!(begun != chain("whole"));
+}
+
+/// Residuals are written as they come: a run that is killed goes on from there to the
+/// bits of one that was not.
+#[test]
+fn a_fit_and_its_profiles_that_are_killed_go_on_to_the_bits_of_one_that_was_not() {
+    let folder = folder("killed-profile");
+    let data = curve(&folder, "dry");
+    let fit = |out: &str, more: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+        program
+            .args([
+                "fit", &data, "-p", "dry", "--free", "eta,B", "--starts", "3",
+            ])
+            .args(["--method", "profile", "--accuracy", "1e-7", "--seed", "5"])
+            .args(ERRORS)
+            .arg("--out")
+            .arg(folder.join(out))
+            .args(more)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        program
+    };
+    let parts = |out: &str| {
+        let found = fs::read_dir(folder.join(out).join("partial"));
+        found.map_or(0, |found| {
+            let names = found.map(|entry| entry.unwrap().file_name());
+            names
+                .filter(|name| name.to_str().unwrap().starts_with("part-"))
+                .count()
+        })
+    };
+    let mut more: &[&str] = &[];
+    for wanted in [2, 4] {
+        let mut child = fit("broken", more).spawn().unwrap();
+        while parts("broken") < wanted && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(parts("broken") >= wanted, "it ended before it was killed");
+        more = &["--resume"];
+    }
+    let result = |out: &str| fs::read(folder.join(out).join("fit.json"));
+    assert!(result("broken").is_err());
+    assert!(fit("broken", more).status().unwrap().success());
+    assert!(fit("whole", &[]).status().unwrap().success());
+    assert_eq!(result("broken").unwrap(), result("whole").unwrap());
+    assert_eq!(parts("broken"), 0);
+}
+
+#[test]
+fn a_posterior_is_the_same_in_one_run_and_in_two() {
+    let folder = folder("posterior");
+    let data = curve(&folder, "dry");
+    let out = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (whole, parts) = (out("whole"), out("parts"));
+    let run_into = |out: &str, more: &[&str]| {
+        let fit = [
+            "fit",
+            &data,
+            "-p",
+            "dry",
+            "--free",
+            "eta,B",
+            "--method",
+            "posterior",
+            "--json",
+            "-o",
+            out,
+        ];
+        json(&with_errors(&[&fit[..], more].concat()))
+    };
+    let at_once = run_into(&whole, &["--steps", "400"]);
+    let first = run_into(&parts, &["--steps", "300"]);
+    assert!(
+        first["posterior"]["unconverged"]
+            .as_str()
+            .unwrap()
+            .contains("has not converged")
+    );
+    let then = run_into(&parts, &["--steps", "400", "--resume"]);
+    assert_eq!(at_once["posterior"], then["posterior"]);
+}
+
+/// Other models' residuals are kept as the fit's own.
+#[test]
+fn a_fit_that_is_killed_among_other_models_goes_on_to_the_bits_of_one_that_was_not() {
+    let folder = folder("killed-against");
+    let data = curve(&folder, "dry");
+    let fit = |out: &str, more: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+        program
+            .args([
+                "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "B=90",
+            ])
+            .args(["--bounds", "B=78:200", "--accuracy", "1e-7"])
+            .args(["--against", "hertz-viscoelastic=eta"])
+            .args(ERRORS)
+            .arg("--out")
+            .arg(folder.join(out))
+            .args(more)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        program
+    };
+    let rival = folder.join("broken/partial/against-0");
+    let mut child = fit("broken", &[]).spawn().unwrap();
+    while !rival.exists() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let result = |out: &str| fs::read(folder.join(out).join("fit.json"));
+    assert!(
+        rival.exists() && result("broken").is_err(),
+        "it ended before it was killed"
+    );
+    assert!(fit("broken", &["--resume"]).status().unwrap().success());
+    assert!(fit("whole", &[]).status().unwrap().success());
+    assert_eq!(result("broken").unwrap(), result("whole").unwrap());
+    assert!(!folder.join("broken/partial").exists());
+}
