@@ -449,7 +449,7 @@ mod tests {
         let alternating: Vec<f64> = (0..20).map(|at| f64::from(1 - 2 * (at % 2))).collect();
         let many = told(&alternating).unwrap_or_default();
         assert!(
-            many.contains("20 runs of equal sign, 11.0 expected: as many or more in"),
+            many.contains("20 runs of equal sign, 11 expected: as many or more in"),
             "{many}"
         );
         assert!(many.contains("oddly often"), "{many}");
