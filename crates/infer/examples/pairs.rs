@@ -144,8 +144,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 continue;
             }
             let of = |seed: usize| counted(&case, (&dry_model, &dry), ratios, seed as u64);
-            let all: Vec<Counts> = (1..=sets).into_par_iter().map(of).collect();
-            let sum = all.iter().fold(Counts::default(), Counts::and);
+            let all: Result<Vec<Counts>, String> = (1..=sets).into_par_iter().map(of).collect();
+            let sum = all?.iter().fold(Counts::default(), Counts::and);
             print(name, ratios, &sum);
         }
     }
@@ -158,7 +158,7 @@ fn counted(
     (dry_model, dry): (&Experiment, &Truth),
     ratios: bool,
     seed: u64,
-) -> Counts {
+) -> Result<Counts, String> {
     let noise = Noise::of_the_paper();
     let wet_seed = seed + 10_000;
     let wet: Data = match ratios {
@@ -173,10 +173,8 @@ fn counted(
         own: &[],
         accuracy: 1e-5,
     };
-    let gauge = match Gauge::new(&chains, dry.measured_with(noise, seed), wet) {
-        Ok(gauge) => gauge,
-        Err(error) => panic!("seed {seed}: {error}"),
-    };
+    let gauge = Gauge::new(&chains, dry.measured_with(noise, seed), wet);
+    let gauge = gauge.map_err(|error| format!("seed {seed}: {error}"))?;
     let rows = gauge.rows();
     let of = |row: &WetRow| {
         let (k, a) = case.oil.contact(gauge.wet_radius_m(), row.speed_m_s);
@@ -191,9 +189,8 @@ fn counted(
         }
         counts
     };
-    rows.iter()
-        .map(of)
-        .fold(Counts::default(), |sum, row| sum.and(&row))
+    let all = rows.iter().map(of);
+    Ok(all.fold(Counts::default(), |sum, row| sum.and(&row)))
 }
 
 /// What a row tells that is not the truth.
