@@ -333,4 +333,9 @@ fn a_users_oil_may_be_given_by_its_contact() {
         let line = format!("mine.csv, line {}", 1 + row.lines().count());
         assert!(error.contains(&line) && error.contains(words), "{error}");
     }
+    let text =
+        "name,young_modulus_pa,poisson_prefactor,viscosity_prefactor_pa_s\nmine,2e11,1.2,6e4\n";
+    let error = oils("mine.csv", text).unwrap_err().to_string();
+    let told = "mine.csv, line 2: poisson_prefactor is 1.2";
+    assert!(error.starts_with(told), "{error}");
 }
