@@ -77,6 +77,8 @@ pub fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<String> {
 pub fn percent(share: f64) -> String {
     match share {
         0.0 => "0 %".to_owned(),
+        // No error is so exactly normal that smaller shares would mean anything.
+        share if share > 0.0 && 100.0 * share < 1e-9 => "less than 1e-9 %".to_owned(),
         share if share < 1e-4 => format!("{:.0e} %", 100.0 * share),
         share => format!("{} %", digits(100.0 * share, 2)),
     }
@@ -102,6 +104,14 @@ pub fn doubt(ending: &Ending) -> Option<String> {
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_below_what_means_anything_are_told_as_a_limit() {
+        assert_eq!(percent(7e-310), "less than 1e-9 %");
+        assert_eq!(percent(2e-11), "2e-9 %");
+        assert_eq!(percent(0.43), "43 %");
+        assert_eq!(percent(0.0), "0 %");
+    }
 
     #[test]
     fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {

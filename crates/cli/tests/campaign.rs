@@ -344,6 +344,9 @@ with h5py.File("FILE") as file:
     assert file['truth/incident_tof_s'].shape == (4,)
     assert 'slowest' in file.attrs['experiment']
     assert samples.attrs['units'] == 'V'
+    truth = file['truth']
+    names = {truth[name].attrs['long_name'] for name in truth}
+    assert len(names) == len(truth) and 'true value' not in names, names
 print('read')
 "#;
 

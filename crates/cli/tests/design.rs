@@ -50,3 +50,28 @@ fn a_design_ranks_what_to_measure() {
     let told = refused(&with_errors(&far));
     assert!(told.contains("found no minimum"), "{told}");
 }
+
+#[test]
+fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more() {
+    let folder = folder("design-unfit");
+    let data = curve(&folder, "dry");
+    let ranked = |eta: &str| {
+        let eta = format!("shear_viscosity={eta} Pa s");
+        let design = [
+            "design", &data, "-p", "dry", "--free", "B", "--speeds", "0.5",
+        ];
+        let design = with_errors(&[&design[..], &["--set", &eta]].concat());
+        let text = String::from_utf8(run(&design).stdout).unwrap();
+        (text, json(&[&design[..], &["--json"]].concat()))
+    };
+    // The curve's own viscosity, and a third of it.
+    let (text, found) = ranked("3.2e4");
+    assert!(text.starts_with("Now: B"), "{text}");
+    assert_eq!(found["follows_data"], true);
+    let (text, found) = ranked("1e4");
+    assert!(
+        text.starts_with("Beware: the model does not follow the data"),
+        "{text}"
+    );
+    assert_eq!(found["follows_data"], false);
+}

@@ -55,6 +55,14 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
         first.contains("the model does not follow the data"),
         "{text}"
     );
+    let second = text.lines().nth(1).unwrap();
+    assert!(second.contains("Look whether --dry names"), "{text}");
+    // Under the verdict, where a long table ends, it is said again.
+    let last = text.lines().last().unwrap();
+    assert!(
+        last.starts_with("Beware: what the first lines say"),
+        "{text}"
+    );
     let text = told(&curve(&folder, "dry"));
     assert!(!text.contains("Beware"), "{text}");
 }

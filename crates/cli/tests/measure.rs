@@ -422,6 +422,52 @@ fn a_power_law_is_judged_by_errors_of_speeds_only_where_these_are_known() {
         unknown.contains("`speed error`") && unknown.contains("taken for 0"),
         "{unknown}"
     );
+    for (name, csv, supported) in [
+        ("known", ",false", Value::Bool(false)),
+        ("unknown", ",unknown", Value::Null),
+    ] {
+        let folder = folder(name);
+        fits(
+            &folder,
+            &[0.2, 0.5, 1.0],
+            if name == "known" { "1e-6" } else { "" },
+        );
+        let told = measure(
+            &folder,
+            &[".", "--shots", "list.txt", "--json", "--out", "out"],
+        );
+        let law = &json(&told)["cases"][0]["power_law_incident"];
+        assert_eq!(law["supported"], supported, "{law}");
+        let why = law["supported_unknown_because"].as_str();
+        assert_eq!(why.is_some(), name == "unknown", "{law}");
+        let laws = fs::read_to_string(folder.join("out/power-laws.csv")).unwrap();
+        assert!(laws.lines().nth(1).unwrap().ends_with(csv), "{laws}");
+    }
     let two = fits(&folder("two"), &[0.2, 1.0], "1e-6");
     assert!(two.contains("two speeds, which cannot test it"), "{two}");
+}
+
+#[test]
+fn ratios_of_both_times_are_printed() {
+    let folder = folder("both-ratios");
+    shots(&folder);
+    let output = measure(&folder, &[".", "--shots", "list.txt"]);
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    for time in ["incident", "reflected"] {
+        let lines = printed.matches(&format!("  {time} at ")).count();
+        assert_eq!(lines, SPEEDS.len(), "{printed}");
+    }
+}
+
+/// Of six records at 1 MHz none takes it: one line says so, and no table repeats it.
+#[test]
+fn a_low_pass_above_half_the_rate_is_told_once() {
+    let folder = folder("low-pass");
+    shots(&folder);
+    let output = measure(&folder, &[".", "--shots", "list.txt", "--low-pass", "2MHz"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(told.matches("half the sampling rate").count(), 1, "{told}");
+    assert!(told.contains("sampled at 1000000 Hz"), "{told}");
+    assert!(output.stdout.is_empty());
 }

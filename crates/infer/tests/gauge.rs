@@ -124,6 +124,60 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
     assert_eq!(doubts, None);
 }
 
+/// Who gives the wet table for the dry one reads so, and of no liquid.
+#[test]
+fn a_wet_curve_in_the_dry_ones_place_is_told() {
+    let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
+    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &free,
+        own: &[],
+        accuracy: 1e-5,
+    };
+    let told = |[dry, wet]: [&Experiment; 2]| {
+        let gauge = Gauge::new(
+            &chains,
+            Truth::of(dry, &SPEEDS_M_S).measured(21),
+            Truth::of(wet, &SPEEDS_M_S).measured(22),
+        );
+        let gauge = gauge.unwrap();
+        gauge.doubts(&gauge.verdict(&[]).unwrap())
+    };
+    let swapped = told([&wet_model, &dry_model]).unwrap();
+    assert!(
+        swapped.contains("--dry names the curve of the dry chain"),
+        "{swapped}"
+    );
+    assert_eq!(told([&dry_model, &wet_model]), None);
+}
+
+/// What is done already is not advised: a load for each chain, but returns are used.
+#[test]
+fn with_loads_of_their_own_the_advice_is_to_leave_returns_out() {
+    let paper = preset("paper").unwrap();
+    let [dry_model, wet_model] = ["dry", "pump"].map(|name| paper.case(name).unwrap().unwrap());
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &["aisi316.eta".to_owned(), "dry.B".to_owned()],
+        own: &["near_end.force".to_owned()],
+        accuracy: 1e-5,
+    };
+    let measured = |of: &Experiment, seed| Truth::of(of, &SPEEDS_M_S).measured(seed);
+    let gauge = Gauge::new(&chains, measured(&dry_model, 31), measured(&wet_model, 32)).unwrap();
+    let [motor, pump] = [0, 2].map(|at| known_oils().unwrap().remove(at));
+    let doubts = |oil| gauge.doubts(&gauge.verdict(&[oil]).unwrap());
+    let of_none = doubts(motor).unwrap();
+    assert!(
+        of_none.contains("leave the reflected ones out (--use incident)"),
+        "{of_none}"
+    );
+    assert!(!of_none.contains("--own"), "{of_none}");
+    assert_eq!(doubts(pump), None);
+}
+
 #[test]
 fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
     let pump = preset("pump").unwrap();
@@ -279,4 +333,9 @@ fn a_users_oil_may_be_given_by_its_contact() {
         let line = format!("mine.csv, line {}", 1 + row.lines().count());
         assert!(error.contains(&line) && error.contains(words), "{error}");
     }
+    let text =
+        "name,young_modulus_pa,poisson_prefactor,viscosity_prefactor_pa_s\nmine,2e11,1.2,6e4\n";
+    let error = oils("mine.csv", text).unwrap_err().to_string();
+    let told = "mine.csv, line 2: poisson_prefactor is 1.2";
+    assert!(error.starts_with(told), "{error}");
 }

@@ -228,3 +228,30 @@ fn a_model_that_fails_somewhere_is_walked_around_and_one_that_fails_at_the_start
     });
     assert!(refused(&short).to_string().contains("returned 1 residuals"));
 }
+
+#[test]
+fn a_start_where_the_model_fails_is_told_with_its_values() {
+    struct Fails(Vec<Parameter>);
+    impl hertzchain_infer::Problem for Fails {
+        fn parameters(&self) -> &[Parameter] {
+            &self.0
+        }
+        fn residual_count(&self) -> usize {
+            4
+        }
+        fn residuals(
+            &self,
+            points: &[Vec<f64>],
+        ) -> Vec<Result<hertzchain_infer::Residuals, hertzchain_infer::ModelError>> {
+            let none = || Err(hertzchain_infer::ModelError("beads overlap".to_owned()));
+            points.iter().map(|_| none()).collect()
+        }
+    }
+    let free = vec![Parameter::new("Y", "Pa", 213.0)];
+    let told = fit(&Fails(free), &Fitting::default())
+        .unwrap_err()
+        .to_string();
+    let expected = "no residuals at the start: with Y = 2.1300e2 Pa: beads overlap";
+    assert!(told.starts_with(expected), "{told}");
+    assert!(told.contains("--start"), "{told}");
+}

@@ -205,6 +205,19 @@ fn a_profile_that_meets_a_better_fit_says_so() {
     assert!((best.point[0] + 3.0).abs() < 1e-4);
     let agreeing = best.agreeing_starts();
     assert!((1..8).contains(&agreeing), "{agreeing}");
+    // The shallower one, near 3, costs (0.2 · 6)² = 1.44 less what a little of the way back
+    // gains: it fits as well, and is told once however many starts came to it.
+    let sd = Covariance::new(&spread.parameters, &best).sd;
+    let others = best.other_minima(&sd);
+    let [(other, count)] = others[..] else {
+        panic!("{others:?}")
+    };
+    assert!((2.8..3.0).contains(&other.point[0]), "{other:?}");
+    let rise = 2.0 * (other.cost - best.cost);
+    assert!((1.3..1.44).contains(&rise), "{rise}");
+    assert_eq!(count + agreeing, best.starts.len());
+    // Where nothing is known of the parameters, none is another.
+    assert!(best.other_minima(&[f64::INFINITY; 2]).is_empty());
 }
 
 #[test]

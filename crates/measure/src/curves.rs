@@ -1,6 +1,7 @@
 //! Shots into curves: means a speed, ratios, power laws.
 
 use crate::Shot;
+use crate::alike::settled;
 use crate::lost::{At, Lost, lost};
 use hertzchain_signal::{
     Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
@@ -40,6 +41,9 @@ pub struct SpeedRow {
     /// Shots that count, and shots of this speed that do not: doubtful ones, and those without a time
     /// or a speed of their own.
     pub shots: (usize, usize),
+    /// Of those that count, shots whose return has two maxima of which all of them together do
+    /// not tell the largest: their reflected times do not count.
+    pub returns_undecided: usize,
     /// Incident time of flight in s.
     pub incident_s: Summary,
     /// Reflected time of flight in s.
@@ -115,20 +119,25 @@ impl Curves {
                 names.push(&shot.case);
             }
         }
-        let cases = names.iter().map(|name| Case::of(name, shots, grouping));
-        let cases: Vec<Case> = cases.filter(|case| !case.rows.is_empty()).collect();
+        let (mut cases, mut all_lost) = (Vec::new(), Vec::new());
+        for name in names {
+            let (case, undecided) = Case::of(name, shots, grouping);
+            let mut lost = lost(name, shots, grouping);
+            lost.extend(undecided);
+            lost.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+            all_lost.extend(lost);
+            cases.extend(Some(case).filter(|case| !case.rows.is_empty()));
+        }
         Self {
             ratios: ratios(&cases, grouping),
-            lost: names
-                .iter()
-                .flat_map(|name| lost(name, shots, grouping))
-                .collect(),
+            lost: all_lost,
             cases,
         }
     }
 }
 
 /// A shot that has speed and time.
+#[derive(Clone, Copy)]
 struct Timed<'a> {
     at: At,
     speed: Estimate,
@@ -150,7 +159,8 @@ impl<'a> Timed<'a> {
 }
 
 impl Case {
-    fn of(name: &str, shots: &[Shot], grouping: &Grouping) -> Self {
+    /// The curve, and speeds at which all shots leave open which maxima are the largest.
+    fn of(name: &str, shots: &[Shot], grouping: &Grouping) -> (Self, Vec<Lost>) {
         let own: Vec<&Shot> = shots.iter().filter(|shot| shot.case == name).collect();
         let untimed = own
             .iter()
@@ -159,21 +169,54 @@ impl Case {
         let timed = own.iter().filter_map(|shot| Timed::of(shot, grouping));
         let timed: Vec<Timed<'_>> = timed.collect();
         let gap_m_s = grouping.gap_m_s;
-        let rows = grouped(&timed, gap_m_s).into_iter().filter_map(|group| {
+        let (mut rows, mut undecided) = (Vec::new(), Vec::new());
+        for group in grouped(&timed, gap_m_s) {
             let of_this = |at: &&At| group.iter().any(|timed| timed.at.is_like(at, gap_m_s));
-            let mut row = row(&group)?;
-            row.shots.1 += untimed.iter().filter(of_this).count();
-            Some(row)
-        });
-        let mut rows: Vec<SpeedRow> = rows.collect();
+            let untimed = untimed.iter().filter(of_this).count();
+            match row(&group, untimed, grouping.keep_dubious) {
+                Some(row) => rows.push(row),
+                None => undecided.extend(nothing_decided(name, &group)),
+            }
+        }
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
-        Self {
+        let case = Self {
             name: name.to_owned(),
             laws: Laws {
                 incident: law(&points(&rows, 0)),
                 reflected: law(&points(&rows, 1)),
             },
             rows,
+        };
+        (case, undecided)
+    }
+}
+
+/// A speed whose shots would count if their largest maxima were known; of others
+/// [`lost`] tells.
+fn nothing_decided(case: &str, group: &[&Timed<'_>]) -> Option<Lost> {
+    let first = group.iter().find(|shot| shot.counts)?;
+    Some(Lost {
+        case: case.to_owned(),
+        speed_m_s: first.programmed.unwrap_or(first.speed.value),
+        shots: group.len(),
+    })
+}
+
+/// Why nothing says whether a power law holds.
+const SPEEDS_UNKNOWN: &str = "errors of speeds are not known and were taken for 0";
+
+impl Case {
+    /// Whether points follow a power law of this case within their errors, as
+    /// [`PowerLaw::is_supported`].
+    ///
+    /// # Errors
+    /// Why that is not known: it does not hold within the errors of times alone, and those
+    /// of speeds are not known.
+    pub fn supports(&self, law: &PowerLaw) -> Result<Option<bool>, &'static str> {
+        let speeds_known = self.rows.iter().all(|row| row.speed_m_s.sigma > 0.0);
+        match law.is_supported() {
+            Some(false) if !speeds_known => Err(SPEEDS_UNKNOWN),
+            judged => Ok(judged),
         }
     }
 }
@@ -198,8 +241,25 @@ fn by<'a>(
     groups(&keys, gap).into_iter().map(pick).collect()
 }
 
-fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
-    let counted: Vec<&&Timed<'_>> = group.iter().filter(|shot| shot.counts).collect();
+/// Of shots of one speed, and of how many more that have no time or speed.
+fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
+    let counted: Vec<&Timed<'_>> = group.iter().copied().filter(|shot| shot.counts).collect();
+    let own: Vec<&Flight> = counted.iter().map(|shot| shot.flight).collect();
+    let settled = match keep_dubious {
+        true => own.iter().map(|flight| Some(**flight)).collect(),
+        false => settled(&own),
+    };
+    let timed = |flight: &&Flight| flight.reflected_s.is_some();
+    let pairs = counted.iter().zip(&settled);
+    let counted: Vec<Timed<'_>> = pairs
+        .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
+        .collect();
+    let with_return = own
+        .iter()
+        .zip(&settled)
+        .filter(|(own, now)| now.is_some() && timed(own));
+    let returns = counted.iter().filter(|shot| timed(&shot.flight)).count();
+    let returns_undecided = with_return.count() - returns;
     let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
         let values = counted.iter().filter_map(|shot| value(shot.flight));
         summary(&values.collect::<Vec<_>>())
@@ -214,7 +274,8 @@ fn row(group: &[&Timed<'_>]) -> Option<SpeedRow> {
         speed_error_shots,
         shared_s: [shared_s(&counted, 0), shared_s(&counted, 1)],
         at_mean_speed_s: [moved(0), moved(1)],
-        shots: (counted.len(), group.len() - counted.len()),
+        shots: (counted.len(), untimed + group.len() - counted.len()),
+        returns_undecided,
         incident_s: of(&|flight| Some(flight.incident_s))?,
         reflected_s: of(&|flight| flight.reflected_s),
         wall_over_passing: of(&|flight| Some(flight.wall_over_passing))?,
@@ -248,23 +309,23 @@ fn are_known(speeds: &[Estimate]) -> bool {
 
 /// What the errors of all shots that have this time share: of both its pulses, the mean of
 /// what may have moved them.
-fn shared_s(shots: &[&&Timed<'_>], time: usize) -> f64 {
-    let has = |shot: &&&&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
+fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
+    let has = |shot: &&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
     let own = shots.iter().filter(has);
-    let own: Vec<[Moved; 2]> = own.map(|shot| shot.flight.picks.moved()[time]).collect();
+    let own: Vec<[Moved; 2]> = own.map(|shot| shot.flight.moved()[time]).collect();
     shared(&own)
 }
 
 /// Mean of times that are taken to one speed, with the error of what scatters besides
 /// measured speeds: their errors are the mean speed's, and count there. At least
 /// that of picking; and what all shots share on top.
-fn at_speed(shots: &[&&Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Estimate> {
-    let moved = |shot: &&&Timed<'_>| {
+fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Estimate> {
+    let moved = |shot: &Timed<'_>| {
         let of = [Some(shot.flight.incident_s), shot.flight.reflected_s][time]?;
         let factor = (speed_m_s.value / shot.speed.value).powf(EXPONENT);
         Some(Estimate {
             value: factor * of.value,
-            sigma: factor * alone(of.sigma, shot.flight.picks.moved()[time]),
+            sigma: factor * alone(of.sigma, shot.flight.moved()[time]),
         })
     };
     let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();

@@ -6,6 +6,7 @@
 //! Nothing here knows of chains: how many beads there are and where the sensor
 //! sits are plain numbers in [`hertzchain_signal::Finding`].
 
+mod alike;
 mod curves;
 mod example;
 mod level;
@@ -18,6 +19,7 @@ mod shot;
 mod speeds;
 mod table;
 
+pub use alike::settled;
 pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};
 pub use example::Example;
 pub use hertzchain_records as records;

@@ -1,6 +1,6 @@
 //! Results as CSV, in SI.
 
-use crate::{Curves, Lost, Shot, SpeedRow};
+use crate::{Case, Curves, Lost, Shot, SpeedRow};
 use hertzchain_signal::{Estimate, Picked, PowerLaw, Ratio, Summary};
 use std::io::{self, Write};
 use std::iter::once;
@@ -100,7 +100,7 @@ pub fn speeds_csv(curves: &Curves) -> String {
     for time in ["tof_incident", "tof_reflected"] {
         text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
     }
-    text += ",speed_error_shots\n";
+    text += ",speed_error_shots,returns_undecided\n";
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -145,11 +145,15 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
         .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))))
         .chain(row.at_mean_speed_s.into_iter().flat_map(both))
-        .chain([row.speed_error_shots.to_string()]);
+        .chain([
+            row.speed_error_shots.to_string(),
+            row.returns_undecided.to_string(),
+        ]);
     line(cells)
 }
 
-/// One line a power law: of each case incident and reflected times of flight.
+/// One line a power law: of each case incident and reflected times of flight. It is supported or
+/// not, or that is unknown; empty where nothing judges it.
 /// Errors follow from those of the points, as they are; where the law is not
 /// supported, they are too small by √(chi-square/degrees of freedom).
 #[must_use]
@@ -163,13 +167,13 @@ pub fn laws_csv(curves: &Curves) -> String {
             ("reflected", &case.laws.reflected),
         ];
         for (time, law) in laws {
-            text.extend(law.iter().map(|law| law_line(&case.name, time, law)));
+            text.extend(law.iter().map(|law| law_line(case, time, law)));
         }
     }
     text
 }
 
-fn law_line(case: &str, time: &str, law: &PowerLaw) -> String {
+fn law_line(case: &Case, time: &str, law: &PowerLaw) -> String {
     let judged = law.chi_square.as_ref();
     let fitted = [
         law.prefactor,
@@ -178,15 +182,17 @@ fn law_line(case: &str, time: &str, law: &PowerLaw) -> String {
         law.exponent_error,
         law.r_squared,
     ];
-    let cells = [quoted(case), time.to_owned()]
+    let cells = [quoted(&case.name), time.to_owned()]
         .into_iter()
         .chain(fitted.map(|value| cell(Some(value))))
         .chain([
             cell(judged.map(|judged| judged.value)),
             judged.map_or(String::new(), |judged| judged.freedom.to_string()),
             cell(judged.map(|judged| judged.probability)),
-            law.is_supported()
-                .map_or(String::new(), |supported| supported.to_string()),
+            match case.supports(law) {
+                Ok(supported) => supported.map_or(String::new(), |supported| supported.to_string()),
+                Err(_) => "unknown".to_owned(),
+            },
         ]);
     line(cells)
 }

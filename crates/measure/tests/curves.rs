@@ -57,6 +57,7 @@ fn told_series(
         case: case.to_owned(),
         seed: 0,
         experiment: String::new(),
+        long_names: &[],
         more: [("measured_speed_error_m_s", "0.001")]
             .iter()
             .chain(told)
@@ -206,7 +207,7 @@ fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
     // Errors that are a shot's own average out over five shots; what lies under their
     // pulses they share, and it stays.
     let flights = shots.iter().map(|shot| shot.flight.as_ref().unwrap());
-    let own = |flight: &Flight| alone(flight.incident_s.sigma, flight.picks.moved()[0]).powi(2);
+    let own = |flight: &Flight| alone(flight.incident_s.sigma, flight.moved()[0]).powi(2);
     let own: f64 = flights.map(own).sum();
     let stated = (own.sqrt() / 5.0).hypot(row.shared_s[0]);
     assert!(row.shared_s[0] > 0.1 * stated);
@@ -353,6 +354,7 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
         case: "dry".to_owned(),
         seed: 0,
         experiment: String::new(),
+        long_names: &[],
         more: Vec::new(),
     };
     let mut writer = SeriesWriter::create(&path, &info).unwrap();

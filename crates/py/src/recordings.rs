@@ -91,6 +91,7 @@ pub fn measure<'py>(
         let how = measuring::options(&arguments)?;
         let measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
         wanted()?;
+        measuring::suits(&measured)?;
         let grouping = measuring::grouping(&arguments);
         let curves = Curves::of(&measured.shots, &grouping);
         wanted()?;

@@ -32,6 +32,8 @@ pub(crate) struct Head {
     pub each: usize,
     /// Whether records are pieces of one recording and not shots.
     pub pieces: bool,
+    /// What was taken for granted.
+    pub note: Option<String>,
 }
 
 impl Head {
@@ -98,6 +100,7 @@ impl Head {
         Record {
             shot: self.several().then(|| self.number(start)),
             first_sample: self.first_sample(start),
+            notes: self.note.iter().cloned().collect(),
             ..Record::new(
                 self.source(start),
                 &self.file,

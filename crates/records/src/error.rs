@@ -132,7 +132,8 @@ pub enum RecordError {
     /// More channels than anybody can tell apart without being told.
     #[error(
         "{file}: has {count} channels ({there}); say which with --channel: one that sums both \
-         sensors, or two, the sensor bead's first"
+         sensors, or two, the sensor bead's first; of an array of which each column is a shot, \
+         --rows moments"
     )]
     WhichChannel {
         /// Which file.

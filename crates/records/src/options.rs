@@ -19,6 +19,18 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// What the rows of an array of this shape are, where its shape tells.
+    pub(crate) fn rows_of(&self, shape: &[usize]) -> Rows {
+        match (self.rows, shape) {
+            (Rows::Auto, &[rows, columns])
+                if columns < rows && columns > MOST_COLUMNS && self.channels.is_empty() =>
+            {
+                Rows::Moments
+            }
+            (rows, _) => rows,
+        }
+    }
+
     /// Whether a rate is given that counts whatever a file says.
     pub(crate) fn rate_is_trusted(&self) -> bool {
         self.trust_rate && self.rate_hz.is_some()
@@ -53,7 +65,8 @@ impl Parts {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rows {
     /// Time goes along the longer axis; the shorter one counts shots if it comes
-    /// first, channels if it comes last.
+    /// first, channels if it comes last; more than eight columns of which none is asked for
+    /// by its number are shots.
     #[default]
     Auto,
     /// A row is a shot.
@@ -62,4 +75,9 @@ pub enum Rows {
     Channels,
     /// A row is a moment, a column a channel.
     Times,
+    /// A row is a moment, a column a shot.
+    Moments,
 }
+
+/// Most columns that can be channels unasked, beside which times may stand.
+const MOST_COLUMNS: usize = 8;

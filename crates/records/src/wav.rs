@@ -36,6 +36,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         row: total,
         each: total,
         pieces: false,
+        note: None,
     };
     let stream = RawNumbers {
         reader: wave.into_inner(),

@@ -14,3 +14,4 @@ mod series;
 mod tdms;
 mod times;
 mod times_by_python;
+mod words;

@@ -201,6 +201,7 @@ fn written() -> Vec<u8> {
         case: "dry".to_owned(),
         seed: 1,
         experiment: String::new(),
+        long_names: &[],
         more: Vec::new(),
     };
     let mut writer = SeriesWriter::create(&path, &info).unwrap();

@@ -20,6 +20,7 @@ fn info(samples_per_shot: usize) -> SeriesInfo {
         case: "dry".to_owned(),
         seed: 42,
         experiment: "# An experiment\n[chain]\nbeads = 40\n".to_owned(),
+        long_names: &[],
         more: vec![("measured_speed_error_m_s".to_owned(), "0.003".to_owned())],
     }
 }

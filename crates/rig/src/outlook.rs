@@ -16,6 +16,13 @@ const ENOUGH: f64 = 10.0;
 /// Fewer samples there, and no pulse is recorded as one.
 const LEAST: f64 = 2.0;
 
+/// Standard deviations of noise above no signal at all that it hardly ever passes: once in
+/// three million samples.
+const QUIET: f64 = 5.0;
+
+/// Steps of the converter in its smallest pulse from which on rounding is nothing beside noise.
+const STEPS: f64 = 32.0;
+
 /// Full widths at half maximum after a pulse's maximum until it is over.
 const OVER: f64 = 1.5;
 
@@ -42,6 +49,8 @@ pub fn outlook(plan: &Plan) -> Result<Vec<String>, RigError> {
             };
             told.extend(seen.rate(plan)?);
             told.extend(seen.length(plan));
+            told.extend(seen.level(plan));
+            told.extend(seen.range(plan));
         }
     }
     told.dedup();
@@ -120,6 +129,76 @@ impl Seen {
             1e3 * (recorder.record_s - recorder.before_s),
             (1e4 * needed_s).ceil() / 10.0,
         ))
+    }
+
+    /// Voltages of the passing, the wall's and the returning pulse above no signal.
+    fn peaks_v(&self, plan: &Plan) -> [Option<f64>; 3] {
+        let amplifier = &plan.experiment.campaign().amplifier;
+        let volts = |charge_c_n: f64, force_n: f64| amplifier.gain_v_c * charge_c_n * force_n;
+        let back = self.passage.reflected;
+        [
+            Some(volts(
+                amplifier.sensitivity_c_n,
+                self.passage.incident.value,
+            )),
+            Some(volts(
+                amplifier.wall_sensitivity_c_n,
+                self.passage.wall.value,
+            )),
+            back.map(|peak| volts(amplifier.sensitivity_c_n, peak.value)),
+        ]
+    }
+
+    fn level(&self, plan: &Plan) -> Option<String> {
+        let recorder = recorder(plan);
+        let Trigger::Level(level_v) = recorder.trigger else {
+            return None;
+        };
+        let passing_v = self.peaks_v(plan)[0]?;
+        let noise_v = plan.experiment.campaign().amplifier.noise_v;
+        let asked_v = level_v - recorder.offset_v;
+        let what = &self.what;
+        let better_v = recorder.offset_v + (0.5 * passing_v).max(QUIET * noise_v);
+        if asked_v > passing_v {
+            return Some(format!(
+                "{what}: its passing pulse of {passing_v:.3} V about {} V never passes the trigger's \
+                 level of {level_v} V; level = \"{better_v:.3} V\" would be passed",
+                recorder.offset_v
+            ));
+        }
+        (asked_v < QUIET * noise_v).then(|| {
+            format!(
+                "{what}: the trigger's level of {level_v} V is within the noise, {noise_v} V about {} V, \
+                 which passes it without a shot or never from below; level = \"{better_v:.3} V\" is \
+                 half way up the passing pulse or above the noise",
+                recorder.offset_v
+            )
+        })
+    }
+
+    fn range(&self, plan: &Plan) -> Option<String> {
+        let recorder = recorder(plan);
+        let peaks_v = self.peaks_v(plan);
+        let largest_v = peaks_v.into_iter().flatten().fold(0.0, f64::max);
+        let smallest_v = peaks_v.into_iter().flatten().reduce(f64::min)?;
+        let (top_v, what) = (recorder.offset_v + largest_v, &self.what);
+        if top_v > recorder.range_v {
+            return Some(format!(
+                "{what}: its largest pulse goes to {top_v:.3} V and is clipped at the converter's range \
+                 of ± {} V; range = \"{:.2} V\" or a lower `gain` is enough",
+                recorder.range_v,
+                (120.0 * top_v).ceil() / 100.0
+            ));
+        }
+        let step_v = recorder.range_v / f64::from(1u32 << (recorder.bits.clamp(2, 16) - 1));
+        let steps = smallest_v / step_v;
+        let noise_v = plan.experiment.campaign().amplifier.noise_v;
+        (steps < STEPS && noise_v < 0.5 * step_v).then(|| {
+            format!(
+                "{what}: its smallest pulse of {smallest_v:.2e} V has {steps:.1} steps of the converter; a \
+                 smaller `range`, more `bits` or a higher `gain` gives more",
+            )
+        })
     }
 
     /// From the gate to the touch, of a late striker.

@@ -68,6 +68,7 @@ impl Plan {
                     RigError::Speed { what, why }
                 })?;
                 experiment.system(Some(programmed_m_s))?;
+                row_of_beads(experiment, programmed_m_s)?;
                 let number = u32::try_from(series.len()).unwrap_or(u32::MAX);
                 series.push(Series {
                     number,
@@ -95,6 +96,24 @@ impl Plan {
     #[must_use]
     pub fn shots(&self, series: usize) -> u64 {
         (series * self.experiment.campaign().shots) as u64
+    }
+}
+
+/// Beads that lie farther apart than the smallest of them is large are no row: what
+/// closes such gaps are flights, not a wave.
+fn row_of_beads(experiment: &Experiment, speed_m_s: f64) -> Result<(), RigError> {
+    let gap_m = experiment.campaign().laying.gap_scatter_m;
+    let (chain, _) = experiment.chain(Some(speed_m_s))?;
+    let radii_m = chain.beads.iter().map(|bead| bead.radius_m);
+    let least_m = radii_m.fold(f64::INFINITY, f64::min);
+    match gap_m < least_m {
+        true => Ok(()),
+        false => Err(RigError::Unsuited(format!(
+            "the chain is laid with gaps of {} mm in the mean, wider than its smallest bead's radius of \
+             {} mm: `gap_scatter` in [campaign.laying] is expected below that, some micrometres as a rule",
+            1e3 * gap_m,
+            1e3 * least_m
+        ))),
     }
 }
 

@@ -11,6 +11,56 @@ use std::path::Path;
 /// True values of a shot, by name; the endings are the units.
 pub type Truth = Vec<(&'static str, f64)>;
 
+/// What true values are, for people.
+const LONG_NAMES: [(&str, &str); 19] = [
+    ("speed_m_s", "true speed of the striker at the touch"),
+    (
+        "touch_s",
+        "time from the first sample to the striker's touch",
+    ),
+    (
+        "incident_peak_s",
+        "time from the touch to the passing pulse's maximum at the sensor bead",
+    ),
+    (
+        "wall_peak_s",
+        "time from the touch to the pulse's maximum at the wall",
+    ),
+    (
+        "reflected_peak_s",
+        "time from the touch to the returning pulse's maximum at the sensor bead",
+    ),
+    ("incident_tof_s", "true incident time of flight"),
+    ("reflected_tof_s", "true reflected time of flight"),
+    (
+        "incident_peak_n",
+        "largest force of the passing pulse at the sensor bead",
+    ),
+    ("wall_peak_n", "largest force at the wall"),
+    (
+        "reflected_peak_n",
+        "largest force of the returning pulse at the sensor bead",
+    ),
+    (
+        "rebound_m_s",
+        "final velocity of the striker, negative away from the chain",
+    ),
+    ("rest_s", "time from the touch until all beads rest"),
+    ("open_before", "number of open contacts before the shot"),
+    ("gaps_before_m", "sum of all gaps before the shot"),
+    ("largest_gap_before_m", "largest gap before the shot"),
+    (
+        "open_after",
+        "number of open contacts after the shot, at rest",
+    ),
+    ("gaps_after_m", "sum of all gaps after the shot, at rest"),
+    ("largest_gap_after_m", "largest gap after the shot, at rest"),
+    (
+        "overlap_before_m",
+        "overlap of every contact before the shot, negative across a gap",
+    ),
+];
+
 /// Runs a series into a file, which has its name once it is whole.
 ///
 /// # Errors
@@ -73,6 +123,7 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
         case: plan.case(series).name.clone(),
         seed: plan.seed,
         experiment: plan.experiment.text().to_owned(),
+        long_names: &LONG_NAMES,
         more: vec![
             ("title".to_owned(), plan.experiment.title().to_owned()),
             ("inputs".to_owned(), inputs.to_owned()),

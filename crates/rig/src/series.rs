@@ -50,8 +50,9 @@ pub fn run(
 ) -> Result<(), RigError> {
     let experiment = &plan.case(series).experiment;
     let mut chance = Chance::new(plan.seed, series.number, Purpose::Laying);
-    let bench = Bench::lay(experiment, &mut chance)
-        .map_err(|why| failed(series, "laying the chain".to_owned(), why))?;
+    let gaps_mm = 1e3 * experiment.campaign().laying.gap_scatter_m;
+    let when = || format!("laying the chain with gaps of {gaps_mm} mm in the mean (`gap_scatter`)");
+    let bench = Bench::lay(experiment, &mut chance).map_err(|why| failed(series, when(), why))?;
     let mut run = Run {
         campaign: experiment.campaign(),
         sensor_bead: experiment.sensor_bead(),

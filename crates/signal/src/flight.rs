@@ -1,6 +1,6 @@
 //! Times of flight of one shot.
 
-use crate::{Moved, Picked, Picks};
+use crate::{Moved, Picked, PickedRival, Picks, Place};
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub struct Flight {
     pub wall_over_passing: Estimate,
     /// Height of the returning pulse over that of the passing one.
     pub returning_over_passing: Option<Estimate>,
+    /// Relative standard error of the sampling interval, which is in both times' errors.
+    pub interval_error: f64,
     /// The pulses.
     pub picks: Picks,
 }
@@ -34,23 +36,57 @@ impl Flight {
     /// flight are wrong by as much, all of one recording alike.
     #[must_use]
     pub fn with_interval_error(mut self, relative: f64) -> Self {
-        let picks = &mut self.picks;
-        self.incident_s.widen(relative, &mut picks.passing);
-        if let (Some(reflected_s), Some(back)) = (&mut self.reflected_s, &mut picks.returning) {
-            reflected_s.widen(relative, back);
+        self.interval_error = relative;
+        self.incident_s.widen(relative);
+        if let Some(reflected_s) = &mut self.reflected_s {
+            reflected_s.widen(relative);
             self.covariance_s2 += self.incident_s.value * reflected_s.value * relative * relative;
         }
         self
     }
+
+    /// What may have moved the two pulses of the incident and of the reflected time in all alike
+    /// shots. The interval's error counts with the pulse that no other time has.
+    #[must_use]
+    pub fn moved(&self) -> [[Moved; 2]; 2] {
+        let [mut incident, mut reflected] = self.picks.moved();
+        let more = |of: Estimate| self.interval_error * of.value;
+        let widen = |moved: &mut Moved, more: f64| moved.shape_s = moved.shape_s.hypot(more);
+        widen(&mut incident[0], more(self.incident_s));
+        widen(&mut reflected[1], self.reflected_s.map_or(0.0, more));
+        [incident, reflected]
+    }
+
+    /// The same where more than this shot tells how much lower a pulse's rival is: below 0 the
+    /// rival is the pulse.
+    #[must_use]
+    pub fn with_rival_lower(&self, place: Place, lower: Estimate) -> Self {
+        let mut picks = self.picks;
+        let (Some(pulse), Some(rival)) = (picks.pulse(place), picks.rival(place)) else {
+            return *self;
+        };
+        let (most, next) = match lower.value >= 0.0 {
+            true => (pulse, rival.picked),
+            false => (rival.picked, pulse),
+        };
+        match place {
+            Place::Passing => picks.passing = most,
+            Place::Wall => picks.wall = most,
+            Place::Returning => picks.returning = Some(most),
+        }
+        let value = lower.value.abs();
+        picks.rivals[place as usize] = Some(PickedRival {
+            picked: next,
+            lower: Estimate { value, ..lower },
+        });
+        picks.flight().with_interval_error(self.interval_error)
+    }
 }
 
 impl Estimate {
-    /// Adds a relative error that all alike shots share; the pulse that no other time has
-    /// tells of it.
-    fn widen(&mut self, relative: f64, shared_by: &mut Picked) {
-        let more = relative * self.value;
-        self.sigma = self.sigma.hypot(more);
-        shared_by.moved.shape_s = shared_by.moved.shape_s.hypot(more);
+    /// Adds a relative error.
+    fn widen(&mut self, relative: f64) {
+        self.sigma = self.sigma.hypot(relative * self.value);
     }
 
     /// Quotient of two independent numbers, errors to first order.
@@ -67,6 +103,22 @@ impl Estimate {
 }
 
 impl Picks {
+    /// A pulse by its place.
+    #[must_use]
+    pub fn pulse(&self, place: Place) -> Option<Picked> {
+        match place {
+            Place::Passing => Some(self.passing),
+            Place::Wall => Some(self.wall),
+            Place::Returning => self.returning,
+        }
+    }
+
+    /// The rival of a pulse.
+    #[must_use]
+    pub fn rival(&self, place: Place) -> Option<PickedRival> {
+        self.rivals[place as usize]
+    }
+
     /// What may have moved the two pulses of the incident and of the reflected time.
     #[must_use]
     pub fn moved(&self) -> [[Moved; 2]; 2] {
@@ -84,10 +136,14 @@ impl Picks {
         };
         let passing = height(&self.passing);
         let back = self.returning.as_ref();
+        let passing_s = time(&self.passing, self.rivals[0].as_ref());
+        let wall_s = time(&self.wall, self.rivals[1].as_ref());
+        let back_s = back.map(|back| time(back, self.rivals[2].as_ref()));
         Flight {
-            incident_s: between(&self.passing, &self.wall),
-            reflected_s: back.map(|back| between(&self.wall, back)),
-            covariance_s2: back.map_or(0.0, |_| -self.wall.sigma_s.powi(2)),
+            incident_s: between(passing_s, wall_s),
+            reflected_s: back_s.map(|back_s| between(wall_s, back_s)),
+            covariance_s2: back.map_or(0.0, |_| -wall_s.sigma.powi(2)),
+            interval_error: 0.0,
             wall_over_passing: height(&self.wall).over(passing),
             returning_over_passing: back.map(|back| height(back).over(passing)),
             picks: self,
@@ -95,9 +151,21 @@ impl Picks {
     }
 }
 
-fn between(from: &Picked, to: &Picked) -> Estimate {
+/// A pulse's time, with the error of having taken another maximum for the largest: as far as
+/// that lies off, with the root of its chance.
+fn time(picked: &Picked, rival: Option<&PickedRival>) -> Estimate {
+    let of_rival = rival.map_or(0.0, |rival| {
+        rival.chance().sqrt() * (rival.picked.time_s - picked.time_s)
+    });
     Estimate {
-        value: to.time_s - from.time_s,
-        sigma: from.sigma_s.hypot(to.sigma_s),
+        value: picked.time_s,
+        sigma: picked.sigma_s.hypot(of_rival),
+    }
+}
+
+fn between(from: Estimate, to: Estimate) -> Estimate {
+    Estimate {
+        value: to.value - from.value,
+        sigma: from.sigma.hypot(to.sigma),
     }
 }

@@ -46,12 +46,15 @@ pub use cutter::{Cutter, Segment, Trigger};
 pub use delay::delay_by_cross_correlation;
 pub use droop::undroop;
 pub use error::SignalError;
-pub use find::{Channels, Doubt, Finding, Found, Place, Polarity, Pulse, Upright, pulses, upright};
+pub use find::{
+    Channels, Doubt, Finding, Found, Place, Polarity, Pulse, Rival, Upright, pulses, upright,
+};
 pub use flight::{Estimate, Flight};
 pub use level::{Level, level, median};
 pub use measure::{Measured, Measuring, measure};
 pub use picks::{
-    Method, Moved, Picked, Picks, Shape, Template, cramer_rao_of_samples_s, cramer_rao_s, pick,
+    Method, Moved, Picked, PickedRival, Picks, Shape, Template, cramer_rao_of_samples_s,
+    cramer_rao_s, pick,
 };
 pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,

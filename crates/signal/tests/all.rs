@@ -5,10 +5,16 @@ mod clipping;
 mod common;
 mod cutting;
 mod droop;
+#[path = "common/dry.rs"]
+mod dry;
+mod faint;
 mod finding;
 mod nonsense;
 mod picking;
 mod power_law;
 mod reduction;
+mod rivals;
 mod shared;
+#[path = "common/source.rs"]
+mod source;
 mod zero_phase;

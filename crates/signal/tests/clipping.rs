@@ -1,7 +1,7 @@
 //! Clipped pulses are timed by their flanks, and stated errors hold what these leave open.
 
 use crate::common::{Scene, normal};
-use crate::picking::dry::Dry;
+use crate::dry::Dry;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Measured, Measuring, Method, Place, Shape, coverage, measure,
 };

@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use crate::common::{Scene, normal};
-use crate::picking::dry::Dry;
-use hertzchain_signal::{Channels, Estimate, Flight, Measuring, Moved, alone, measure, shared};
+use crate::dry::Dry;
+use hertzchain_signal::{
+    Channels, Doubt, Estimate, Flight, Measuring, Moved, Place, alone, measure, shared,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -102,7 +104,7 @@ fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Moved; 2]>) {
             value: flight.incident_s.value - truth_s,
             ..flight.incident_s
         };
-        (error, flight.picks.moved()[0])
+        (error, flight.moved()[0])
     };
     (0..shots).map(shot).unzip()
 }
@@ -124,4 +126,33 @@ fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows()
     );
     // Stated ten times too large it would say nothing.
     assert!(shared_s < 5.0 * mean.abs(), "{mean:e} {shared_s:e}");
+}
+
+/// Error of the incident time where the wall's pulse falls so many times as slowly as it rises and
+/// something passes beneath its rise, and whether that is told.
+fn beneath_a_fall(ratio: f64) -> (f64, bool) {
+    let mut samples = Scene::default().summed();
+    let (top, fall) = (1500, ratio * 26.0 / 2.0_f64.sqrt().acosh());
+    for (i, volt) in samples.iter_mut().enumerate().skip(top).take(400) {
+        *volt = 1.6 / ((i - top) as f64 / fall).cosh().powi(2);
+    }
+    for (i, volt) in samples.iter_mut().enumerate() {
+        *volt -= 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
+    }
+    let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+    let told = shot.found.doubts.contains(&Doubt::Trailing(Place::Wall));
+    (shot.flight.unwrap().incident_s.sigma, told)
+}
+
+#[test]
+fn errors_of_pulses_that_trail_do_not_leap_where_it_is_told() {
+    let ratios = (0..12).map(|k| 1.3 + 0.1 * f64::from(k));
+    let all: Vec<(f64, bool)> = ratios.map(beneath_a_fall).collect();
+    assert!(!all[0].1 && all[11].1, "{all:?}");
+    for pair in all.windows(2) {
+        // The threshold alone made it leap by 2.6.
+        let leap = pair[1].0 / pair[0].0;
+        assert!((0.8..1.4).contains(&leap), "{all:?}");
+    }
+    assert!(all[11].0 > 2.0 * all[0].0, "{all:?}");
 }

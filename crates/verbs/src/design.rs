@@ -6,13 +6,15 @@ use crate::failure::Failure;
 use crate::inference::user;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
-    Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
+    Goodness, Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
 };
 use hertzchain_study::parse_speeds;
 use serde_json::{Value, json};
 
 /// What could be measured, and what it would tell.
 pub struct Designed {
+    /// How well the model follows the data so far: the ranking is the model's.
+    pub goodness: Goodness,
     /// What could be measured.
     pub candidates: Vec<Candidate>,
     /// What each would tell.
@@ -134,6 +136,7 @@ pub fn designed(
     };
     let open = identified.confused.into_iter();
     Ok(Designed {
+        goodness: Goodness::new(problem.parameters(), &fit),
         advice,
         candidates,
         design: found,
@@ -200,6 +203,7 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
         })
     };
     json!({
+        "follows_data": !designed.goodness.is_rejected(),
         "parameters": designed.names,
         "units": designed.units,
         "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),

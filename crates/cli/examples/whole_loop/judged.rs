@@ -6,9 +6,9 @@ use hertzchain_chain::settle::State;
 use hertzchain_chain::wave::{self, DormandPrince, Limits};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
-use hertzchain_measure::{Options, Shot, measure};
+use hertzchain_measure::{Curves, Grouping, Options, Shot, measure, settled};
 use hertzchain_rig::{Case, Plan, Shard, campaign};
-use hertzchain_signal::{ChiSquare, Estimate, Moved, alone, chi_square, shared};
+use hertzchain_signal::{ChiSquare, Estimate, Flight, chi_square};
 use hertzchain_study::{Settings, sweep};
 use std::collections::HashMap;
 use std::error::Error;
@@ -26,14 +26,12 @@ const EXPONENT: f64 = 0.2;
 pub struct Judged {
     /// The case of the campaign.
     pub case: String,
-    /// Speed that the striker was told, in m/s.
-    pub programmed_m_s: f64,
+    /// The shot as measured.
+    pub shot: Shot,
     /// Speed by the photogate in m/s.
     pub speed_m_s: Estimate,
     /// Times of flight in s, as measured.
     pub measured_s: [Option<Estimate>; 2],
-    /// What may have moved the two pulses of each in all alike shots.
-    pub moved: [[Moved; 2]; 2],
     /// The recorded shot's own in s.
     pub true_s: [f64; 2],
     /// Those of the same chain in equilibrium at the measured speed, in s.
@@ -58,6 +56,11 @@ pub const OWN: Curve = |shot| shot.own_s;
 pub const HELD: Curve = |shot| shot.held_s;
 
 impl Judged {
+    /// Speed that the striker was told, in m/s.
+    pub fn programmed_m_s(&self) -> f64 {
+        self.shot.programmed_speed_m_s.unwrap_or_default()
+    }
+
     /// Measured less true time, with the stated error of picking.
     pub fn error(&self, time: usize) -> Option<Estimate> {
         let measured = self.measured_s[time]?;
@@ -78,47 +81,30 @@ impl Judged {
     fn of_speed(&self, time_s: f64) -> f64 {
         EXPONENT * time_s * self.speed_m_s.sigma / self.speed_m_s.value
     }
-
-    /// Measured time less what it is held to, with the stated errors that are this shot's own: of
-    /// picking, without what shots share, and of the speed.
-    fn departure(&self, time: usize, curve: Curve) -> Option<Estimate> {
-        let measured = self.measured_s[time]?;
-        let model_s = curve(self)[time];
-        let of_speed = self.of_speed(model_s);
-        let value = measured.value - model_s;
-        value.is_finite().then(|| Estimate {
-            value,
-            sigma: alone(measured.sigma, self.moved[time]).hypot(of_speed),
-        })
-    }
 }
 
-/// Shots of one speed: mean departure from what they are held to, by stated errors.
+/// Shots of one speed: what `measure` tells of their mean, less what they are held to.
 pub struct Speed {
     /// Programmed speed in m/s.
     pub speed_m_s: f64,
-    /// How many shots.
+    /// How many shots have this time.
     pub count: usize,
-    /// Mean departure in s, with the error that the shots state.
+    /// Departure at the mean speed in s, with the error that `measure` states of the mean time and
+    /// what that of the mean speed makes of it.
     pub departure_s: Estimate,
     /// Part of that error in s that shots share.
     pub shared_s: f64,
-    /// Standard error in s by the shots' scatter.
-    pub scatter_s: f64,
 }
 
 /// Means a speed of one case, less what they are held to.
 pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
-    let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s).collect();
+    let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
-    let of_speed = |speed_m_s| {
-        let own = shots.iter().filter(|s| s.programmed_m_s == speed_m_s);
-        let found = own.filter_map(|shot| {
-            let departure_s = shot.departure(time, curve)?;
-            Some((departure_s, shot.moved[time]))
-        });
-        mean(speed_m_s, found.unzip())
+    let of_speed = |speed_m_s: f64| {
+        let own = shots.iter().filter(|s| s.programmed_m_s() == speed_m_s);
+        let own: Vec<&Judged> = own.copied().collect();
+        of_mean(&own, time, curve)
     };
     speeds.into_iter().filter_map(of_speed).collect()
 }
@@ -129,19 +115,43 @@ pub fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
     chi_square(&means, &vec![0.0; means.len()], 0)
 }
 
-fn mean(speed_m_s: f64, (found, moved): (Vec<Estimate>, Vec<[Moved; 2]>)) -> Option<Speed> {
-    let summary = hertzchain_signal::summary(&found)?;
-    let squares: f64 = found.iter().map(|one| one.sigma.powi(2)).sum();
-    let shared_s = shared(&moved);
+/// The row of `speeds.csv` that shots of one speed give, held against the mean of the curve over
+/// those whose time is in it, each taken to the mean speed as `measure` takes times there.
+fn of_mean(shots: &[&Judged], time: usize, curve: Curve) -> Option<Speed> {
+    let all: Vec<Shot> = shots.iter().map(|shot| shot.shot.clone()).collect();
+    let curves = Curves::of(&all, &Grouping::default());
+    let row = curves.cases.first()?.rows.first()?;
+    let mean_s = row.at_mean_speed_s[time]?;
+    let summary = [Some(row.incident_s), row.reflected_s][time]?;
+    let speed_m_s = row.speed_m_s;
+    let counted: Vec<(&Judged, &Flight)> = shots
+        .iter()
+        .filter(|shot| !shot.shot.is_dubious())
+        .filter_map(|shot| Some((*shot, shot.shot.flight.as_ref().ok()?)))
+        .collect();
+    let flights: Vec<&Flight> = counted.iter().map(|(_, flight)| *flight).collect();
+    let timed = settled(&flights).into_iter().zip(&counted);
+    let timed = timed.filter(|(flight, _)| {
+        let has = |flight: &Flight| time == 0 || flight.reflected_s.is_some();
+        flight.as_ref().is_some_and(has)
+    });
+    let held_s: Vec<f64> = timed
+        .map(|(_, (shot, _))| {
+            let to_mean = (shot.speed_m_s.value / speed_m_s.value).powf(EXPONENT);
+            curve(shot)[time] * to_mean
+        })
+        .collect();
+    let held_s = held_s.iter().sum::<f64>() / held_s.len() as f64;
+    let of_speed_s = EXPONENT * held_s * speed_m_s.sigma / speed_m_s.value;
+    let departure_s = Estimate {
+        value: mean_s.value - held_s,
+        sigma: mean_s.sigma.hypot(of_speed_s),
+    };
     Some(Speed {
-        shared_s,
-        speed_m_s,
+        speed_m_s: shots.first()?.programmed_m_s(),
         count: summary.count,
-        departure_s: Estimate {
-            value: summary.mean,
-            sigma: (squares.sqrt() / summary.count as f64).hypot(shared_s),
-        },
-        scatter_s: summary.error,
+        departure_s,
+        shared_s: row.shared_s[time],
     })
 }
 
@@ -201,15 +211,12 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
         let flight = shot.flight.as_ref().ok();
         judged.push(Judged {
             case: case.name.clone(),
-            programmed_m_s: shot.programmed_speed_m_s.unwrap_or_default(),
+            shot: shot.clone(),
             speed_m_s,
             measured_s: [
                 flight.map(|flight| flight.incident_s),
                 flight.and_then(|flight| flight.reflected_s),
             ],
-            moved: flight
-                .map(|flight| flight.picks.moved())
-                .unwrap_or_default(),
             true_s,
             compact_s,
             own_s: true_s.map(|time_s| time_s * to_measured),

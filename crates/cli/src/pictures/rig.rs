@@ -159,11 +159,11 @@ fn shown(evidence: &Evidence) -> Vec<&Observed> {
 fn gaps(evidence: &Evidence) -> Figure {
     let mut rigs: Vec<&Observed> = evidence.rigs.iter().collect();
     rigs.sort_by(|one, other| left_m(other).total_cmp(&left_m(one)));
-    let held = |observed: &Observed| [observed.rig.values[0], observed.rig.values[1]];
+    let friction_and_push = |observed: &Observed| [observed.rig.values[0], observed.rig.values[1]];
     let mut seen = Vec::new();
     rigs.retain(|observed| {
-        let new = !seen.contains(&held(observed));
-        seen.push(held(observed));
+        let new = !seen.contains(&friction_and_push(observed));
+        seen.push(friction_and_push(observed));
         new
     });
     let mut figure = Figure::double_column(65.0).columns(3).letters();
@@ -187,28 +187,48 @@ fn left_m(observed: &Observed) -> f64 {
     })
 }
 
+/// Gaps below this in m are shown in nm.
+const SMALL_M: f64 = 1e-7;
+
 fn row(observed: &Observed, at: &AtSpeed) -> Chart {
-    let mut chart = Chart::new("contact", "gap (µm)").title(&observed.rig.name);
     let before: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_before_m).collect();
     let after: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_after_m).collect();
-    for (name, rows, colour, marker) in [
-        ("after a shot", after, Colour::VERMILION, Marker::Triangle),
-        ("after taps", before, Colour::BLUE, Marker::Circle),
-    ] {
-        let contacts = rows.first().map_or(0, |gaps_m| gaps_m.len());
-        let gap_um = |contact: usize| {
-            let all = rows.iter().filter_map(|gaps_m| gaps_m.get(contact));
-            1e6 * mean(&all.copied().collect::<Vec<f64>>())
-        };
-        let gaps_um: Vec<f64> = (0..contacts).map(gap_um).collect();
-        let numbers: Vec<f64> = (1..=contacts).map(|contact| contact as f64).collect();
-        let sum_um = gaps_um.iter().sum::<f64>();
-        let decimals = if sum_um > 0.0 && sum_um < 10.0 { 2 } else { 0 };
-        let name = format!("{name}: {sum_um:.decimals$} µm in all");
-        let points = Series::points(&name, &numbers, &gaps_um);
-        chart = chart.with(points.colour(colour).marker(marker));
-    }
-    chart
+    let (before_m, after_m) = (means(&before), means(&after));
+    let all_m = before_m.iter().chain(&after_m);
+    let (unit, unit_m) = match all_m.copied().fold(0.0, f64::max) < SMALL_M {
+        true => ("nm", 1e-9),
+        false => ("µm", 1e-6),
+    };
+    let chart = Chart::new("Contact", &format!("Gap ({unit})")).title(&held(&observed.rig));
+    let kinds = [
+        ("after a shot", after_m, Colour::VERMILION, Marker::Triangle),
+        ("after taps", before_m, Colour::BLUE, Marker::Circle),
+    ];
+    kinds
+        .into_iter()
+        .fold(chart, |chart, (name, gaps_m, colour, marker)| {
+            let gaps: Vec<f64> = gaps_m.iter().map(|gap_m| gap_m / unit_m).collect();
+            let numbers: Vec<f64> = (1..=gaps.len()).map(|contact| contact as f64).collect();
+            let name = format!("{name}: {:.0} {unit} in all", gaps.iter().sum::<f64>());
+            let points = Series::points(&name, &numbers, &gaps);
+            chart.with(points.colour(colour).marker(marker))
+        })
+}
+
+/// What holds the beads of a rig where they are, of the factors that are tried.
+fn held(rig: &Rig) -> String {
+    let [friction, push] = [0, 1].map(|at: usize| FACTORS[at].text(rig.values[at]));
+    format!("{friction}, {push}")
+}
+
+/// Mean of every contact over all shots.
+fn means(rows: &[&[f64]]) -> Vec<f64> {
+    let contacts = rows.first().map_or(0, |gaps_m| gaps_m.len());
+    let mean_of = |contact: usize| {
+        let all = rows.iter().filter_map(|gaps_m| gaps_m.get(contact));
+        mean(&all.copied().collect::<Vec<f64>>())
+    };
+    (0..contacts).map(mean_of).collect()
 }
 
 #[cfg(test)]
@@ -236,5 +256,6 @@ mod tests {
             let marks = figure.svg().matches("<path").count();
             assert!(marks > 20, "{name}: {marks}");
         }
+        assert_eq!(held(&Rig::but(0, 0.2)), "friction 0.2, push 0.24 N");
     }
 }

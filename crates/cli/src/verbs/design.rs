@@ -4,6 +4,7 @@ use crate::failure::{Failure, print_assumed, print_kept};
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
+use crate::words::misfit;
 use hertzchain_infer::{CurveProblem, Expected};
 use hertzchain_verbs::arguments::infer::Design as Arguments;
 use hertzchain_verbs::design::Designed;
@@ -67,7 +68,8 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
     let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
     format!(
-        "Now: {}\n{}\n{}\n{}\n{}\n{}",
+        "{}Now: {}\n{}\n{}\n{}\n{}\n{}",
+        unfit(designed),
         now.join(", "),
         beware(problem, designed),
         heading("One measurement more, best first"),
@@ -75,6 +77,13 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
         heading("A series, each the best after those before it"),
         format::table(&head, &greedy)
     )
+}
+
+/// Before all else: a ranking by a model that the data so far do not follow.
+fn unfit(designed: &Designed) -> String {
+    misfit(&designed.goodness).map_or(String::new(), |told| {
+        format!("Beware: {told}; nor is what it ranks worth more.\n\n")
+    })
 }
 
 /// What standard errors of open combinations are worth, and what would close them.

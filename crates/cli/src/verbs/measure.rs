@@ -21,6 +21,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bar = bar();
     let measured = hertzchain_measure::measure(&files, &options, &bar);
     bar.0.finish_and_clear();
+    measure::suits(&measured)?;
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);

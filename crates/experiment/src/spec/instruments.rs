@@ -234,6 +234,26 @@ impl Recorder {
             let message = "nothing of the record is after the trigger".to_owned();
             return Err(problem("before", message, "expected less than `record`"));
         }
+        let range_v = self.range_v;
+        let label = "expected less than `range` either way";
+        if self.offset_v.abs() >= range_v {
+            let message = format!(
+                "no signal at all, {} V, is outside the converter's range of ± {range_v} V: every \
+                 sample would be clipped",
+                self.offset_v
+            );
+            return Err(problem("offset", message, label));
+        }
+        match self.trigger {
+            Trigger::Level(level_v) if level_v.abs() >= range_v => {
+                let message = format!(
+                    "a level of {level_v} V is outside the converter's range of ± {range_v} V and is \
+                     never passed"
+                );
+                return Err(problem("level", message, label));
+            }
+            _ => {}
+        }
         Ok(self)
     }
 }

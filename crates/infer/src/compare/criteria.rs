@@ -209,7 +209,10 @@ fn sentence(models: &[Compared<'_>], criteria: &[Criteria], order: &[usize]) -> 
 fn foretold(models: &[Compared<'_>], best: usize, second: usize) -> String {
     let rows = |i: usize| models[i].cross_validation.map(|c| &c.rows);
     let (Some(first), Some(next)) = (rows(best), rows(second)) else {
-        return String::new();
+        return match models.iter().any(|model| model.cross_validation.is_some()) {
+            true => "; too few speeds for cross-validation of both".to_owned(),
+            false => String::new(),
+        };
     };
     let differences: Vec<f64> = next.iter().zip(first).map(|(b, a)| b - a).collect();
     let (mean, error) = mean_and_error(&differences);

@@ -186,6 +186,13 @@ impl FreeNumber {
         }
     }
 
+    /// Its path in the experiment file, or that of the law of speed whose prefactor it is;
+    /// `None` of a number of the instruments.
+    #[must_use]
+    pub fn path(&self) -> Option<&str> {
+        self.target.path()
+    }
+
     /// The material and the key of a number of a material.
     pub(crate) fn material_number(&self) -> Option<(&str, &str)> {
         let path = self.target.path()?.strip_prefix("materials.")?;

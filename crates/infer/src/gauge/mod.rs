@@ -21,7 +21,7 @@ pub use laws::{GaugeLaws, SharedLaw};
 pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
 pub use scan::Scan;
 use verdict::LEAST_PROBABILITY;
-pub use verdict::{Match, OwnNumber, Verdict};
+pub use verdict::{Match, NEVER, OwnNumber, Verdict};
 
 use crate::curve::{CurveError, CurveProblem, Model};
 use crate::data::{Data, Observable};
@@ -107,6 +107,15 @@ pub struct Gauge {
 /// The load that friction holds in a tapped row.
 const PUSH: &str = "near_end.force";
 
+/// Of a dry curve that its model does not give.
+const NOT_THE_DRY_CHAIN: &str = "The dry curve does not follow its model, so the wet one is judged by a \
+     chain that is not the measured one. Look whether --dry names the curve of the dry chain, and not a \
+     wet one's, and whether the models are of this rig.";
+
+/// Of a row that was tapped.
+const HELD_LOADS: &str = "A row that was tapped or shot before holds loads that are not its file's, since \
+     friction froze them, and its split returns depend on each of them.";
+
 /// Numbers of a wet contact, the last of the wet model's: K and A.
 const CONTACT: usize = 2;
 
@@ -161,33 +170,36 @@ impl Gauge {
     #[must_use]
     pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
         let dry = self.dry_goodness().chi_square;
-        let dry = dry.filter(|found| found.probability < LEAST_PROBABILITY);
-        let pushed = self.wet.experiment().get(PUSH).is_ok();
-        let loads = pushed && (self.own == 0 || self.data.has(Observable::Reflected));
+        let dry_misses = dry.is_some_and(|found| found.probability < LEAST_PROBABILITY);
         let unknown = verdict.allowed().next().is_none();
-        let load = "A row that was tapped or shot before holds loads that are not its file's, since \
-                    friction froze them, and its split returns depend on each of them";
-        let remedy = format!("--own {PUSH} --use incident");
-        let mut doubts = Vec::new();
-        if dry.is_some() {
-            doubts.push(
-                "The dry curve does not follow its model, so the wet one is judged by a chain that is \
-                 not the measured one."
-                    .to_owned(),
-            );
-        }
-        match (loads && (unknown || dry.is_some()), dry.is_some() && !pushed) {
-            (true, _) => doubts.push(format!(
-                "{load}: let each chain have its own load, with incident times alone ({remedy}), or \
-                 lay it with less friction."
-            )),
-            (_, true) => doubts.push(format!(
-                "{load}. If this one was, take a model with a push (such as --preset paper \
-                 --dry-preset paper) and let each chain have its own load ({remedy})."
-            )),
-            _ => {}
-        }
+        let of_dry = dry_misses.then(|| NOT_THE_DRY_CHAIN.to_owned());
+        let of_loads = self.loads_doubted(dry_misses, unknown);
+        let doubts: Vec<String> = of_dry.into_iter().chain(of_loads).collect();
         (!doubts.is_empty()).then(|| doubts.join(" "))
+    }
+
+    /// That loads may be others than the models', and what to do of what is not done yet.
+    fn loads_doubted(&self, dry_misses: bool, unknown: bool) -> Option<String> {
+        let pushed = self.wet.experiment().get(PUSH).is_ok();
+        let returns = self.data.has(Observable::Reflected);
+        let all = format!("--own {PUSH} --use incident");
+        let remedy = match (pushed, self.own) {
+            (false, _) if dry_misses => format!(
+                "If this one was, take a model with a push (such as --preset paper --dry-preset paper) \
+                 and let each chain have its own load ({all})."
+            ),
+            (true, 0) if unknown || dry_misses => format!(
+                "Let each chain have its own load, with incident times alone ({all}), or lay it with \
+                 less friction."
+            ),
+            (true, _) if returns && (unknown || dry_misses) => {
+                "One load for each chain, as here, does for incident times alone: leave the reflected \
+                 ones out (--use incident), or lay it with less friction."
+                    .to_owned()
+            }
+            _ => return None,
+        };
+        Some(format!("{HELD_LOADS} {remedy}"))
     }
 
     /// How many of the dry fit's parameters hold for both chains: the first.

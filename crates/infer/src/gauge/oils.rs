@@ -154,6 +154,9 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, OilError> {
     Ok(all)
 }
 
+/// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
+const BELOW: f64 = 1.0;
+
 struct Row<'a> {
     titles: &'a StringRecord,
     record: &'a StringRecord,
@@ -180,6 +183,9 @@ impl Row<'_> {
         let exponent = self.number(exponent)?.unwrap_or(0.0);
         match self.number(prefactor)? {
             None => Ok(None),
+            Some(value) if prefactor == "poisson_prefactor" && value >= BELOW => Err(format!(
+                "{prefactor} is {value}, the Poisson ratio at 1 m/s; expected less than {BELOW}"
+            )),
             Some(value) if value > 0.0 => Ok(Some(Law {
                 prefactor: value,
                 exponent,

@@ -51,7 +51,7 @@ const TOLERANCE: f64 = 0.01;
 const ITERATIONS: usize = 20;
 
 /// Probabilities below are not told: no error is so exactly normal.
-const NEVER: f64 = 1e-9;
+pub const NEVER: f64 = 1e-9;
 
 /// Below this probability an oil is rejected.
 pub(super) const LEAST_PROBABILITY: f64 = 0.01;
@@ -85,8 +85,9 @@ impl Verdict {
                 nearest.oil,
                 nearest.distance,
                 match nearest.chi_square.probability {
-                    probability if probability < NEVER => format!("less than {NEVER:.0e}"),
-                    probability => format!("{probability:.0e}"),
+                    probability if probability < NEVER =>
+                        format!("less than {:.0e} %", 100.0 * NEVER),
+                    probability => format!("{:.0e} %", 100.0 * probability),
                 }
             ),
             (several, _) => format!("The data do not tell {} apart.", several.join(" and ")),

@@ -124,6 +124,12 @@ pub struct Started {
 /// Difference of costs below which two starts are taken to have found the same minimum.
 const SAME_COST: f64 = 0.01;
 
+/// Rise of χ² at which a minimum is no longer as good as the best: three standard errors.
+const NOT_WORSE: f64 = 9.0;
+
+/// Standard errors by which a parameter of two minima differs.
+const APART: f64 = 3.0;
+
 impl Fit {
     /// Σ r² of the data.
     #[must_use]
@@ -136,6 +142,38 @@ impl Fit {
     pub fn agreeing_starts(&self) -> usize {
         let agrees = |s: &&Started| s.cost <= self.cost + SAME_COST;
         self.starts.iter().filter(agrees).count()
+    }
+
+    /// Minima that other starts came to and that fit as well: their χ² lies at most 9 above the
+    /// best, and some parameter differs by more than three of these standard errors from
+    /// the best minimum and from those before. Best first; each with its starts' number.
+    #[must_use]
+    pub fn other_minima(&self, sd: &[f64]) -> Vec<(&Started, usize)> {
+        let apart = |one: &[f64], other: &[f64]| {
+            let pairs = one.iter().zip(other).zip(sd);
+            // Of a parameter held by a bound there is no standard error.
+            pairs
+                .filter(|(_, sd)| **sd > 0.0)
+                .any(|((a, b), sd)| (a - b).abs() > APART * sd)
+        };
+        let as_good = |s: &&Started| 2.0 * (s.cost - self.cost) <= NOT_WORSE;
+        let sound = self.starts.iter().filter(|s| s.ending.converged());
+        let mut good: Vec<&Started> = sound.filter(as_good).collect();
+        good.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut minima: Vec<(&Started, usize)> = Vec::new();
+        for start in good {
+            if !apart(&start.point, &self.point) {
+                continue;
+            }
+            match minima
+                .iter_mut()
+                .find(|(known, _)| !apart(&start.point, &known.point))
+            {
+                Some((_, count)) => *count += 1,
+                None => minima.push((start, 1)),
+            }
+        }
+        minima
     }
 
     /// How many residuals are farther out than where the loss stops being a square.
@@ -257,11 +295,33 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
 
 fn started(problem: &dyn Problem, reached: &Reached) -> Result<(), FitError> {
     match (&reached.at, &reached.ending) {
-        (None, Ending::ModelFails(error)) => Err(FitError::Start(error.clone())),
+        (None, Ending::ModelFails(error)) => Err(FitError::Start(at_values(
+            problem.parameters(),
+            &reached.point,
+            error,
+        ))),
         (_, Ending::ChangesNothing(k)) => Err(nothing(problem, *k, &reached.point)),
         _ => Ok(()),
     }
 }
+
+/// What a model said, with the values that it said it of.
+fn at_values(parameters: &[Parameter], point: &[f64], error: &ModelError) -> ModelError {
+    let values = parameters.iter().zip(point).take(NAMED);
+    let values = values.map(|(p, value)| format!("{} = {value:.4e} {}", p.name, p.unit));
+    let values: Vec<String> = values.map(|told| told.trim_end().to_owned()).collect();
+    let more = match parameters.len() > NAMED {
+        true => ", …",
+        false => "",
+    };
+    ModelError(format!(
+        "with {}{more}: {error}. Start elsewhere (--start, in SI or with a unit)",
+        values.join(", ")
+    ))
+}
+
+/// Most values that are named.
+const NAMED: usize = 6;
 
 fn nothing(problem: &dyn Problem, parameter: usize, point: &[f64]) -> FitError {
     FitError::ChangesNothing {

@@ -300,7 +300,7 @@ def measure(
     shot_samples: int | None = None,
     level: float | None = None,
     whole: bool = False,
-    rows: Literal["shots", "channels", "times"] | None = None,
+    rows: Literal["shots", "channels", "times", "moments"] | None = None,
     method: Literal["local", "onset", "correlation", "shape"] = "local",
     onset: float = 0.5,
     beads: int | None = None,

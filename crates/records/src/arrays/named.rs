@@ -128,7 +128,7 @@ fn last(name: &str) -> &str {
 /// Recordings in one array.
 fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, RecordError> {
     let shape = arrays.shape(name)?;
-    let axes = Axes::of(&shape, options.rows);
+    let axes = Axes::of(&shape, options.rows_of(&shape));
     let rows = axes.and_then(|axes| shape.get(axes.shots?));
     Ok(rows.copied().unwrap_or(1))
 }

@@ -22,6 +22,7 @@ impl Axes {
             (&[a, b], Rows::Auto) if a <= b => (Some(0), None, 1),
             (&[_, _], Rows::Shots) => (Some(0), None, 1),
             (&[_, _], Rows::Channels) => (None, Some(0), 1),
+            (&[_, _], Rows::Moments) => (Some(1), None, 0),
             (&[_, _], Rows::Auto | Rows::Times) => (None, Some(1), 0),
             (&[_, _, _], _) => (Some(0), Some(1), 2),
             _ => return None,
@@ -64,13 +65,14 @@ impl Table {
                 source_name: name(file),
             });
         }
-        let axes = Axes::of(shape, options.rows).ok_or_else(|| {
+        let axes = Axes::of(shape, options.rows_of(shape)).ok_or_else(|| {
             let detail = format!("of {} axes, {shape:?}, is no table of samples", shape.len());
             RecordError::malformed(file, "an array", detail)
         })?;
         let size = |axis: Option<usize>| axis.and_then(|axis| shape.get(axis)).map_or(1, |n| *n);
         let (stored, shots) = (size(axes.channels), size(axes.shots));
         let frames = size(Some(axes.time));
+        let unasked = options.rows == Rows::Auto && axes.shots == Some(1);
         let names = numbered(stored);
         let chosen = match stored {
             1 => vec![0],
@@ -88,6 +90,12 @@ impl Table {
             row: frames,
             each: frames,
             pieces: false,
+            note: unasked.then(|| {
+                format!(
+                    "each of the {shots} columns, of {frames} samples, was taken for a shot; --rows times \
+                     or --channel says that they are channels"
+                )
+            }),
         };
         Ok(Self {
             axes,
@@ -111,6 +119,8 @@ mod tests {
         assert_eq!(told(&[1000, 2], Rows::Auto).channels, Some(1));
         assert_eq!(told(&[2, 1000], Rows::Channels).channels, Some(0));
         assert_eq!(told(&[2, 1000], Rows::Times).time, 0);
+        let columns = told(&[1000, 20], Rows::Moments);
+        assert_eq!((columns.shots, columns.time), (Some(1), 0));
         assert_eq!(Axes::of(&[1, 1, 1, 1], Rows::Auto), None);
     }
 }

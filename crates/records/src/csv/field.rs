@@ -31,7 +31,55 @@ pub(super) fn fields(line: &str, delimiter: char) -> Vec<Cow<'_, str>> {
 /// A number with a decimal point, or with a decimal comma; thousands may be apart by a
 /// comma or a point, whichever the decimal sign is not, a space or an apostrophe.
 pub(super) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
-    plain(text, decimal_comma).or_else(|| plain(&ungrouped(text, decimal_comma)?, decimal_comma))
+    plain(text, decimal_comma)
+        .or_else(|| plain(&ungrouped(text, decimal_comma)?, decimal_comma))
+        .or_else(|| time_of_day_s(text))
+}
+
+/// Whether a field is a time of day or a stamp of date and time.
+pub(super) fn is_time_of_day(text: &str) -> bool {
+    time_of_day_s(text).is_some()
+}
+
+/// `12:00:00.000001`, with a date before it or without, in s since midnight, or since that before
+/// the month began: double precision has no more digits than nanoseconds of a month need. Hours and
+/// minutes alone are none.
+fn time_of_day_s(text: &str) -> Option<f64> {
+    let text = text.trim_matches('"').trim();
+    if text.len() > 40 || text.matches(':').count() < 2 {
+        return None;
+    }
+    let (date, clock) = text.rsplit_once([' ', 'T']).unwrap_or(("", text));
+    let clock = clock.trim_end_matches('Z');
+    let clock = clock.split_once('+').map_or(clock, |(clock, _zone)| clock);
+    let mut parts = clock.splitn(3, ':');
+    let whole = |text: &str, most: u32| text.parse().ok().filter(|n: &u32| *n <= most);
+    let hours = whole(parts.next()?, 24)?;
+    let minutes = whole(parts.next()?, 59)?;
+    let seconds = parts.next()?;
+    let digits = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == ',';
+    if !seconds.starts_with(|letter: char| letter.is_ascii_digit()) || !seconds.chars().all(digits)
+    {
+        return None;
+    }
+    let seconds: f64 = seconds.replace(',', ".").parse().ok()?;
+    let day = match date {
+        "" => 0,
+        date => day_of_month(date)?,
+    };
+    let minutes = 60 * (24 * day + hours) + minutes;
+    (seconds < 61.0).then(|| f64::from(60 * minutes) + seconds)
+}
+
+/// Of year-month-day, also with slashes; 0 of other orders, which do not tell it.
+fn day_of_month(date: &str) -> Option<u32> {
+    let parts: Vec<&str> = date.trim().split(['-', '/', '.']).collect();
+    let numbers: Option<Vec<u32>> = parts.iter().map(|part| part.parse().ok()).collect();
+    match numbers?[..] {
+        [_, _, day] if parts[0].len() == 4 && day <= 31 => Some(day),
+        [_, _, _] => Some(0),
+        _ => None,
+    }
 }
 
 /// The same without what stands between thousands, if anything does.
@@ -104,7 +152,12 @@ pub(super) fn plain(text: &str, decimal_comma: bool) -> Option<f64> {
 
 /// What one of the last digit of a number is worth: 1e-5 of 0.00012, 1e-9 of 1.5e-8.
 pub(super) fn last_digit(text: &str, decimal_comma: bool) -> f64 {
-    let sign = if decimal_comma { ',' } else { '.' };
+    let sign = match text.contains(':') {
+        true if text.contains(',') => ',',
+        true => '.',
+        false if decimal_comma => ',',
+        false => '.',
+    };
     let (digits, power) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let behind = digits
         .split_once(sign)
@@ -146,6 +199,27 @@ mod tests {
         assert_eq!(number("1,5", false), None);
         assert!(number("NaN", false).unwrap().is_nan());
         assert_eq!(number("Volt", false), None);
+    }
+
+    #[test]
+    fn times_of_day_are_seconds() {
+        for (text, expected) in [
+            ("12:00:00.000001", Some(43_200.000_001)),
+            ("12:00:00,000001", Some(43_200.000_001)),
+            ("2024-05-02 00:00:01.5", Some(172_801.5)),
+            ("2024-05-01T00:01:00Z", Some(86_460.0)),
+            ("05/01/2024 00:00:02.5", Some(2.5)),
+            ("00:00:03.25+02:00", Some(3.25)),
+            ("12:00", None),
+            ("25:00:00", None),
+            ("12:61:00", None),
+            ("a:b:c", None),
+            ("yesterday 12:00:00", None),
+        ] {
+            assert_eq!(number(text, false), expected, "{text}");
+        }
+        assert!((last_digit("2024-05-01 12:00:00.000001", true) - 1e-6).abs() < 1e-18);
+        assert!((last_digit("12:00:00,000001", false) - 1e-6).abs() < 1e-18);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::dialect::Dialect;
 use super::even;
-use super::field::{fields, last_digit, leading_number, number};
+use super::field::{fields, is_time_of_day, last_digit, leading_number, number};
 use super::times::Printed;
 
 /// What is known of the columns.
@@ -148,10 +148,15 @@ impl Header {
         Self {
             names: names.collect(),
             channels,
-            time: time.map(|column| (column, unit(column).or_else(|| ending(title(column))))),
+            time: time.map(|column| {
+                let unit = || unit(column).or_else(|| ending(title(column)));
+                let seconds = of_day(beginning, dialect, column).then_some(1.0);
+                (column, seconds.or_else(unit))
+            }),
             strange_unit: time
                 .and_then(named_unit)
-                .filter(|unit| !unit.is_empty() && seconds(unit).is_none()),
+                .filter(|unit| !unit.is_empty() && seconds(unit).is_none())
+                .filter(|_| !time.is_some_and(|column| of_day(beginning, dialect, column))),
             time_name: time.map_or(String::new(), |column| plain(title(column))),
             interval_s: stated_s(beginning, dialect),
         }
@@ -174,6 +179,17 @@ fn sampled(beginning: &str, dialect: &Dialect) -> Vec<Vec<f64>> {
     };
     let lines = beginning.lines().skip(dialect.first_row);
     lines.take(BESIDE).map_while(row).collect()
+}
+
+/// Whether a column holds times of day, which are in seconds whatever its title says.
+fn of_day(beginning: &str, dialect: &Dialect, column: usize) -> bool {
+    let row = beginning.lines().nth(dialect.first_row);
+    row.is_some_and(|row| {
+        let fields = fields(row, dialect.delimiter);
+        fields
+            .get(column)
+            .is_some_and(|field| is_time_of_day(field))
+    })
 }
 
 /// The even step of a column that rises as times or numbers do.

@@ -52,6 +52,10 @@ pub(super) struct Rows {
     to_and_fro: bool,
     /// Of times that the given rate makes irrelevant.
     returns: Returns,
+    /// Lines in words after rows; a footer unless rows follow.
+    footer: Option<Footer>,
+    /// Whether no row came since a segment's end: lines in words would be its footer.
+    trailing: bool,
     block: Block,
     ready: VecDeque<Result<Record, RecordError>>,
 }
@@ -63,10 +67,23 @@ struct Block {
     columns: Vec<Vec<f64>>,
 }
 
+/// Lines in words that follow numbers.
+struct Footer {
+    /// The first, as far as it is shown.
+    shown: String,
+    /// Why it is no row.
+    detail: String,
+    lines: usize,
+}
+
+/// Longest footer in lines: more is something else.
+const LONGEST_FOOTER: usize = 8;
+
 /// What a line is.
 enum Line {
     Row(Option<Printed>, Vec<f64>),
     Separator,
+    Words { shown: String, detail: String },
     Bad(String),
     End,
 }
@@ -90,6 +107,8 @@ impl Rows {
             passed: 0,
             to_and_fro: false,
             returns: Returns::default(),
+            footer: None,
+            trailing: false,
             block: Block::default(),
             ready: VecDeque::new(),
         })
@@ -124,13 +143,16 @@ impl Rows {
         match time.zip(values.collect()) {
             Some((time, values)) if !blank => Line::Row(time, values),
             _ if blank || self.separates(line) => Line::Separator,
-            _ if !whole => Line::Bad(format!("line {} stops in the middle", self.line)),
+            _ if !whole && !is_worded(line) => {
+                Line::Bad(format!("line {} stops in the middle", self.line))
+            }
             _ => {
                 let shown: String = line.chars().take(60).collect();
-                Line::Bad(format!(
-                    "line {} is no row of numbers: {shown:?}",
-                    self.line
-                ))
+                let detail = format!("line {} is no row of numbers: {shown:?}", self.line);
+                match is_worded(line) {
+                    true => Line::Words { shown, detail },
+                    false => Line::Bad(detail),
+                }
             }
         }
     }
@@ -164,23 +186,69 @@ impl Rows {
     fn advance(&mut self) {
         match self.line() {
             Line::Row(..) if self.lost => {}
-            Line::Row(time, values) => self.row(time, &values),
+            Line::Row(time, values) => match self.footer.take() {
+                Some(footer) => self.bad(footer.detail),
+                None => {
+                    self.trailing = false;
+                    self.row(time, &values);
+                }
+            },
             Line::Separator => {
-                self.close(true);
+                if self.block.len() > 0 {
+                    self.end_segment();
+                }
                 self.lost = false;
+                self.trailing = true;
             }
-            Line::Bad(detail) if !self.lost => {
-                self.block = Block::default();
-                self.lost = true;
-                self.shots += 1;
-                let error = RecordError::malformed(&self.file, "text", detail);
-                self.ready.push_back(Err(error));
+            Line::Words { .. } | Line::Bad(_) if self.lost => {}
+            Line::Words { shown, detail } => {
+                let first = Footer {
+                    shown,
+                    detail,
+                    lines: 0,
+                };
+                let footer = self.footer.get_or_insert(first);
+                footer.lines += 1;
+                if footer.lines > LONGEST_FOOTER {
+                    let detail = std::mem::take(&mut footer.detail);
+                    self.bad(detail);
+                }
             }
-            Line::Bad(_) => {}
+            Line::Bad(detail) => {
+                let first = self.footer.take().map(|footer| footer.detail);
+                self.bad(first.unwrap_or(detail));
+            }
             Line::End => {
-                self.close(true);
+                self.end_segment();
                 self.ended = true;
             }
+        }
+    }
+
+    /// What was read since the last separator is no segment, nor is what follows until the next.
+    fn bad(&mut self, detail: String) {
+        self.footer = None;
+        self.trailing = false;
+        self.block = Block::default();
+        self.lost = true;
+        self.shots += 1;
+        let error = RecordError::malformed(&self.file, "text", detail);
+        self.ready.push_back(Err(error));
+    }
+
+    /// Makes records of the block; lines in words after it were its footer.
+    fn end_segment(&mut self) {
+        self.close(true);
+        let Some(footer) = self.footer.take() else {
+            return;
+        };
+        match self.ready.back_mut() {
+            Some(Ok(record)) => record.notes.push(format!(
+                "what follows the numbers, from {:?} on, is no row and was passed over",
+                footer.shown
+            )),
+            Some(Err(_)) => {}
+            None => self.bad(footer.detail),
         }
     }
 
@@ -300,6 +368,15 @@ impl Rows {
     }
 }
 
+/// Whether a line begins as words or a comment do, and no number that stops in its middle.
+fn is_worded(line: &str) -> bool {
+    let first = line
+        .trim_start_matches(['"', ' ', '\t', ',', ';'])
+        .chars()
+        .next();
+    first.is_some_and(|first| first.is_alphabetic() || "#%*=/<[(".contains(first))
+}
+
 impl Block {
     fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
@@ -310,7 +387,8 @@ impl Iterator for Rows {
     type Item = Result<Record, RecordError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        while self.ready.is_empty() && !self.ended {
+        // A footer after a blank line is told with the record before it.
+        while (self.ready.is_empty() || self.trailing) && !self.ended {
             self.advance();
         }
         self.ready.pop_front()

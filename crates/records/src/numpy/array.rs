@@ -87,7 +87,8 @@ impl Array {
         let Axes {
             shots, channels, ..
         } = table.axes;
-        if fortran && shots.is_some() {
+        let side_by_side = if fortran { Some(0) } else { Some(1) };
+        if channels.is_none() && shots == side_by_side {
             return self.alternating(table, options);
         }
         // Numbers of the last axis lie side by side; column by column those of the first.

@@ -59,6 +59,8 @@ pub struct SeriesInfo {
     pub seed: u64,
     /// The whole experiment file.
     pub experiment: String,
+    /// What true values are, by their names, for people.
+    pub long_names: &'static [(&'static str, &'static str)],
     /// Further attributes: name, text. `measured_speed_error_m_s` is read back as
     /// the standard error of measured speeds.
     pub more: Vec<(String, String)>,
@@ -114,6 +116,7 @@ struct Table {
     triggered: Vec<i64>,
     truth: Vec<(&'static str, Vec<f64>)>,
     contacts: Vec<(&'static str, Vec<f64>)>,
+    long_names: &'static [(&'static str, &'static str)],
 }
 
 impl std::fmt::Debug for SeriesWriter {
@@ -145,7 +148,10 @@ impl SeriesWriter {
             part,
             open: Some(open),
             samples_per_shot: info.samples_per_shot,
-            table: Table::default(),
+            table: Table {
+                long_names: info.long_names,
+                ..Table::default()
+            },
         })
     }
 
@@ -269,6 +275,12 @@ impl Table {
         }
     }
 
+    /// What a true value is; its name again where nobody says.
+    fn long_name<'a>(&self, name: &'a str) -> &'a str {
+        let told = self.long_names.iter().find(|(of, _)| *of == name);
+        told.map_or(name, |(_, what)| what)
+    }
+
     fn write(&self, open: &Open) -> Result<(), Hdf5Error> {
         let Open { file, channels } = open;
         let root = file.root_group();
@@ -295,7 +307,8 @@ impl Table {
         let truth = file.create_group(layout::TRUTH)?;
         truth.set_attr_string("comment", "known to the simulation, not to the rig")?;
         for (name, values) in &self.truth {
-            column(&truth, name, "true value", unit(name), values)?.attach_scale(0, &shots)?;
+            let what = self.long_name(name);
+            column(&truth, name, what, unit(name), values)?.attach_scale(0, &shots)?;
         }
         self.write_contacts(&truth, &shots)
     }
@@ -319,7 +332,7 @@ impl Table {
             let shape = [self.shots.len(), across];
             let table = truth.new_dataset::<f64>().shape(shape).create(name)?;
             table.write_raw(values)?;
-            describe(&table, "true value of every contact", unit(name))?;
+            describe(&table, self.long_name(name), unit(name))?;
             table.attach_scale(0, shots)?;
             table.attach_scale(1, &axis)?;
         }

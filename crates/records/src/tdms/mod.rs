@@ -100,6 +100,7 @@ fn open_group(
         row: total,
         each: total,
         pieces: false,
+        note: None,
     };
     let opened = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
     let stream = Group {

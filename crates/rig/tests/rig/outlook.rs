@@ -1,7 +1,7 @@
 //! What a recorder will not see is told before a campaign.
 
-use crate::small::{plan, shots};
-use hertzchain_rig::{RigError, outlook};
+use crate::small::{experiment, plan, shots};
+use hertzchain_rig::{Plan, RigError, outlook};
 
 #[test]
 fn a_recorder_that_sees_all_is_told_nothing() {
@@ -41,4 +41,48 @@ fn a_rate_of_few_samples_a_pulse_is_told_and_one_of_none_refused() {
     let refused = at("sampling = \"1 kHz\"").unwrap_err();
     assert!(matches!(refused, RigError::Unsuited(_)));
     assert!(refused.to_string().contains("has 0.1 samples"), "{refused}");
+}
+
+/// Each of these would record nothing that anybody could use.
+#[test]
+fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
+    let told = |from: &str, to: &str| outlook(&plan(&[(from, to)])).unwrap().join("\n");
+    let record = "record = \"20 ms\"";
+    let clipped = told(record, "record = \"20 ms\"\nrange = \"20 mV\"");
+    assert!(
+        clipped.contains("is clipped at the converter's range of ± 0.02 V"),
+        "{clipped}"
+    );
+    let ranges = clipped.split("range = \"").skip(1);
+    let volts = ranges.map(|text| text.split(" V").next().unwrap().parse().unwrap());
+    let enough = volts.fold(0.0, f64::max);
+    let wider = told(
+        record,
+        &format!("record = \"20 ms\"\nrange = \"{enough} V\""),
+    );
+    assert_eq!(wider, "");
+    let coarse = told(record, "record = \"20 ms\"\nbits = 4");
+    assert!(coarse.contains("steps of the converter"), "{coarse}");
+    let level = |level: &str| {
+        let with = format!("record = \"20 ms\"\ntrigger = \"level\"\nlevel = \"{level}\"");
+        told(record, &with)
+    };
+    let high = level("5 V");
+    assert!(
+        high.contains("never passes the trigger's level of 5 V"),
+        "{high}"
+    );
+    let low = level("1 mV");
+    assert!(low.contains("within the noise"), "{low}");
+    assert_eq!(level("20 mV"), "");
+}
+
+#[test]
+fn gaps_wider_than_beads_are_refused_by_name() {
+    let wide = experiment(&[("gap_scatter = \"5 um\"", "gap_scatter = \"50 mm\"")]);
+    let refused = Plan::new(&wide, None).unwrap_err().to_string();
+    assert!(
+        refused.contains("`gap_scatter`") && refused.contains("50 mm"),
+        "{refused}"
+    );
 }

@@ -30,6 +30,8 @@ pub(super) struct Chosen {
     pub(super) order_doubtful: bool,
     /// One of the three is not there, and it is not plain which.
     pub(super) lost: bool,
+    /// Between which samples each was the largest; nothing of one that is not there.
+    pub(super) windows: [(f64, f64); 3],
 }
 
 /// Largest of the maxima between two samples.
@@ -104,7 +106,8 @@ pub(super) fn summed(maxima: &[Maximum], track: &Track<'_>, finding: &Finding) -
     let passing = largest(maxima, 0.0, reached - width).unwrap_or(first);
     let incident = reached - passing.at as f64;
     let latest = reached + latest_return(finding) * incident;
-    let returning = largest(maxima, reached + (EARLIEST * incident).max(width), latest);
+    let back = reached + (EARLIEST * incident).max(width);
+    let returning = largest(maxima, back, latest);
     let order_doubtful = doubtful(maxima, [first, passing, wall], returning, finding, width);
     let chosen = Chosen {
         passing: Some(passing),
@@ -112,6 +115,8 @@ pub(super) fn summed(maxima: &[Maximum], track: &Track<'_>, finding: &Finding) -
         returning,
         order_doubtful,
         lost: false,
+        // The wall's own: what comes back is another pulse.
+        windows: [(0.0, reached - width), (began + from, back), (back, latest)],
     };
     match returning {
         Some(_) => chosen,
@@ -140,12 +145,14 @@ fn of_two(
         (_, Some(beads)) if may_be_back && to_and_fro(beads) => Chosen {
             wall: None,
             returning: Some(second),
+            windows: [(0.0, 0.0); 3],
             ..chosen
         },
         (true, Some(_)) => Chosen {
             passing: None,
             wall: Some(first),
             returning: Some(second),
+            windows: [(0.0, 0.0); 3],
             ..chosen
         },
         (false, Some(_)) => chosen,
@@ -254,5 +261,10 @@ pub(super) fn separate(sensor: &[Maximum], wall: &[Maximum], track: &Track<'_>) 
         returning: largest(sensor, reached, reached + 3.0 * incident),
         order_doubtful: early || late,
         lost: false,
+        windows: [
+            (0.0, reached),
+            (0.0, f64::INFINITY),
+            (reached, reached + 3.0 * incident),
+        ],
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::Level;
+use crate::{Estimate, Level};
 
 /// Steps of the digitiser below which a pulse without noise is coarse.
 const COARSE: f64 = 32.0;
@@ -38,6 +38,8 @@ pub enum Doubt {
     Missing(Place),
     /// Another maximum of at least a quarter of its height stands near a pulse.
     Split(Place),
+    /// Noise leaves open which of a pulse's maxima is the largest.
+    Alike(Place),
     /// A pulse in a summed channel falls much more slowly than it rises.
     Trailing(Place),
     /// Between two pulses the signal does not fall to a tenth of the lower one.
@@ -63,7 +65,8 @@ pub enum Doubt {
 
 impl Doubt {
     /// Whether times may be of something else than the wave: of a clipped or hardly
-    /// sampled pulse, or of pulses taken for one another.
+    /// sampled pulse, or of pulses taken for one another. Which of maxima alike is the largest the
+    /// shots of a speed tell together.
     #[must_use]
     pub fn is_grave(&self) -> bool {
         matches!(
@@ -79,6 +82,7 @@ impl fmt::Display for Doubt {
             Self::Saturation(place) => write!(f, "{place} pulse saturated"),
             Self::Missing(place) => write!(f, "{place} pulse missing"),
             Self::Split(place) => write!(f, "{place} pulse split"),
+            Self::Alike(place) => write!(f, "{place} pulse of maxima alike but for noise"),
             Self::Trailing(place) => write!(f, "{place} pulse trails"),
             Self::Overlap(one, other) => write!(f, "{one} and {other} pulse overlap"),
             Self::LowSignal(place) => write!(f, "{place} pulse low"),
@@ -150,12 +154,20 @@ pub struct Pulse {
 /// From so many times as slow a fall as rise on, at half the height, a pulse trails: those of
 /// dry chains have 0.9 to 1.2.
 const TRAILS: f64 = 2.0;
+/// From so many times on it begins to.
+const BEGINS: f64 = 1.2;
 
 impl Pulse {
     /// Whether it falls so much more slowly than it rises that its top is flat.
     #[must_use]
     pub fn trails(&self) -> bool {
         self.sides_samples.1 > TRAILS * self.sides_samples.0
+    }
+
+    /// How near it comes to that: 0 for a fall like those of dry chains, 1 for one that trails.
+    pub(crate) fn trailing(&self) -> f64 {
+        let (rise, fall) = self.sides_samples;
+        ((fall / rise - BEGINS) / (TRAILS - BEGINS)).clamp(0.0, 1.0)
     }
 
     /// Whether a sample is clipped, or next to one that is: recorders round the corner.
@@ -172,6 +184,15 @@ impl Pulse {
     }
 }
 
+/// Another maximum of a pulse, the highest but the largest: noise may have made it the lower.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rival {
+    /// The maximum, with the pulse about it; its place is that of the pulse.
+    pub pulse: Pulse,
+    /// How much lower it is than the largest, in the samples' unit, by fits to the samples about both.
+    pub lower: Estimate,
+}
+
 /// The pulses of a shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
@@ -181,6 +202,8 @@ pub struct Found {
     pub wall: Option<Pulse>,
     /// At the sensor bead, on the way back.
     pub returning: Option<Pulse>,
+    /// Other maxima of these that are nearly as high, at most one a pulse.
+    pub rivals: Vec<Rival>,
     /// What is doubtful; empty for a clean record. In order, none twice.
     pub doubts: Vec<Doubt>,
     /// The sensor's, or the summed, channel.
@@ -207,6 +230,14 @@ impl Found {
             .filter_map(|p| p.clipped.as_mut())
         {
             *clipped = (clipped.0.saturating_sub(samples), clipped.1 + samples);
+        }
+    }
+
+    pub(super) fn slot(&mut self, place: Place) -> &mut Option<Pulse> {
+        match place {
+            Place::Passing => &mut self.passing,
+            Place::Wall => &mut self.wall,
+            Place::Returning => &mut self.returning,
         }
     }
 

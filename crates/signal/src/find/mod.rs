@@ -5,16 +5,19 @@ mod digitiser;
 mod doubts;
 mod found;
 mod options;
+mod rivals;
 mod smooth;
 mod track;
 
-pub use found::{Doubt, Found, Place, Pulse, Upright};
+pub use found::{Doubt, Found, Place, Pulse, Rival, Upright};
 pub use options::{Channels, Finding, Polarity};
 
 use crate::error::SignalError;
 use choose::Chosen;
 use doubts::Seen;
 use smooth::{Maximum, Smooth};
+use std::array::from_fn;
+use std::ops::Range;
 use track::Track;
 
 /// Finds the passing, the wall's and the returning pulse of one shot.
@@ -27,8 +30,9 @@ use track::Track;
 /// the wall could be reached again. One shot a record: cut longer ones first.
 ///
 /// Signals are smoothed for this only as far as their noise asks for, over at
-/// most a quarter of a pulse. A pulse must rise and fall by five deviations
-/// of the noise left.
+/// most a quarter of a pulse; the return, which is the weakest, as far as its own height
+/// asks for. A pulse must rise and fall by five deviations of the noise left. Where another
+/// maximum of a pulse is nearly as high, fits to both tell which is the largest: see [`Rival`].
 ///
 /// # Errors
 /// Too few, not finite or constant samples; no pulse at all; channels of
@@ -45,11 +49,12 @@ pub(crate) fn conditioned_pulses(
     finding: &Finding,
 ) -> Result<Found, SignalError> {
     finding.check()?;
-    let mut found = match channels {
+    let (mut found, others) = match channels {
         Channels::Summed(samples) => summed(samples, finding),
         Channels::Separate { sensor, wall } => separate(sensor, wall, finding),
     }?;
     digitiser::judge(&mut found, recorded, finding);
+    rivals::tell(&mut found, &others, channels);
     if let Channels::Summed(_) = channels {
         found.doubt(doubts::trailing(&found));
     }
@@ -64,15 +69,23 @@ pub fn upright(samples: &[f64], polarity: Polarity) -> Result<Upright, SignalErr
     Track::new(samples, polarity).map(|track| track.upright)
 }
 
-fn summed(samples: &[f64], finding: &Finding) -> Result<Found, SignalError> {
+/// What was found, and other maxima that could be the largest of their pulses.
+type Looked = (Found, Vec<Pulse>);
+
+fn summed(samples: &[f64], finding: &Finding) -> Result<Looked, SignalError> {
     let track = Track::new(samples, finding.polarity)?;
     let end = choose::end_of_interest(&track, finding);
     let (smooth, maxima) = look(&track, end);
-    let chosen = choose::summed(&maxima, &track, finding);
-    Ok(gather(&chosen, (&track, &smooth), (&track, &smooth)))
+    let mut chosen = choose::summed(&maxima, &track, finding);
+    let one = View::new(&track, &smooth, &maxima);
+    let closer = closer(&one, &mut chosen, end);
+    let back = closer
+        .as_ref()
+        .map_or(one, |(s, m)| View::new(&track, s, m));
+    Ok(gather(&chosen, [one, one, back]))
 }
 
-fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Found, SignalError> {
+fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Looked, SignalError> {
     if sensor.len() != wall.len() {
         return Err(SignalError::Lengths {
             sensor: sensor.len(),
@@ -86,9 +99,13 @@ fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Found, Si
     let end = reached + 4 * reached.saturating_sub(began) + 3 * track.width as usize;
     let (sensor_smooth, sensor_maxima) = look(&track, end);
     let (wall_smooth, wall_maxima) = look(&wall, end);
-    let chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
-    let (sensor, wall) = ((&track, &sensor_smooth), (&wall, &wall_smooth));
-    Ok(gather(&chosen, sensor, wall))
+    let mut chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+    let sensor = View::new(&track, &sensor_smooth, &sensor_maxima);
+    let wall = View::new(&wall, &wall_smooth, &wall_maxima);
+    let closer = closer(&sensor, &mut chosen, end);
+    let back = closer.as_ref();
+    let back = back.map_or(sensor, |(s, m)| View::new(&track, s, m));
+    Ok(gather(&chosen, [sensor, wall, back]))
 }
 
 /// Smoothes a track from before its first pulse on, and finds its maxima.
@@ -97,37 +114,78 @@ fn look(track: &Track<'_>, end: usize) -> (Smooth, Vec<Maximum>) {
     let range = (start as f64, end as f64);
     let highest = choose::largest_block(track, range.0, range.1)
         .map_or(0.0, |at| track.block_height(at / track::BLOCK));
-    let smooth = Smooth::of(track, start..end, highest);
-    let least = (5.0 * smooth.noise).max(0.005 * highest);
+    look_at(track, start..end, highest)
+}
+
+/// Smoothes a stretch as far as a pulse so high asks for, and finds its maxima.
+fn look_at(track: &Track<'_>, stretch: Range<usize>, height: f64) -> (Smooth, Vec<Maximum>) {
+    let smooth = Smooth::of(track, stretch, height);
+    let least = (5.0 * smooth.noise).max(0.005 * height);
     let mut maxima = smooth.maxima(least);
     maxima.retain(|m| m.height > least);
     (smooth, maxima)
 }
 
-type Looked<'a, 'b> = (&'a Track<'b>, &'a Smooth);
+/// A channel as it is looked at for one pulse.
+#[derive(Clone, Copy)]
+struct View<'a, 'b> {
+    track: &'a Track<'b>,
+    smooth: &'a Smooth,
+    maxima: &'a [Maximum],
+}
 
-fn gather(chosen: &Chosen, sensor: Looked<'_, '_>, wall: Looked<'_, '_>) -> Found {
-    let see = |(track, smooth), place, maximum: Option<Maximum>| {
-        maximum.map(|maximum| seen(track, smooth, place, &maximum))
-    };
-    let seen = [
-        see(sensor, Place::Passing, chosen.passing),
-        see(wall, Place::Wall, chosen.wall),
-        see(sensor, Place::Returning, chosen.returning),
-    ];
+impl<'a, 'b> View<'a, 'b> {
+    fn new(track: &'a Track<'b>, smooth: &'a Smooth, maxima: &'a [Maximum]) -> Self {
+        Self {
+            track,
+            smooth,
+            maxima,
+        }
+    }
+}
+
+/// Looks again for the return, which has a tenth of the highest pulse's height: left as rough as
+/// that one bears, single samples would choose among its fragments and end its width.
+fn closer(
+    sensor: &View<'_, '_>,
+    chosen: &mut Chosen,
+    end: usize,
+) -> Option<(Smooth, Vec<Maximum>)> {
+    let (from, to) = chosen.windows[2];
+    let back = chosen.returning.filter(|_| to > from)?;
+    let start = (from - sensor.track.width).max(0.0) as usize;
+    let (smooth, maxima) = look_at(sensor.track, start..end, back.height);
+    let largest = choose::largest(&maxima, from, to)?;
+    chosen.returning = Some(largest);
+    Some((smooth, maxima))
+}
+
+fn gather(chosen: &Chosen, views: [View<'_, '_>; 3]) -> Looked {
+    let places = [Place::Passing, Place::Wall, Place::Returning];
+    let maxima = [chosen.passing, chosen.wall, chosen.returning];
+    let seen: [Option<Seen<'_, '_>>; 3] =
+        from_fn(|i| maxima[i].map(|maximum| seen(&views[i], places[i], &maximum)));
+    let others = (0..3).flat_map(|i| {
+        let own = maxima[i].iter();
+        let others = own.flat_map(move |own| {
+            rivals::others(views[i].maxima, chosen.windows[i], own, views[i].smooth)
+        });
+        others.map(move |other| seen_pulse(&views[i], places[i], &other))
+    });
     let [passing, at_wall, returning] = seen.each_ref().map(|s| s.as_ref().map(|s| s.pulse));
+    let [sensor, wall, _] = views.map(|view| view.track);
     let mut doubts: Vec<Doubt> = match chosen.lost {
         true => vec![Doubt::Lost],
         false => doubts::missing(&[passing, at_wall, returning]).collect(),
     };
-    doubts.extend(each(&seen, std::ptr::eq(sensor.0, wall.0)));
+    doubts.extend(each(&seen, std::ptr::eq(sensor, wall)));
     if let (Some(first), Some(second), None) = (passing, at_wall, returning)
-        && choose::ends_early(first.at, second.at, sensor.0.samples.len())
+        && choose::ends_early(first.at, second.at, sensor.samples.len())
     {
         doubts.push(Doubt::RecordTooShort);
     }
     doubts.extend(chosen.order_doubtful.then_some(Doubt::Order));
-    let rough = [sensor.0, wall.0]
+    let rough = [sensor, wall]
         .iter()
         .any(|t| t.upright.level.quiet_samples == 0);
     doubts.extend(rough.then_some(Doubt::FewQuietSamples));
@@ -135,12 +193,13 @@ fn gather(chosen: &Chosen, sensor: Looked<'_, '_>, wall: Looked<'_, '_>) -> Foun
         passing,
         wall: at_wall,
         returning,
+        rivals: Vec::new(),
         doubts: Vec::new(),
-        sensor: sensor.0.upright,
-        wall_channel: wall.0.upright,
+        sensor: sensor.upright,
+        wall_channel: wall.upright,
     };
     found.doubt(doubts);
-    found
+    (found, others.collect())
 }
 
 /// Doubts about each pulse and about neighbours.
@@ -164,16 +223,20 @@ fn each(seen: &[Option<Seen<'_, '_>>; 3], one_channel: bool) -> Vec<Doubt> {
     doubts
 }
 
-fn seen<'a, 'b>(
-    track: &'a Track<'b>,
-    smooth: &'a Smooth,
-    place: Place,
-    maximum: &Maximum,
-) -> Seen<'a, 'b> {
+fn seen<'a, 'b>(view: &View<'a, 'b>, place: Place, maximum: &Maximum) -> Seen<'a, 'b> {
+    Seen {
+        pulse: seen_pulse(view, place, maximum),
+        track: view.track,
+        smooth: view.smooth,
+    }
+}
+
+fn seen_pulse(view: &View<'_, '_>, place: Place, maximum: &Maximum) -> Pulse {
+    let smooth = view.smooth;
     let (from, to) = smooth.reach(maximum, 0.1 * maximum.height);
     let sides_samples = smooth.sides(maximum);
-    let last = track.samples.len().saturating_sub(1);
-    let pulse = Pulse {
+    let last = view.track.samples.len().saturating_sub(1);
+    Pulse {
         place,
         at: maximum.at,
         height: maximum.height,
@@ -181,10 +244,5 @@ fn seen<'a, 'b>(
         sides_samples,
         extent: (from as usize, (to.ceil() as usize).min(last)),
         clipped: None,
-    };
-    Seen {
-        pulse,
-        track,
-        smooth,
     }
 }

@@ -107,6 +107,7 @@ fn picked(
         height_share: height * fit.value_variance(u).sqrt() * excess,
         slope_share: height * fit.slope_variance(u).sqrt() * excess,
         bend: height * at.bend,
+        bend_share: height * fit.bend_variance(u).sqrt() * excess,
         open_share: height
             * open_variance(fit, u, sight.broad_noise(pulse), thought).sqrt()
             * excess,

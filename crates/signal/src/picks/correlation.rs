@@ -14,6 +14,11 @@ const REACH: f64 = 1.4;
 /// them noise of the template times noise of the signal spoils the correlation,
 /// and with them hardly any of the pulse is lost.
 const SMOOTHING: f64 = 0.2;
+/// Lags, as a share of a template's length, between which the bend of a correlation is taken: a
+/// third of a width or so, over which noise does not hide it and a bell's falls short of it by 6 %.
+const APART: f64 = 0.3 / (2.0 * REACH);
+/// Least share of a template's slopes squared that is taken for the pulse's, not noise's.
+const LEAST: f64 = 0.25;
 
 /// A template. An offset of the signal adds the same to its correlation at all
 /// lags, and so does not matter.
@@ -21,10 +26,8 @@ pub(super) struct Correlator {
     template: Vec<f64>,
     /// Samples from the template's first to its own maximum.
     top: f64,
-    /// Slope energy Σ s'² of a template scaled to height 1, per sample squared.
-    energy: f64,
-    /// Deviation of the delay by products of noises, for a pulse and noise of 1.
-    products: f64,
+    /// Σ t'² over its samples.
+    slopes: f64,
     /// The record's own pulse, and so as noisy: its time is its maximum's.
     own: Option<Own>,
 }
@@ -62,7 +65,7 @@ impl Correlator {
         let half = (REACH * width).ceil();
         let count = 2 * half as usize + 1;
         let samples = (0..count).map(|i| shape.value((i as f64 - half) / width));
-        Self::of(samples.collect(), half, 1.0)
+        Self::of(samples.collect(), half)
     }
 
     fn passing(sensor: &Sight<'_>, pulse: &Pulse) -> Result<Self, SignalError> {
@@ -72,12 +75,18 @@ impl Correlator {
         let (first, heights) = sensor.window(at - reach, at + reach);
         let length = (SMOOTHING * pulse.width_samples) as usize | 1;
         let smooth = running::triangle(&heights, length);
-        let correlator = Self::of(smooth, at - first as f64, picked.height);
-        let noise = sensor.upright.level.noise / picked.height;
+        let correlator = Self::of(smooth, at - first as f64);
+        let noise = sensor.broad_noise(pulse);
         // Slopes of the smoothed noise have 2/length³ of its variance a sample.
-        let slopes = noise * (2.0 * heights.len() as f64).sqrt() / (length as f64).powf(1.5);
+        let of_noise = 2.0 * heights.len() as f64 * noise * noise / (length as f64).powi(3);
+        let of_pulse = (correlator.slopes - of_noise).max(LEAST * correlator.slopes);
+        let picked = Picked {
+            sigma_s: noise / of_pulse.sqrt(),
+            moved: Moved::default(),
+            misfit: None,
+            ..picked
+        };
         Ok(Self {
-            products: slopes / correlator.energy,
             own: Some(Own {
                 at: pulse.at,
                 picked,
@@ -86,61 +95,56 @@ impl Correlator {
         })
     }
 
-    fn of(samples: Vec<f64>, top: f64, height: f64) -> Self {
+    fn of(samples: Vec<f64>, top: f64) -> Self {
         let slopes = samples.windows(3).map(|three| 0.5 * (three[2] - three[0]));
-        let squares: f64 = slopes.map(|s| s * s).sum();
         Self {
-            energy: squares / (height * height),
+            slopes: slopes.map(|s| s * s).sum(),
             template: samples,
             top,
-            products: 0.0,
             own: None,
         }
     }
 
-    /// Time in samples. Variance: noise²/Σ s'² of the pulse; as much again of
-    /// the template if that is the record's own, counted at the passing pulse,
-    /// whose noise is common to all delays against it; and what noise of the
-    /// one times noise of the other adds.
+    /// Time in samples. Variance: noise² Σ t'²/(Σ t' s')², with t the template, its own noise
+    /// included, and s the signal, Σ t' s' being the bend of their correlation. What noise of the
+    /// record's own pulse does is counted at the passing pulse, as it is common to all delays
+    /// against it: noise²/Σ t'², without the noise in t.
     pub(super) fn pick(&self, sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
-        let at_top = local_model::roughly(sight, pulse)?;
-        let noise = sight.broad_noise(pulse);
-        let sigma_s = noise / (at_top.height.abs() * self.energy.sqrt());
         if let Some(own) = self.own.as_ref().filter(|own| own.at == pulse.at) {
-            return Ok(Picked {
-                sigma_s,
-                moved: Moved::default(),
-                misfit: None,
-                ..own.picked
-            });
+            return Ok(own.picked);
         }
-        let time_s = self.best(sight, pulse).ok_or(SignalError::NoPick {
+        let at_top = local_model::roughly(sight, pulse)?;
+        let (time_s, bend) = self.best(sight, pulse).ok_or(SignalError::NoPick {
             place: pulse.place,
             what: "largest correlation",
         })?;
         Ok(Picked {
             time_s,
-            sigma_s: sigma_s.hypot(noise * self.products / at_top.height.abs()),
+            sigma_s: sight.broad_noise(pulse) * self.slopes.sqrt() / bend,
             moved: Moved::default(),
             misfit: None,
             ..at_top
         })
     }
 
-    /// Where the template's maximum lies when the correlation is largest.
-    fn best(&self, sight: &Sight<'_>, pulse: &Pulse) -> Option<f64> {
+    /// Where the template's maximum lies when the correlation is largest, and how much that bends
+    /// there, a sample squared.
+    fn best(&self, sight: &Sight<'_>, pulse: &Pulse) -> Option<(f64, f64)> {
         let search = (0.5 * pulse.width_samples).ceil() + 3.0;
         let length = self.template.len();
         let start = (pulse.at as f64 - self.top - search).round();
         let lags = 2 * search as usize + 1;
-        let heights = padded(sight, start, length + lags);
-        let correlations: Vec<f64> = (0..lags)
-            .map(|lag| product(&self.template, &heights[lag..]))
-            .collect();
+        let apart = ((APART * length as f64) as usize).max(1);
+        let heights = padded(sight, start - apart as f64, length + lags + 2 * apart);
+        let at = |lag: usize| product(&self.template, &heights[lag..]);
+        let correlations: Vec<f64> = (apart..apart + lags).map(at).collect();
         let best = largest(&correlations)?;
         let around = best.checked_sub(2)?..best + 3;
         let five: [f64; 5] = correlations.get(around)?.try_into().ok()?;
-        Some(start + best as f64 + quartic_maximum(five) + self.top)
+        let bend = 2.0 * five[2] - at(best) - at(best + 2 * apart);
+        let bend = bend / (apart * apart) as f64;
+        let time = start + best as f64 + quartic_maximum(five) + self.top;
+        (bend > 0.0).then_some((time, bend))
     }
 }
 

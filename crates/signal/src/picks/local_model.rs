@@ -15,8 +15,27 @@ pub(super) struct Top {
     pub(super) height_share: f64,
     pub(super) slope_share: f64,
     pub(super) bend: f64,
+    pub(super) bend_share: f64,
     /// The part of the slope's share that is of the shape, which the samples leave open.
     pub(super) open_share: f64,
+}
+
+/// Deviations by which noise may have sharpened a top, or steepened a flank.
+pub(super) const BY_CHANCE: f64 = 2.0;
+
+impl Top {
+    /// How many times as sharp it is as a Gaussian of the pulse's sides, whose mean is the
+    /// geometric one; at least 1, and no more than noise can have made of it. Not asked of a clipped
+    /// pulse, whose sides its flanks tell no better.
+    fn sharper(&self, pulse: &Pulse, half: f64, noise: f64) -> f64 {
+        if pulse.clipped.is_some() {
+            return 1.0;
+        }
+        let (rise, fall) = pulse.sides_samples;
+        let gaussian = 2.0 * std::f64::consts::LN_2 * half * half / (rise * fall) * self.height;
+        let least = -self.bend - BY_CHANCE * noise * self.bend_share;
+        (-self.bend / gaussian.max(least)).max(1.0)
+    }
 }
 
 /// As [`pick`], for a height and a time that need not be free of bias.
@@ -56,6 +75,7 @@ fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked 
         height_share: fit.value_variance(u).sqrt(),
         slope_share: fit.slope_variance(u).sqrt(),
         bend: at.bend,
+        bend_share: fit.bend_variance(u).sqrt(),
         open_share: 0.0,
     };
     finish(sight, pulse, fit, u, &top)
@@ -63,6 +83,9 @@ fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked 
 
 /// With s the slope and b the bend of the curve, the top is at s = 0 and its
 /// variance is var(s)/b²; what lies under the pulse adds its own slope's.
+///
+/// Noise that sharpens a top by chance also moves it, and must not make its error less: of noise's
+/// part, b is no more than that of a Gaussian as high and as wide at half its height.
 pub(super) fn finish(
     sight: &Sight<'_>,
     pulse: &Pulse,
@@ -73,15 +96,16 @@ pub(super) fn finish(
     let noise = sight.broad_noise(pulse);
     let time = fit.sample(u);
     let moved_by = |slope: f64| slope / -top.bend * fit.half;
+    let by_noise = |share: f64| moved_by(noise * share) * top.sharper(pulse, fit.half, noise);
     // What falls moves a maximum earlier.
     let under = -moved_by(sight.fall_under(pulse, time) * fit.half);
     let likely = moved_by(sight.likely_fall(pulse, time) * fit.half);
     Picked {
         time_s: time + likely,
-        sigma_s: moved_by(noise * top.slope_share).hypot(under),
+        sigma_s: by_noise(top.slope_share).hypot(under),
         moved: Moved {
             under_s: under,
-            shape_s: moved_by(noise * top.open_share),
+            shape_s: by_noise(top.open_share),
         },
         height: top.height,
         height_sigma: noise * top.height_share,

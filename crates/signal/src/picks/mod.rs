@@ -17,7 +17,7 @@ pub(crate) use flanks::flat_top;
 pub use shape::Shape;
 
 use crate::error::SignalError;
-use crate::{Channels, Found, Place, Pulse, Rails, Upright};
+use crate::{Channels, Estimate, Found, Place, Pulse, Rails, Upright};
 
 /// How a pulse's time is told. What each is worth: docs/measuring.md.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,6 +103,27 @@ pub struct Picked {
     pub misfit: Option<f64>,
 }
 
+/// Another maximum of a pulse as picked, which could be the largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedRival {
+    /// It.
+    pub picked: Picked,
+    /// How much lower it is than the one that was picked, in the samples' unit.
+    pub lower: Estimate,
+}
+
+impl PickedRival {
+    /// How likely noise alone made it the lower: the normal distribution's tail.
+    #[must_use]
+    pub fn chance(&self) -> f64 {
+        let Estimate { value, sigma } = self.lower;
+        match value == 0.0 {
+            true => 0.5,
+            false => 0.5 * libm::erfc(value / sigma / std::f64::consts::SQRT_2),
+        }
+    }
+}
+
 /// What may have moved a maximum in all alike shots by the same, so that no mean over them makes
 /// it smaller. 0 of other methods.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,6 +185,8 @@ pub struct Picks {
     pub wall: Picked,
     /// At the sensor bead, on the way back, if it was found and could be picked.
     pub returning: Option<Picked>,
+    /// Other maxima of the three, in this order, that are nearly as high.
+    pub rivals: [Option<PickedRival>; 3],
 }
 
 /// Picks the pulses that were found, given the digitiser's range, where it is known, in the
@@ -205,10 +228,34 @@ pub fn pick(
     let finish = |picked: Picked| picked.in_seconds(interval_s);
     let picked = |pulse: Pulse| picker.pick(&coming_back, &pulse).ok();
     let returning = found.returning.and_then(picked);
+    let rival = |place, sight: &Sight<'_>| {
+        let rival = found
+            .rivals
+            .iter()
+            .find(|rival| rival.pulse.place == place)?;
+        Some(PickedRival {
+            picked: finish(picker.pick(sight, &rival.pulse).ok()?),
+            lower: rival.lower,
+        })
+    };
     Ok(Picks {
         passing: finish(picker.pick(&sensor, &passing)?),
         wall: finish(picker.pick(&at_wall, &wall)?),
         returning: returning.map(finish),
+        rivals: [
+            rival(Place::Passing, &sensor),
+            rival(Place::Wall, &at_wall),
+            rival(Place::Returning, &coming_back).filter(|_| returning.is_some()),
+        ],
+    })
+}
+
+/// Height of a pulse's maximum with its error, as the samples about it tell.
+pub(crate) fn fitted_height(sight: &Sight<'_>, pulse: &Pulse) -> Option<Estimate> {
+    let picked = Picker::Maximum.pick(sight, pulse).ok()?;
+    Some(Estimate {
+        value: picked.height,
+        sigma: picked.height_sigma,
     })
 }
 

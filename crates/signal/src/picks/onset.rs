@@ -1,6 +1,6 @@
 //! Where the rising flank passes a share of the maximum.
 
-use super::local_model;
+use super::local_model::{self, BY_CHANCE};
 use super::polynomial::Polynomial;
 use super::{Moved, Picked, Sight};
 use crate::Pulse;
@@ -13,7 +13,8 @@ const REACH: f64 = 0.18;
 ///
 /// The maximum h is that of a local model. The last sample below f h before it
 /// is where the flank passes, roughly; a cubic fitted about that says where,
-/// finely. Variance: (var(cubic) + f² var(h))/slope².
+/// finely. Variance: (var(cubic) + f² var(h))/slope², with no more of a slope than a Gaussian as
+/// steep at half its height has there: what noise adds to it by chance makes the time no surer.
 pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse, fraction: f64) -> Result<Picked, SignalError> {
     let top = local_model::roughly(sight, pulse)?;
     before(sight, pulse, fraction, top)
@@ -52,7 +53,7 @@ fn before(
     let rough = rough(sight, pulse, top.time_s, threshold).ok_or_else(no_crossing)?;
     let (fit, u) = fit(sight, pulse, rough, threshold).ok_or_else(no_crossing)?;
     let noise = sight.broad_noise(pulse);
-    let slope = fit.course(u).slope / fit.half;
+    let slope = likely_slope(pulse, fraction, top.height, noise, &fit, u) / fit.half;
     let of_value = noise * noise * fit.value_variance(u);
     let of_height = (fraction * top.height_sigma).powi(2);
     Ok(Picked {
@@ -62,6 +63,24 @@ fn before(
         misfit: sight.misfit(pulse, fit.left),
         ..top
     })
+}
+
+/// Slope at u, less what noise may have added.
+fn likely_slope(
+    pulse: &Pulse,
+    fraction: f64,
+    height: f64,
+    noise: f64,
+    fit: &Polynomial,
+    u: f64,
+) -> f64 {
+    let slope = fit.course(u).slope;
+    // y = h 2^(−z²), with z from the maximum in half widths of the rise.
+    let z = (-fraction.log2()).sqrt();
+    let steepness = 2.0 * std::f64::consts::LN_2 * z * fraction * height;
+    let gaussian = steepness * fit.half / pulse.sides_samples.0;
+    let least = slope - BY_CHANCE * noise * fit.slope_variance(u).sqrt();
+    slope.min(gaussian.max(least))
 }
 
 /// Middle between the last sample below the threshold before the top and the

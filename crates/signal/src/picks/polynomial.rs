@@ -110,6 +110,11 @@ impl Polynomial {
     pub(crate) fn slope_variance(&self, u: f64) -> f64 {
         self.solution.variance(&slope_row(u))
     }
+
+    /// Variance of the bend at u for unit noise.
+    pub(crate) fn bend_variance(&self, u: f64) -> f64 {
+        self.solution.variance(&bend_row(u))
+    }
 }
 
 /// 0, 1, 2 u, 3 u² and so on.
@@ -117,6 +122,16 @@ pub(crate) fn slope_row(u: f64) -> [f64; MOST] {
     let mut row = [0.0; MOST];
     let below = powers(u);
     for k in 1..MOST {
+        row[k] = k as f64 * below[k - 1];
+    }
+    row
+}
+
+/// 0, 0, 2, 6 u and so on.
+fn bend_row(u: f64) -> [f64; MOST] {
+    let mut row = [0.0; MOST];
+    let below = slope_row(u);
+    for k in 2..MOST {
         row[k] = k as f64 * below[k - 1];
     }
     row

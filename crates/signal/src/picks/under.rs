@@ -45,7 +45,7 @@ impl Sight<'_> {
     ///
     /// Under the wall's pulse it is the sensor bead's signal, from what is there before the pulse
     /// begins to nothing at its maximum; under one that trails, and whose flat top little can
-    /// shift far, within its rise. Under the returning pulse it is the wall's, which falls as far as
+    /// shift far, within its rise, and the more so the more it trails. Under the returning pulse it is the wall's, which falls as far as
     /// [`Self::may_fall`] says.
     pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let rise = pulse.sides_samples.0;
@@ -57,8 +57,10 @@ impl Sight<'_> {
         let there = self.beyond_noise(foot - length, foot);
         match self.wall {
             Some(wall) => self.may_fall(pulse, wall as f64, foot, there) / (time - foot),
-            None if pulse.trails() => there / rise,
-            None => there / (time - foot),
+            None => {
+                let trailing = pulse.trailing();
+                there * (trailing / rise + (1.0 - trailing) / (time - foot))
+            }
         }
     }
 

@@ -130,6 +130,8 @@ pub enum RowsAre {
     Channels,
     /// A row is a moment, a column a channel
     Times,
+    /// A row is a moment, a column a shot
+    Moments,
 }
 
 /// Units of a rate in Hz.

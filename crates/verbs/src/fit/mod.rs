@@ -21,8 +21,8 @@ use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
 use crate::inference::{user, wanted};
 use hertzchain_infer::{
-    Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, Goodness, Identifiability, Loss,
-    Parameter, Problem, Speeds, fit,
+    Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, FreeNumber, Goodness,
+    Identifiability, Loss, Observable, Parameter, Problem, Speeds, Started, fit,
 };
 use partial::Remembered;
 
@@ -81,11 +81,53 @@ impl Inferred {
         }
     }
 
+    /// Minima of other starts that fit as well, and how many starts came to each.
+    #[must_use]
+    pub fn other_minima(&self) -> Vec<(&Started, usize)> {
+        let sd: Vec<f64> = (0..self.parameters.len())
+            .map(|at| self.standard_error(at))
+            .collect();
+        self.fit.other_minima(&sd)
+    }
+
     /// How far from its bound a parameter may be, if it lies there.
     #[must_use]
     pub fn limit(&self, at: usize) -> Option<&Limit> {
         let limits = self.limits.as_ref().ok()?;
         limits.iter().find(|limit| limit.parameter == at)
+    }
+}
+
+impl Fitted {
+    /// That several pairs of K and A may give the data, where both are free and two times of
+    /// flight a pair are all that was measured, and how to look for them; nothing if the fit
+    /// had several starts.
+    #[must_use]
+    pub fn several_pairs(&self) -> Option<String> {
+        let numbers = self.problem.model().numbers().as_slice();
+        let of = |number: &FreeNumber, short: &str| {
+            let (owner, name) = number
+                .name()
+                .rsplit_once('.')
+                .unwrap_or(("", number.name()));
+            (name == short).then(|| owner.to_owned())
+        };
+        let owners: Vec<String> = numbers.iter().filter_map(|n| of(n, "K")).collect();
+        let pair = |n: &&FreeNumber| of(n, "A").is_some_and(|owner| owners.contains(&owner));
+        let relaxation = numbers.iter().find(pair)?;
+        let data = self.problem.data();
+        let pairs = relaxation.parameter_count(data.rows.len());
+        let ratios = [
+            Observable::WallOverPassing,
+            Observable::ReturningOverPassing,
+        ];
+        let times_alone = !ratios.iter().any(|of| data.has(*of));
+        let few = times_alone && data.value_count() <= 2 * pairs;
+        (few && self.inferred.fit.starts.len() == 1).then(|| {
+            "Several pairs of K and A may give the same two times of flight, and this fit looked for one: see whether \
+             others fit as well by --starts with --bounds of both, or by `hertzchain gauge`, which follows all pairs"
+                .to_owned()
+        })
     }
 }
 
@@ -187,4 +229,51 @@ fn told(
         inferred,
         problem,
     })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+mod tests {
+    use super::*;
+    use crate::arguments::parsed;
+    use crate::inference;
+
+    /// A row of the paper's wet chain, K = 1.186e10 N/m^1.5 and A = 2.60 µs, with errors as
+    /// of 20 shots.
+    const ROW: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,tof_reflected_s_error\n\
+                       0.119052,0.0006708,0.000936197428,1.118e-07,0.00110372846,1.118e-07\n";
+
+    fn of_row(more: &[&str]) -> Fitted {
+        let begin = ["row.csv", "--preset=pump", "--free=wet.K,wet.A"];
+        let words = begin.iter().chain(more).map(|word| (*word).to_owned());
+        let arguments: Arguments = parsed("fit", &words.collect::<Vec<_>>()).unwrap();
+        let data = inference::parsed("row.csv", ROW, &arguments.measured, None).unwrap();
+        let experiment = inference::experiment(&arguments.modelled, None).unwrap();
+        let model = inference::model(&experiment, &arguments.modelled, &arguments.freed).unwrap();
+        let problem = inference::problem(model, data, &arguments.freed).unwrap();
+        fitted(problem, &arguments).unwrap()
+    }
+
+    #[test]
+    fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
+        let told = of_row(&[]).several_pairs().unwrap();
+        assert!(
+            told.contains("--starts") && told.contains("gauge"),
+            "{told}"
+        );
+        let bounds = ["--bounds=wet.K=5e9:2e10", "--bounds=wet.A=1e-7:1e-5"];
+        let found = of_row(&[&bounds[..], &["--starts=10"]].concat());
+        assert_eq!(found.several_pairs(), None);
+        let minima = found.inferred.other_minima();
+        let best = (&found.inferred.fit.point, 0);
+        let others = minima.iter().map(|(start, _)| (&start.point, 1));
+        let all: Vec<_> = std::iter::once(best).chain(others).collect();
+        assert!(all.len() > 1, "{all:?}");
+        // One of them is the true pair, within three percent: the row's own errors.
+        let near = |value: f64, truth: f64| (value / truth - 1.0).abs() < 0.03;
+        let is_true = |point: &[f64]| near(point[0], 1.186e10) && near(point[1], 2.60e-6);
+        assert!(all.iter().any(|(point, _)| is_true(point)), "{all:?}");
+        let rise = |start: &Started| 2.0 * (start.cost - found.inferred.fit.cost);
+        assert!(minima.iter().all(|(start, _)| rise(start) <= 9.0));
+    }
 }

@@ -22,6 +22,7 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         "instruction_set": fitted.problem.model().set.name(),
         "fingerprint": fitted.problem.fingerprint().to_string(),
         "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
+        "several_pairs": fitted.several_pairs(),
         "prospects": fitted.advice.as_ref().map(prospects),
         "comparison": fitted.rivals.as_ref().map(comparison),
     });
@@ -73,6 +74,9 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         "starts_agreeing": fit.agreeing_starts(),
         "starts": fit.starts.iter().map(|start| json!({
             "from": start.start, "to": start.point, "cost": start.cost, "iterations": start.iterations,
+        })).collect::<Value>(),
+        "other_minima": fitted.other_minima().iter().map(|(start, starts)| json!({
+            "point": start.point, "chi_square_rise": 2.0 * (start.cost - fit.cost), "starts": starts,
         })).collect::<Value>(),
         "evaluations": fit.evaluations,
         "cost": fit.cost,
@@ -226,7 +230,9 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
             "aicc": finite(criteria.aicc),
             "bic": criteria.bic,
             "weight": comparison.weights[at],
-            "cross_validation": { "mean": rival.foretells.mean, "error": rival.foretells.error },
+            "cross_validation": rival.foretells.as_ref().map(|found| json!({
+                "mean": found.mean, "error": found.error,
+            })),
         })
     };
     rivals.all.iter().enumerate().map(one).collect()

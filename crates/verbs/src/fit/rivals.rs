@@ -17,8 +17,9 @@ pub struct Rival {
     pub name: String,
     /// Its fit.
     pub fit: Fit,
-    /// How well it foretells what it has not seen.
-    pub foretells: CrossValidation,
+    /// How well it foretells what it has not seen; `None` where so few speeds are left that they
+    /// would not determine it.
+    pub foretells: Option<CrossValidation>,
     /// What is set in the fit's own model, and is not there in this one.
     pub without: Vec<String>,
     /// Numbers of this one that are kept while their unit changes.
@@ -72,7 +73,7 @@ pub fn rivals(
         .map(|rival| Compared {
             name: &rival.name,
             fit: &rival.fit,
-            cross_validation: Some(&rival.foretells),
+            cross_validation: rival.foretells.as_ref(),
         })
         .collect();
     let comparison = match compared.len() {
@@ -236,7 +237,9 @@ fn rival(
         parts: Some(PARTS.min(problem.data().rows.len())),
         seed,
     };
-    let foretells = cross_validate(kept, &fit, &how);
+    let foretells = enough(problem.data().rows.len(), fit.point.len())
+        .then(|| cross_validate(kept, &fit, &how))
+        .transpose();
     wanted()?;
     let foretells = foretells.map_err(|error| Failure::User(format!("{name}: {error}")))?;
     Ok(Rival {
@@ -248,5 +251,24 @@ fn rival(
     })
 }
 
+/// Whether more speeds are left than numbers are free when the largest part is left out. A
+/// speed's two times share the error of its speed, so that they count as one.
+fn enough(speeds: usize, free: usize) -> bool {
+    let parts = PARTS.min(speeds).max(1);
+    speeds - speeds.div_ceil(parts) > free
+}
+
 /// Parts into which rows are dealt for cross-validation.
 const PARTS: usize = 5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cross_validation_needs_more_speeds_left_than_free_numbers() {
+        // Of three speeds two are left, of seven in five parts five.
+        assert!(enough(3, 1) && !enough(3, 2) && !enough(2, 1));
+        assert!(enough(7, 4) && !enough(7, 5) && enough(25, 5));
+    }
+}

@@ -258,7 +258,11 @@ fn comparison(rivals: &Rivals) -> String {
         let none = || [const { Cell::Empty }; 5];
         let [free, aic, aicc, bic, weight] = found.map_or_else(none, |found| judged(at, found));
         let (name, chi_square) = (rival.name.clone().into(), rival.fit.chi_square().into());
-        let (mean, error) = (rival.foretells.mean.into(), rival.foretells.error.into());
+        let foretells = rival.foretells.as_ref();
+        let (mean, error) = (
+            foretells.map(|f| f.mean).into(),
+            foretells.map(|f| f.error).into(),
+        );
         [name, free, chi_square, aic, aicc, bic, weight, mean, error]
     };
     let lost = |lost: &super::Lost| -> [Cell; 9] {

@@ -113,7 +113,11 @@ fn scatter(measured: &Measured) -> Scatter {
 /// What is assumed of data that do not say all: for warnings.
 #[must_use]
 pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
-    let all = [exact_speeds(data, measured), few_shots(data)];
+    let all = [
+        exact_speeds(data, measured),
+        few_shots(data),
+        not_there(data, measured),
+    ];
     let all: Vec<String> = all.into_iter().flatten().collect();
     (!all.is_empty()).then(|| all.join("; "))
 }
@@ -151,6 +155,25 @@ fn few_shots(data: &Data) -> Option<String> {
          errors over many rows (--error-shots known says that they are)",
         data.file
     ))
+}
+
+/// Numbers that --use names and the table does not have. Of the times that are taken where
+/// --use is not given, a table may have one.
+fn not_there(data: &Data, measured: &Measured) -> Option<String> {
+    if measured.observables == [What::Incident, What::Reflected] {
+        return None;
+    }
+    let wanted = measured.observables.iter().map(|what| of(*what));
+    let missing = wanted.filter(|of| !data.has(*of));
+    let missing: Vec<String> = missing.map(|of| format!("`{}`", of.column())).collect();
+    (!missing.is_empty()).then(|| {
+        format!(
+            "{}: --use asks for {}, of which the table has no value: nothing of it is used. Add a column of this title \
+             with its errors, as `hertzchain measure` writes them, or leave it out of --use",
+            data.file,
+            missing.join(" and ")
+        )
+    })
 }
 
 fn exact_speeds(data: &Data, measured: &Measured) -> Option<String> {
@@ -245,10 +268,28 @@ pub fn changed(mut experiment: Experiment, sets: &[Assignment]) -> Result<Experi
         let changed = experiment.set_text(&[(&set.name, &set.text)]);
         experiment = changed.map_err(|error| match error {
             PathError::Mistakes(mistakes) => mistakes.into(),
+            PathError::Unknown { .. } => unknown(&experiment, &set.name, &error),
             other => Failure::User(format!("--set {}: {other}", set.name)),
         })?;
     }
     Ok(experiment)
+}
+
+/// That a number to be set is not there; of a short name that --free knows, its path.
+fn unknown(experiment: &Experiment, name: &str, error: &PathError) -> Failure {
+    let found = FreeNumber::find(experiment, name, Some(1.0));
+    let why = match found.as_ref().map(FreeNumber::path) {
+        Ok(Some(path)) => format!(
+            "--set takes paths of the experiment file, and `{name}` is a short name of --free: write --set {path}=VALUE"
+        ),
+        Ok(None) => format!("`{name}` is no number of the experiment file: --free alone knows it"),
+        Err(FreeError::Ambiguous { .. }) => format!(
+            "--set takes paths of the experiment file, and `{name}` is a short name of --free for several of its numbers: \
+             `hertzchain schema` lists what paths there are"
+        ),
+        Err(_) => error.to_string(),
+    };
+    Failure::User(format!("--set {name}: {why}"))
 }
 
 /// A model with its free numbers.
@@ -291,4 +332,63 @@ pub fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
         .num_threads(threads.unwrap_or(0))
         .build();
     pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+mod tests {
+    use super::*;
+    use crate::arguments::infer::Fit;
+    use crate::arguments::parsed as arguments;
+
+    fn fit(more: &[&str]) -> Fit {
+        let begin = ["data.csv", "--preset=dry", "--free=eta"];
+        let words = begin.iter().chain(more).map(|word| (*word).to_owned());
+        arguments("fit", &words.collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn a_number_that_use_names_and_the_table_has_not_is_told() {
+        let text =
+            "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.3,1e-3,7e-4,1e-7\n";
+        let told = |words: &[&str]| {
+            let measured = fit(words).measured;
+            let data = parsed("a.csv", text, &measured, None).unwrap();
+            assumed(&data, &measured)
+        };
+        let why = told(&["--use=incident,returning-ratio"]).unwrap();
+        let column = Observable::ReturningOverPassing.column();
+        assert!(
+            why.starts_with(&format!("a.csv: --use asks for `{column}`")),
+            "{why}"
+        );
+        // Nobody asked for reflected times by name.
+        assert_eq!(told(&[]), None);
+        assert_eq!(told(&["--use=incident"]), None);
+    }
+
+    #[test]
+    fn a_short_name_that_is_set_is_told_with_its_path() {
+        for (name, words) in [
+            (
+                "B",
+                "write --set contacts[0].laws.damping_cubic.coefficient=VALUE",
+            ),
+            ("eta", "write --set materials.aisi316.shear_viscosity=VALUE"),
+            ("wall_gain", "--free alone knows it"),
+            ("nothing", "there is no number `nothing`"),
+        ] {
+            let set = format!("--set={name}=50");
+            let modelled = fit(&[&set]).modelled;
+            let Err(Failure::User(why)) = experiment(&modelled, None) else {
+                unreachable!("{name} was set")
+            };
+            assert!(
+                why.starts_with(&format!("--set {name}: ")) && why.contains(words),
+                "{why}"
+            );
+        }
+        let path = ["--set=damping_cubic.coefficient=50 kg s/m^2"];
+        assert!(experiment(&fit(&path).modelled, None).is_ok());
+    }
 }

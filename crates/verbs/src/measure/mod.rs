@@ -10,8 +10,10 @@ use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows};
-use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, ShotList};
-use hertzchain_signal::{Finding, LowPass, Measuring, Method, Polarity, Shape, Template};
+use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, Shot, ShotList};
+use hertzchain_signal::{
+    Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
+};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -99,6 +101,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
                 Some(RowsAre::Shots) => Rows::Shots,
                 Some(RowsAre::Channels) => Rows::Channels,
                 Some(RowsAre::Times) => Rows::Times,
+                Some(RowsAre::Moments) => Rows::Moments,
             },
         },
         cutting: match (reading.level, reading.whole) {
@@ -205,6 +208,26 @@ pub fn grouping(arguments: &Arguments) -> Grouping {
         gap_m_s: arguments.speed_gap,
         reference: arguments.reference.clone(),
         keep_dubious: arguments.keep_dubious,
+    }
+}
+
+/// Whether the options suit the recordings; one that does not is told once, not with every shot.
+///
+/// # Errors
+/// An option that its records do not take, as a low-pass above half their sampling rate.
+pub fn suits(measured: &Measurement) -> Result<(), Failure> {
+    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(SignalError::Option { .. }));
+    let first = measured.shots.first();
+    let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));
+    match error {
+        Some((first, error)) if measured.shots.iter().all(|shot| unsuited(&shot)) => {
+            Err(Failure::User(format!(
+                "{error}; {} is sampled at {:.0} Hz, and no record takes it",
+                first.source,
+                first.interval_s.recip()
+            )))
+        }
+        _ => Ok(()),
     }
 }
 

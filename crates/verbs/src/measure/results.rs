@@ -118,8 +118,8 @@ fn case(case: &Case) -> Value {
     json!({
         "case": case.name,
         "speeds": case.rows.iter().map(row).collect::<Value>(),
-        "power_law_incident": law(&case.laws.incident),
-        "power_law_reflected": law(&case.laws.reflected),
+        "power_law_incident": law(case, &case.laws.incident),
+        "power_law_reflected": law(case, &case.laws.reflected),
     })
 }
 
@@ -129,6 +129,7 @@ fn row(row: &SpeedRow) -> Value {
         "speed_error_shots": row.speed_error_shots,
         "shots": row.shots.0,
         "left_out": row.shots.1,
+        "returns_undecided": row.returns_undecided,
         "tof_incident_s": summary(&row.incident_s),
         "tof_reflected_s": row.reflected_s.as_ref().map(summary),
         "wall_over_passing": summary(&row.wall_over_passing),
@@ -153,7 +154,8 @@ fn summary(of: &Summary) -> Value {
     })
 }
 
-fn law(of: &Result<PowerLaw, FitError>) -> Value {
+/// Whether a law is supported is null where nothing tells, and then says why.
+fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
     match of {
         Err(error) => json!({ "missing": error.to_string() }),
         Ok(law) => json!({
@@ -166,7 +168,8 @@ fn law(of: &Result<PowerLaw, FitError>) -> Value {
             "chi_square": law.chi_square.map(|judged| judged.value),
             "degrees_of_freedom": law.chi_square.map(|judged| judged.freedom),
             "probability": law.chi_square.map(|judged| judged.probability),
-            "supported": law.is_supported(),
+            "supported": case.supports(law).ok().flatten(),
+            "supported_unknown_because": case.supports(law).err(),
         }),
     }
 }
@@ -197,6 +200,7 @@ mod tests {
             passing: picked,
             wall: at(1.7e-3),
             returning: Some(at(2.5e-3)),
+            rivals: [None; 3],
         };
         let shot = Shot {
             source: "long.npy, shot 12345 at 123.4567 s".to_owned(),

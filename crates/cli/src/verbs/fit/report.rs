@@ -4,7 +4,7 @@ use crate::format::{self, digits};
 use crate::print::heading;
 use crate::words::{chi_square_text, doubt, estimate, misfit, percent, rough};
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Problem, Profile,
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Problem, Profile, Runs, Started,
 };
 use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 use hertzchain_verbs::inference::widened;
@@ -37,7 +37,10 @@ pub fn text(fitted: &Fitted) -> String {
     });
     text += &more(&fitted.inferred);
     text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
-    text + &beware(&fitted.inferred) + &unit(fitted)
+    text += &beware(&fitted.inferred);
+    let pairs = fitted.several_pairs();
+    text += &pairs.map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    text + &unit(fitted)
 }
 
 /// That speeds seem to be in another unit.
@@ -99,7 +102,36 @@ pub fn beware(fitted: &Inferred) -> String {
         let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
         text += &format!("{agree} of {all} starts came to this minimum.\n");
     }
-    text
+    text + &other_minima(fitted)
+}
+
+/// Other minima that fit as well: errors hold for one of them.
+fn other_minima(fitted: &Inferred) -> String {
+    let minima = fitted.other_minima();
+    if minima.is_empty() {
+        return String::new();
+    }
+    let line = |(start, count): &(&Started, usize)| {
+        let values = fitted.parameters.iter().zip(&start.point);
+        let values = values.map(|(parameter, value)| {
+            format!(
+                "{} = {} {}",
+                parameter.name,
+                digits(*value, 6),
+                parameter.unit
+            )
+        });
+        format!(
+            "  {} (chi-square higher by {}, {count} starts)\n",
+            values.collect::<Vec<_>>().join(", ").trim_end(),
+            digits(2.0 * (start.cost - fitted.fit.cost), 2)
+        )
+    };
+    let lines: String = minima.iter().map(line).collect();
+    format!(
+        "Beware: other starts came to other values that fit as well. Errors and intervals hold for the one minimum above, \
+         and the data do not say that it is the right one (other data, a prior or bounds may):\n{lines}"
+    )
 }
 
 /// The parameters with their standard errors.
@@ -163,14 +195,7 @@ fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
         return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
     }
     let mut text = chi_square_text(goodness);
-    if let Some(runs) = goodness.runs {
-        text += &format!(
-            "{} runs of equal sign, {} expected: as few or fewer in {} of repetitions\n",
-            runs.count,
-            digits(runs.expected, 3),
-            percent(runs.probability_fewer)
-        );
-    }
+    text += &goodness.runs.map_or(String::new(), runs_text);
     if let Some((at, residual)) = goodness.farthest {
         let label = problem.residual_label(at);
         text += &format!(
@@ -180,6 +205,31 @@ fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
     }
     text
 }
+
+/// Runs of equal sign, by the tail on whose side they are: too many are as odd as too few.
+fn runs_text(runs: Runs) -> String {
+    let (how, share) = match (runs.count as f64) <= runs.expected {
+        true => ("as few or fewer", runs.probability_fewer),
+        false => ("as many or more", runs.probability_more),
+    };
+    let odd = match (share < ODD, (runs.count as f64) <= runs.expected) {
+        (false, _) => "",
+        (true, true) => "; neighbouring residuals go together, as where the curve's shape is wrong",
+        (true, false) => {
+            "; residuals change sign oddly often, as where neighbouring data are not independent"
+        }
+    };
+    format!(
+        "{} runs of equal sign, {} expected: {how} in {} of repetitions{odd}\n",
+        runs.count,
+        digits(runs.expected, 3),
+        percent(share)
+    )
+}
+
+/// Share of repetitions in one tail below which the number of runs is odd: five percent of
+/// both tails.
+const ODD: f64 = 0.025;
 
 /// The model's own error against the data's.
 fn accuracy(fitted: &Fitted) -> String {
@@ -349,7 +399,7 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
             digits(rival.fit.chi_square(), 5),
             digits(comparison.aicc_above_best[at], 4),
             digits(criteria.bic, 6),
-            digits(rival.foretells.mean, 5),
+            (rival.foretells.as_ref()).map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
         ]
     };
     let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
@@ -386,5 +436,28 @@ pub fn short(of: Observable) -> &'static str {
         Observable::Reflected => "reflected",
         Observable::WallOverPassing => "wall/passing",
         Observable::ReturningOverPassing => "returning/passing",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_too_many_runs_are_told_as_well_as_far_too_few() {
+        let told = |residuals: &[f64]| hertzchain_infer::runs(residuals).map(runs_text);
+        let alternating: Vec<f64> = (0..20).map(|at| f64::from(1 - 2 * (at % 2))).collect();
+        let many = told(&alternating).unwrap_or_default();
+        assert!(
+            many.contains("20 runs of equal sign, 11 expected: as many or more in"),
+            "{many}"
+        );
+        assert!(many.contains("oddly often"), "{many}");
+        let (above, below) = ([1.0; 10], [-1.0; 10]);
+        let few = told(&[above, below].concat()).unwrap_or_default();
+        assert!(few.contains("as few or fewer in"), "{few}");
+        assert!(few.contains("go together"), "{few}");
+        let usual = told(&[1.0, 1.0, -1.0, 1.0, -1.0, -1.0]).unwrap_or_default();
+        assert!(usual.ends_with("of repetitions\n"), "{usual}");
     }
 }

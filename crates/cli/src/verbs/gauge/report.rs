@@ -4,12 +4,13 @@ use crate::format::{self, digits, with_error};
 use crate::print::heading;
 use crate::words::{chi_square_of, chi_square_text, estimate, misfit, percent};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, Pair, PowerForm, SharedLaw, WetRow, is_told};
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_told};
 use hertzchain_verbs::gauge::Gauged;
 
 /// Everything that is to be said.
 pub fn text(gauged: &Gauged) -> String {
-    let mut text = dry_doubt(gauged);
+    let doubts = doubts(gauged);
+    let mut text = doubts.clone();
     text += &format!("{}\n{}\n", heading("Dry contacts"), dry(gauged));
     text += &format!("{}\n{}", heading("Wet contacts"), contacts(gauged));
     if let Some(laws) = &gauged.laws {
@@ -40,16 +41,23 @@ pub fn text(gauged: &Gauged) -> String {
         text += &format!("{oil} can't be computed: {why}\n");
     }
     text += &format!("{}\n", gauged.verdict.sentence());
-    let doubts = gauged.doubts();
-    text + &doubts.map_or(String::new(), |doubts| format!("Beware: {doubts}\n"))
+    // Tables may be longer than a screen: who sees the verdict alone is told, too.
+    match doubts.is_empty() {
+        true => text,
+        false => text + "Beware: what the first lines say speaks against believing this.\n",
+    }
 }
 
-/// Before all else: that nothing below can hold.
-fn dry_doubt(gauged: &Gauged) -> String {
-    let told = misfit(&gauged.gauge.dry_goodness());
-    told.map_or(String::new(), |told| {
-        format!("Beware: of the dry curve, on which all below rests, {told}.\n\n")
-    })
+/// Before all else: what speaks against believing what is below.
+fn doubts(gauged: &Gauged) -> String {
+    let dry = misfit(&gauged.gauge.dry_goodness())
+        .map(|told| format!("of the dry curve, on which all below rests, {told}."));
+    let all = dry.into_iter().chain(gauged.doubts());
+    let lines: String = all.map(|doubt| format!("Beware: {doubt}\n")).collect();
+    match lines.is_empty() {
+        true => lines,
+        false => lines + "\n",
+    }
 }
 
 fn dry(gauged: &Gauged) -> String {
@@ -216,13 +224,21 @@ fn held_numbers(gauged: &Gauged) -> String {
     }
 }
 
+/// How often chance alone gives as much; what is never is not told to its digits.
+fn by_chance(probability: f64) -> String {
+    match probability < NEVER {
+        true => format!("below {:.0e} %", 100.0 * NEVER),
+        false => percent(probability),
+    }
+}
+
 fn matches(gauged: &Gauged) -> String {
     let own = gauged.gauge.wet_own(&[]);
     let rows = gauged.verdict.matches.iter().map(|found| {
         let mut row = vec![
             found.oil.clone(),
             digits(found.distance, 3),
-            percent(found.chi_square.probability),
+            by_chance(found.chi_square.probability),
             if found.fits() { "possible" } else { "rejected" }.to_owned(),
         ];
         // One column a number that is the same at all speeds.

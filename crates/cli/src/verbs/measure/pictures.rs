@@ -111,8 +111,8 @@ fn with_curve(
         Err(_) => f64::NAN,
     });
     let colour = colour(number);
-    let dash = match law.as_ref().map(PowerLaw::is_supported) {
-        Ok(Some(false)) => Dash::Dashed,
+    let dash = match law.as_ref().map(|law| case.supports(law)) {
+        Ok(Ok(Some(false))) => Dash::Dashed,
         _ => Dash::Solid,
     };
     let line = Series::line("", &speeds, &fitted).dash(dash);

@@ -2,7 +2,7 @@
 
 use crate::format::{self, with_error};
 use crate::print::heading;
-use hertzchain_measure::{Case, Curves, Measurement, Shot};
+use hertzchain_measure::{Case, Curves, Measurement, Shot, SpeedRow};
 use hertzchain_signal::{Estimate, FitError, PowerLaw, Summary};
 
 /// Shots that anybody reads one by one.
@@ -35,10 +35,12 @@ pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String 
             "\n{}\n",
             heading(&format!("{} over {reference}", named(&wet.case)))
         );
-        for ratio in &wet.incident {
-            let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
-            let speed = format::digits(ratio.speed, 4);
-            text += &format!("  incident at {speed} m/s: {value} ± {error}\n");
+        for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
+            for ratio in ratios {
+                let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
+                let speed = format::digits(ratio.speed, 4);
+                text += &format!("  {time} at {speed} m/s: {value} ± {error}\n");
+            }
         }
     }
     if !measured.shots.is_empty() && curves.cases.is_empty() && curves.lost.is_empty() {
@@ -104,6 +106,20 @@ fn shots(shots: &[Shot]) -> String {
     format::table(&head.map(str::to_owned), &rows) + &more
 }
 
+/// How many shots count, and what does not.
+fn counts(row: &SpeedRow) -> String {
+    let (counted, out) = row.shots;
+    let left_out = match out {
+        0 => String::new(),
+        out => format!(" (+{out} left out)"),
+    };
+    let undecided = match row.returns_undecided {
+        0 => String::new(),
+        open => format!(", {open} returns undecided"),
+    };
+    format!("{counted}{left_out}{undecided}")
+}
+
 fn curve(case: &Case) -> String {
     let head = [
         "v (m/s)",
@@ -134,10 +150,7 @@ fn curve(case: &Case) -> String {
     let rows = case.rows.iter().map(|row| {
         vec![
             format::digits(row.speed_m_s.value, 4),
-            match row.shots.1 {
-                0 => row.shots.0.to_string(),
-                out => format!("{} (+{out} left out)", row.shots.0),
-            },
+            counts(row),
             mean(Some(row.incident_s), row.shared_s[0]),
             deviation(Some(row.incident_s)),
             mean(row.reflected_s, row.shared_s[1]),
@@ -147,19 +160,18 @@ fn curve(case: &Case) -> String {
         ]
     });
     let rows: Vec<Vec<String>> = rows.collect();
-    let speeds_known = case.rows.iter().all(|row| row.speed_m_s.sigma > 0.0);
     format!(
         "\n{}\n{}{}{}",
         heading(named(&case.name)),
         format::table(&head.map(str::to_owned), &rows),
-        law("incident", &case.laws.incident, speeds_known),
-        law("reflected", &case.laws.reflected, speeds_known)
+        law("incident", case, &case.laws.incident),
+        law("reflected", case, &case.laws.reflected)
     )
 }
 
 /// A fit, judged; too few speeds for one are plain to see. Errors are widened to
 /// the points' scatter where that is larger.
-fn law(name: &str, law: &Result<PowerLaw, FitError>, speeds_known: bool) -> String {
+fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;
@@ -174,7 +186,7 @@ fn law(name: &str, law: &Result<PowerLaw, FitError>, speeds_known: bool) -> Stri
     match law.exponent_error.is_finite() {
         true => format!(
             "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
-            judgement(law, speeds_known)
+            judgement(case, law)
         ),
         false => {
             format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
@@ -183,7 +195,7 @@ fn law(name: &str, law: &Result<PowerLaw, FitError>, speeds_known: bool) -> Stri
 }
 
 /// Whether the points follow the law within their errors.
-fn judgement(law: &PowerLaw, speeds_known: bool) -> String {
+fn judgement(case: &Case, law: &PowerLaw) -> String {
     let Some(judged) = &law.chi_square else {
         return match law.residuals.len() {
             2 => ", from two speeds, which cannot test it".to_owned(),
@@ -196,18 +208,18 @@ fn judgement(law: &PowerLaw, speeds_known: bool) -> String {
         judged.freedom,
         format::digits(judged.probability, 2)
     );
-    if law.is_supported() != Some(false) {
+    let supported = case.supports(law);
+    if supported.is_ok_and(|supported| supported != Some(false)) {
         return squares;
     }
     let widened = format!(
         "those given here are widened {} times, to the scatter about it",
         format::digits(law.excess(), 2)
     );
-    match speeds_known {
-        true => format!("{squares}: NOT a power law within the errors; {widened}"),
-        false => format!(
-            "{squares}: not a power law within the errors of times alone; those of speeds are \
-             not known and were taken for 0 (the column `speed error` of the table of --shots, or \
+    match supported {
+        Ok(_) => format!("{squares}: NOT a power law within the errors; {widened}"),
+        Err(why) => format!(
+            "{squares}: not a power law within the errors of times alone; {why} (the column `speed error` of the table of --shots, or \
              --speed-error, tells them), so this judges nothing; {widened}"
         ),
     }
