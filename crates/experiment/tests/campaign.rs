@@ -113,11 +113,11 @@ fn mistakes_in_a_campaign_are_told_at_their_place() {
     assert_eq!(long.text(), "\"1 h\"");
     let before = after("before = \"2 ms\"", "before = \"0.2 s\"");
     assert_eq!(before.text(), "\"0.2 s\"");
-    let offset = after("before = \"2 ms\"", "before = \"2 ms\"\noffset = \"12 V\"");
+    let offset = after("offset = \"0 V\"", "offset = \"12 V\"");
     assert_eq!(offset.text(), "\"12 V\"");
     assert!(offset.to_string().contains("range of ± 10 V"), "{offset:?}");
-    let never = "before = \"2 ms\"\ntrigger = \"level\"\nlevel = \"30 V\"";
-    let level = after("before = \"2 ms\"", never);
+    let never = "trigger = \"level\"\nlevel = \"30 V\"";
+    let level = after("trigger = \"photogate\"", never);
     assert_eq!(level.text(), "\"30 V\"");
     assert!(level.to_string().contains("never passed"), "{level:?}");
     let name = after("name = \"pump\"", "name = \"pump/oil\"");
