@@ -190,6 +190,8 @@ class Designed(Tabled):
 
     Attributes
     ----------
+    follows_data : bool
+        Whether the model follows the data so far within their errors; the ranking is the model's.
     parameters : list of str
         The parameters to tighten.
     units : list of str
@@ -212,6 +214,7 @@ class Designed(Tabled):
     Information of a measurement that was not made: [ChalonerVerdinelli1995], docs/inferring.md.
     """
 
+    follows_data: bool
     parameters: list[str]
     units: list[str]
     standard_errors_now: list[float | None]
