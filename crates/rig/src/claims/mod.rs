@@ -15,7 +15,7 @@ mod spread;
 pub use design::{Design, FACTORS, Factor, Rig};
 pub use evidence::{AtSpeed, Evidence, Observed, mean, rebound_m_s, spread_s};
 pub use observe::observe;
-pub use report::{RigClaims, series_csv};
+pub use report::{MEANING, RigClaims, series_csv};
 pub use spread::{Estimate, root_mean_square, typical};
 
 use hertzchain_study::claims::{ClaimError, Judge, read};

@@ -11,6 +11,10 @@ use hertzchain_study::claims::{
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
+/// What a claim that fails means, above the table of claims.
+pub const MEANING: &str = "A claim that fails is a statement that virtual rigs do not show, whose friction, laying, \
+    sizes and push are assumptions, as the paper prints none; this does not make it wrong of the paper's own rig.";
+
 /// The claims, judged on all dry rigs of a design and on each rig alone.
 #[derive(Clone, Debug)]
 pub struct RigClaims {
@@ -45,7 +49,7 @@ impl RigClaims {
     #[must_use]
     pub fn markdown(&self) -> String {
         let head = format!(
-            "# What the paper says of its rig, and what virtual ones show\n\n{}",
+            "# What the paper says of its rig, and what virtual ones show\n\n{}\n\n{MEANING}",
             self.about
         );
         let mut page = claims_markdown(&self.judged, &head);
@@ -76,6 +80,7 @@ impl RigClaims {
         });
         json!({
             "about": self.about,
+            "meaning": MEANING,
             "claims": claims_json(&self.judged),
             "rigs": rigs.collect::<Vec<Value>>(),
         })

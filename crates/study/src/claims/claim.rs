@@ -111,7 +111,18 @@ impl Judge {
     #[must_use]
     pub fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
         predicates::OF_THE_END.contains(&self.claim.predicate.as_str())
-            && self.claim.cases.iter().any(|name| name == case)
+            && self.covers(case, speed_m_s)
+    }
+
+    /// Whether the claim is about a shot of a case whose gaps close when the pulse
+    /// meets the wall.
+    #[must_use]
+    pub fn needs_closing(&self, case: &str, speed_m_s: f64) -> bool {
+        self.claim.predicate == predicates::CLOSING && self.covers(case, speed_m_s)
+    }
+
+    fn covers(&self, case: &str, speed_m_s: f64) -> bool {
+        self.claim.cases.iter().any(|name| name == case)
             && (self.claim.from_m_s..=self.claim.to_m_s).contains(&speed_m_s)
     }
 }

@@ -57,6 +57,9 @@ pub struct Point {
     pub striker_separation_m_s: f64,
     /// Velocity of the striker at the end of the shot in m/s.
     pub striker_rebound_m_s: f64,
+    /// Reflected less incident ToF, both by peaks, in s: of the shot, and with the gaps
+    /// behind the pulse closed as it meets the wall.
+    pub excess_s: [f64; 2],
     /// By how much beads 1 and N stand farther apart than at rest when the
     /// returning pulse has passed, in m: all gaps less all overlaps.
     pub loosened_m: f64,
@@ -70,6 +73,8 @@ pub struct Point {
     pub width_accuracy: f64,
     /// Absolute accuracy of the striker's two velocities in m/s.
     pub striker_accuracy_m_s: f64,
+    /// Absolute accuracy of both differences of ToFs in s.
+    pub excess_accuracy_s: f64,
     /// Absolute accuracy of the loosening in m.
     pub loosened_accuracy_m: f64,
 }
@@ -223,15 +228,28 @@ impl Oil {
     }
 }
 
-/// A measured peak, read off a published figure.
+/// What a published figure shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measured {
+    /// Peak force at the sensor bead over that at the wall.
+    SensorOverWall,
+    /// A time of flight in s.
+    Tof(Branch),
+    /// Wet over dry incident ToF.
+    Ratio,
+}
+
+/// A measured point, read off a published figure.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DigitisedPeak {
+pub struct Digitised {
+    /// What was measured.
+    pub what: Measured,
     /// Case it belongs to.
     pub case: String,
     /// Speed in m/s.
     pub speed_m_s: f64,
-    /// Peak force at the sensor bead over that at the wall.
-    pub sensor_over_wall: f64,
+    /// Its value.
+    pub value: f64,
     /// Its standard error.
     pub standard_error: f64,
 }
@@ -245,8 +263,8 @@ pub struct Evidence {
     pub oils: Vec<Oil>,
     /// Viscosity over Young modulus of the dry balls, η/Y in s.
     pub viscosity_over_modulus_s: f64,
-    /// Measured peaks; the paper prints none.
-    pub digitised: Vec<DigitisedPeak>,
+    /// Measured points; the paper prints none.
+    pub digitised: Vec<Digitised>,
 }
 
 impl Evidence {

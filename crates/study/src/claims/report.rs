@@ -4,6 +4,11 @@ use super::{Claim, Finding, IN_PART, Judged, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
+/// What a claim that fails means, above the table of claims.
+pub const MEANING: &str = "A claim that fails is a statement that the paper's model, with the printed constants and in \
+    this reading, does not give; this does not make the statement wrong, because the paper prints no measured value to \
+    compare with, and its authors may have computed with more digits or read their equations otherwise.";
+
 /// All that was found about every claim, as a list in JSON. Numbers that do not
 /// exist are `null`.
 #[must_use]

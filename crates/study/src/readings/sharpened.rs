@@ -24,7 +24,7 @@ pub(super) fn sharpened(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::claims::{Curve, DigitisedPeak, Point, Verdict, claims};
+    use crate::claims::{Curve, Digitised, Measured, Point, Verdict, claims};
     use std::cell::RefCell;
 
     /// A peak whose difference from a measured one is this many standard errors,
@@ -41,12 +41,14 @@ mod tests {
             widths_s: [1.0; 3],
             striker_separation_m_s: 0.0,
             striker_rebound_m_s: 0.0,
+            excess_s: [0.0; 2],
             loosened_m: 0.0,
             accuracy_reached: accuracy,
             peak_accuracy: accuracy,
             second_peak_accuracy_n: accuracy,
             width_accuracy: accuracy,
             striker_accuracy_m_s: accuracy,
+            excess_accuracy_s: accuracy,
             loosened_accuracy_m: accuracy,
         };
         Evidence {
@@ -54,10 +56,11 @@ mod tests {
                 case: "dry".to_owned(),
                 points: vec![point],
             }],
-            digitised: vec![DigitisedPeak {
+            digitised: vec![Digitised {
+                what: Measured::SensorOverWall,
                 case: "dry".to_owned(),
                 speed_m_s: 1.0,
-                sensor_over_wall: 1.0,
+                value: 1.0,
                 standard_error: 1.0,
             }],
             ..Evidence::default()

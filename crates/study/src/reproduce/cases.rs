@@ -17,40 +17,22 @@ pub const CASES: [&str; 6] = [
 /// The wet ones.
 pub const OILS: [&str; 3] = ["pump", "gear", "motor"];
 
-/// The dry chain held together by the paper's spring force, for the claim
-/// about loosening.
-pub const HELD: &str = "dry-held";
-
 /// The paper's chains in one reading.
 #[derive(Clone, Debug)]
 pub struct Cases(Vec<(&'static str, Experiment)>);
 
 impl Cases {
-    /// All of them, and the dry chain held together where the reading itself
-    /// does not hold it.
+    /// All of them.
     ///
     /// # Errors
     /// A reading that leaves something outside a chain.
     pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
-        let held = match reading.get("preload") {
-            Some("none") => Some(
-                reading
-                    .with("preload", "constant")
-                    .map_err(ReproduceError::Reading)?,
-            ),
-            _ => None,
+        let open = |case| {
+            let experiment = preset(case).map_err(ReproduceError::Preset)?;
+            Ok((case, experiment.with_reading(reading)?))
         };
-        let named = CASES.map(|case| (case, case, *reading));
-        let all = named
-            .into_iter()
-            .chain(held.map(|held| (HELD, "dry", held)));
-        let open = |(case, file, reading): (&'static str, &str, Reading)| {
-            let experiment = preset(file).map_err(ReproduceError::Preset)?;
-            Ok((case, experiment.with_reading(&reading)?))
-        };
-        all.map(open)
-            .collect::<Result<_, ReproduceError>>()
-            .map(Self)
+        let all = CASES.into_iter().map(open);
+        all.collect::<Result<_, ReproduceError>>().map(Self)
     }
 
     /// Names and experiments, in the order of the tables.

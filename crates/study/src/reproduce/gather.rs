@@ -2,7 +2,7 @@
 
 use super::cases::Cases;
 use super::memory::Memory;
-use super::point::{checked, read_off_all};
+use super::point::{checked, excess_s, read_off_all};
 use super::{ReproduceError, failed};
 use crate::claims::{Curve, Evidence, Judge, Point};
 use crate::{InstructionSet, Pick, Plan, Shot, StudyError, shoot, shoot_all};
@@ -29,8 +29,8 @@ pub enum Effort<'a> {
     /// All numbers, each with the accuracy it reached: every shot is computed again
     /// at a tenth of the tolerance.
     Checked,
-    /// Times, peaks and widths by the ensemble loop; the striker and the gaps
-    /// only of the shots in which one of these claims asks for them.
+    /// Times, peaks and widths by the ensemble loop; the striker, the gaps and the
+    /// way back without them only of the shots in which one of these claims asks for them.
     Lean(&'a [Judge]),
 }
 
@@ -116,6 +116,8 @@ struct Target {
     plan: Plan,
     /// How the reading times pulses.
     pick: Pick,
+    /// Whether its way back without gaps is asked for.
+    closing: bool,
 }
 
 /// The end beads are sampled this often to see how far they are apart, in s.
@@ -130,10 +132,12 @@ impl Target {
         change: Change<'_>,
     ) -> Result<Self, ReproduceError> {
         let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
-        let followed = match how.effort {
+        let asks = |what: fn(&Judge, &str, f64) -> bool| match how.effort {
             Effort::Checked => true,
-            Effort::Lean(judges) => judges.iter().any(|j| j.needs_end(case, speed_m_s)),
+            Effort::Lean(judges) => judges.iter().any(|judge| what(judge, case, speed_m_s)),
         };
+        let closing = asks(Judge::needs_closing);
+        let followed = closing || asks(Judge::needs_end);
         let ends = vec![
             Sensor::Position(1),
             Sensor::Position(plan.chain.beads.len()),
@@ -146,6 +150,7 @@ impl Target {
             case,
             speed_m_s,
             pick: plan.pick,
+            closing,
             plan,
         })
     }
@@ -169,7 +174,14 @@ impl Target {
 
     fn points(&self, shot: Result<Shot, StudyError>) -> Result<Vec<Point>, ReproduceError> {
         let shot = shot.map_err(|error| self.failed(error))?;
-        Ok(read_off_all(&self.plan, self.speed_m_s, &shot))
+        let mut points = read_off_all(&self.plan, self.speed_m_s, &shot);
+        if self.closing {
+            let excess_s = excess_s(&self.plan, &shot).map_err(|error| self.failed(error))?;
+            points
+                .iter_mut()
+                .for_each(|point| point.excess_s = excess_s);
+        }
+        Ok(points)
     }
 }
 
@@ -180,7 +192,12 @@ fn shot_at(
     memory: Option<&Memory>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Point>, ReproduceError> {
-    let known = |target: &Target| memory.and_then(|memory| memory.recall(&target.plan));
+    let known = |target: &Target| {
+        let points = memory.and_then(|memory| memory.recall(&target.plan))?;
+        // Two cases may share a plan of which only one asks for the way back without gaps.
+        let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
+        has_all.then_some(points)
+    };
     let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
     let new = || targets.iter().zip(&points).enumerate();
     let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
@@ -227,18 +244,17 @@ fn lean_points(
     let mut passing = shoot_all(&plans, set, false, done).into_iter();
     let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
     let one = |(_, target): &&(usize, &Target)| {
-        let shot = shoot(&target.plan);
+        let points = target.points(shoot(&target.plan));
         done();
-        shot
+        points
     };
     let mut followed = followed.par_iter().map(one).collect::<Vec<_>>().into_iter();
-    let in_order = targets.iter().filter_map(|(_, target)| {
-        let shot = match target.plan.rebound {
+    let in_order = targets
+        .iter()
+        .filter_map(|(_, target)| match target.plan.rebound {
             true => followed.next(),
-            false => passing.next(),
-        };
-        Some(target.points(shot?))
-    });
+            false => Some(target.points(passing.next()?)),
+        });
     in_order.collect()
 }
 

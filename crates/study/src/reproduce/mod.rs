@@ -1,6 +1,7 @@
 //! Everything in the paper, computed anew.
 
 mod cases;
+mod closing;
 mod error;
 mod files;
 mod films;
@@ -14,7 +15,7 @@ mod reproduction;
 mod speeds;
 mod tables;
 
-pub use cases::{CASES, Cases, HELD, OILS};
+pub use cases::{CASES, Cases, OILS};
 pub use error::ReproduceError;
 pub(crate) use error::failed;
 pub use files::write_atomically;

@@ -1,5 +1,6 @@
 //! What one shot showed, and how sure that is.
 
+use super::closing::{close_gaps, reflected_s};
 use crate::accuracy::{reached, tolerance};
 use crate::claims::Point;
 use crate::{Flight, Plan, Shot, StudyError, shoot};
@@ -34,7 +35,12 @@ const FINEST: f64 = 1e-12;
 pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> {
     let at = |accuracy: f64| {
         let plan = plan.clone().with_accuracy(accuracy);
-        shoot(&plan).map(|shot| read_off(&plan, speed_m_s, &shot))
+        let shot = shoot(&plan)?;
+        let point = read_off(&plan, speed_m_s, &shot);
+        Ok::<_, StudyError>(Point {
+            excess_s: excess_s(&plan, &shot)?,
+            ..point
+        })
     };
     let mut accuracy = plan.accuracy;
     let mut point = at(accuracy)?;
@@ -71,6 +77,7 @@ fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
         second_peak_accuracy_n: largest(&|p| vec![p.second_returning_peak_n], false),
         width_accuracy: largest(&|p| p.widths_s.to_vec(), true),
         striker_accuracy_m_s: largest(&striker, false),
+        excess_accuracy_s: largest(&|p| p.excess_s.to_vec(), false),
         loosened_accuracy_m: largest(&|p| vec![p.loosened_m], false),
         ..point
     }
@@ -117,14 +124,32 @@ pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
         ],
         striker_separation_m_s: or_nan(rebound.and_then(|r| r.first).map(|(_, v)| v)),
         striker_rebound_m_s: or_nan(rebound.and_then(|r| r.end_m_s)),
+        excess_s: [f64::NAN; 2],
         loosened_m,
         accuracy_reached: shot.accuracy_reached.unwrap_or(unchecked::TOF * asked),
         peak_accuracy: unchecked::PEAK * asked,
         second_peak_accuracy_n: unchecked::SECOND_PEAK * asked * returning_peak_n,
         width_accuracy: unchecked::WIDTH * asked,
         striker_accuracy_m_s: unchecked::STRIKER * asked * speed_m_s,
+        excess_accuracy_s: unchecked::TOF * asked * or_nan(passage.and_then(both_ways_s)),
         loosened_accuracy_m: unchecked::LOOSENED * asked * loosened_m.abs(),
     }
+}
+
+/// Sum of both times of flight in s.
+fn both_ways_s(passage: &Passage) -> Option<f64> {
+    Some(passage.tof_incident_s() + passage.tof_reflected_s()?)
+}
+
+/// Reflected less incident ToF by peaks, in s: of a shot, and of the same with the
+/// gaps behind the pulse closed as it meets the wall. Not a number without a pulse.
+pub(super) fn excess_s(plan: &Plan, shot: &Shot) -> Result<[f64; 2], StudyError> {
+    let Ok(passage) = &shot.passage else {
+        return Ok([f64::NAN; 2]);
+    };
+    let closed_s = reflected_s(plan, passage, close_gaps)?;
+    let ways = [passage.tof_reflected_s(), closed_s];
+    Ok(ways.map(|way_s| way_s.unwrap_or(f64::NAN) - passage.tof_incident_s()))
 }
 
 /// Maxima closer than this part of the pulse's width are one top.

@@ -9,7 +9,9 @@ use super::{
     Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
     power_laws_csv, ratios_csv, tof_csv, write_atomically,
 };
-use crate::claims::{Evidence, Judged, claims, claims_json, claims_markdown, judge_all_rounded};
+use crate::claims::{
+    Evidence, Judged, MEANING, claims, claims_json, claims_markdown, judge_all_rounded,
+};
 use crate::readings::{
     DryPoisson, Scan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
 };
@@ -95,10 +97,7 @@ pub fn reproduce(
     let reading = Reading::default();
     let cases = Cases::new(&reading)?;
     let done = || progress.advance();
-    progress.begin(
-        "times of flight",
-        ((CASES.len() + 1) * SPEEDS_M_S.len()) as u64,
-    );
+    progress.begin("times of flight", (CASES.len() * SPEEDS_M_S.len()) as u64);
     let how = Gathering {
         reading,
         speeds_m_s: &SPEEDS_M_S,
@@ -210,7 +209,11 @@ impl Reproduction {
             ("oils.csv", oils_csv(&self.cases)?),
             (
                 "claims.json",
-                json(&json!({ "reading": reading, "claims": claims_json(&self.judged) })),
+                json(&json!({
+                    "reading": reading,
+                    "meaning": MEANING,
+                    "claims": claims_json(&self.judged),
+                })),
             ),
             ("claims.md", claims_markdown(&self.judged, &head(&reading))),
         ];
@@ -252,7 +255,7 @@ impl Reproduction {
 
 /// The head of the page of claims.
 fn head(reading: &str) -> String {
-    format!("# What the paper says, and what its model shows\n\nRead as: {reading}.")
+    format!("# What the paper says, and what its model shows\n\nRead as: {reading}.\n\n{MEANING}")
 }
 
 /// JSON as a file.

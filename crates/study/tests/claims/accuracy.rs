@@ -97,6 +97,9 @@ impl Signs {
         }
         p.striker_separation_m_s += self.next() * p.striker_accuracy_m_s;
         p.striker_rebound_m_s += self.next() * p.striker_accuracy_m_s;
+        for excess in &mut p.excess_s {
+            *excess += self.next() * p.excess_accuracy_s;
+        }
         p.loosened_m += self.next() * p.loosened_accuracy_m;
     }
 }
@@ -111,6 +114,7 @@ fn coarse() -> Evidence {
             p.second_peak_accuracy_n = 1e-6;
             p.width_accuracy = 1e-6;
             p.striker_accuracy_m_s = 1e-7;
+            p.excess_accuracy_s = 1e-12;
             p.loosened_accuracy_m = 1e-12;
         }
     }

@@ -13,8 +13,8 @@ mod breaks;
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_study::claims::{
-    Claim, Evidence, Finding, Judge, Judged, Needs, Verdict, claims, claims_markdown, judge_all,
-    judge_all_rounded, predicate, read,
+    Claim, Evidence, Finding, Judge, Judged, MEANING, Needs, Verdict, claims, claims_markdown,
+    judge_all, judge_all_rounded, predicate, read,
 };
 
 fn judge(id: &str) -> Judge {
@@ -119,20 +119,53 @@ fn the_page_has_every_number_of_a_claim_in_one_unit() {
 
 #[test]
 fn the_share_of_rising_speeds_is_as_sure_as_the_turning_points() {
-    // ln²(v/v0) rises above v0 alone, which is half of the range of ln v.
-    let mut evidence = agreeing();
+    // A parabola that turns halfway along an axis rises over half of it.
     let (from, to): (f64, f64) = (0.075, 1.23);
-    for case in ["pump", "gear", "motor"] {
-        each(&mut evidence, case, |p| {
-            let turn = 0.5 * (from * to).ln();
-            let ratio = 1.0 + 0.01 * (p.speed_m_s.ln() - turn).powi(2);
+    let linear: fn(f64) -> f64 = |speed| speed;
+    for (id, axis) in [("pump-rises", linear), ("pump-rises-log", f64::ln)] {
+        let mut evidence = agreeing();
+        each(&mut evidence, "pump", |p| {
+            let turn = 0.5 * (axis(from) + axis(to));
+            let ratio = 1.0 + 0.01 * (axis(p.speed_m_s) - turn).powi(2);
             p.tof_incident_s = dry(p.speed_m_s).0 * ratio;
         });
+        let finding = decide(id, &evidence);
+        assert_eq!(finding.verdict, Verdict::NotDecidable, "{id}: {finding:?}");
+        // A parabola is found exactly, up to rounding of the ratios.
+        assert!((finding.value - 0.5).abs() < 1e-9, "{id}: {finding:?}");
     }
-    let finding = decide("ratios-rise", &evidence);
-    assert_eq!(finding.verdict, Verdict::NotDecidable, "{finding:?}");
-    // A parabola is found exactly, up to rounding of the ratios.
-    assert!((finding.value - 0.5).abs() < 1e-9, "{finding:?}");
+}
+
+#[test]
+fn a_rise_over_few_speeds_is_one_over_most_of_the_figures_axis() {
+    let mut evidence = agreeing();
+    // Falls up to 0.4 m/s, which is 60 % of ln(speed) and 28 % of the axis.
+    each(&mut evidence, "pump", |p| {
+        let ratio = 1.0 + 0.01 * (p.speed_m_s / 0.4).ln().powi(2);
+        p.tof_incident_s = dry(p.speed_m_s).0 * ratio;
+    });
+    assert_eq!(decide("pump-rises", &evidence).verdict, Verdict::Holds);
+    assert_eq!(decide("pump-rises-log", &evidence).verdict, Verdict::Fails);
+}
+
+#[test]
+fn oils_either_way_at_one_speed_alone_are_half_of_the_main_result() {
+    let mut evidence = agreeing();
+    // Every oil on its own side of 1 at all speeds: gear below, pump and motor above.
+    each(&mut evidence, "pump", |p| p.tof_incident_s *= 1.2);
+    let finding = decide("oil-either-way", &evidence);
+    assert_eq!(finding.verdict, Verdict::InPart, "{finding:?}");
+    assert!(finding.value < 0.0, "{finding:?}");
+    each(&mut evidence, "gear", |p| p.tof_incident_s *= 1.2);
+    assert_eq!(decide("oil-either-way", &evidence).verdict, Verdict::Fails);
+}
+
+#[test]
+fn a_page_of_claims_says_above_its_table_what_a_failure_means() {
+    let judged = judge_all(&claims().unwrap(), &agreeing());
+    let page = claims_markdown(&judged, MEANING);
+    let table = page.find("| claim |").unwrap();
+    assert!(page.find("does not give").unwrap() < table);
 }
 
 #[test]

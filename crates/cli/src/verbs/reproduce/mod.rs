@@ -8,11 +8,9 @@ use crate::folder::Folder;
 use crate::print::print;
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_figures::paper::{self, PaperError};
-use hertzchain_study::claims::{Judged, Verdict, computed_text};
+use hertzchain_study::claims::{Judged, MEANING, Verdict, computed_text};
 use hertzchain_study::readings::Scan;
-use hertzchain_study::reproduce::{
-    HELD, Options, Progress, ReproduceError, Reproduction, reproduce,
-};
+use hertzchain_study::reproduce::{Options, Progress, ReproduceError, Reproduction, reproduce};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -83,7 +81,8 @@ impl Progress for Bar {
 
 /// What was found, and where it lies.
 fn summary(computed: &Reproduction, folder: &Path) -> String {
-    let mut text = format!("{}\n\n{}\n", times(computed), verdicts(&computed.judged));
+    let verdicts = verdicts(&computed.judged);
+    let mut text = format!("{}\n\n{MEANING}\n\n{verdicts}\n", times(computed));
     if let Some(scan) = &computed.scan {
         text.push_str(&closest(scan));
     }
@@ -112,12 +111,7 @@ fn times(computed: &Reproduction) -> Table {
     let speeds = SHOWN_M_S.map(|speed| format!("{speed} m/s"));
     let title = "ToF in µs, incident / reflected".to_owned();
     table.set_header([title].into_iter().chain(speeds));
-    for curve in computed
-        .evidence
-        .curves
-        .iter()
-        .filter(|curve| curve.case != HELD)
-    {
+    for curve in &computed.evidence.curves {
         let times = SHOWN_M_S.map(|speed| {
             curve.at(speed).map_or(String::new(), |p| {
                 format!(

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures::rig as pictures;
 use hertzchain_experiment::preset;
-use hertzchain_rig::claims::{Design, RigClaims, observe, series_csv};
+use hertzchain_rig::claims::{Design, MEANING, RigClaims, observe, series_csv};
 use std::path::{Path, PathBuf};
 
 /// What was found and written.
@@ -33,7 +33,7 @@ pub fn run(folder: &Path, bar: &Bar) -> Result<Found, Failure> {
     }
     Ok(Found {
         summary: format!(
-            "\nOn {} dry virtual rigs:\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
+            "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
             evidence.rigs.len(),
             verdicts(&claims.judged),
             folder.join("rig-claims.md").display(),

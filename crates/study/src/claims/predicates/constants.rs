@@ -23,6 +23,17 @@ pub(super) fn viscosity_ratio(claim: &Claim, evidence: &Evidence) -> Finding {
     }
 }
 
+/// The larger dynamic viscosity of two cases is less than the threshold times
+/// the smaller.
+pub(super) fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> Finding {
+    let oil = |i: usize| Some(evidence.oil(claim.cases.get(i)?)?.dynamic_viscosity_pa_s());
+    let (Some(a), Some(b)) = (oil(0), oil(1)) else {
+        return missing();
+    };
+    let value = a.max(b) / a.min(b);
+    of_constants(value, claim.threshold - value, None)
+}
+
 /// η/Y in s lies within the threshold of the printed value.
 pub(super) fn relaxation_time(claim: &Claim, evidence: &Evidence) -> Finding {
     near(claim, evidence.viscosity_over_modulus_s)
@@ -42,15 +53,20 @@ const ROUNDED: f64 = 10.0;
 /// wrong by what double precision rounds, n ε |x|.
 fn near(claim: &Claim, value: f64) -> Finding {
     let expected = claim.expected.first().copied().unwrap_or(f64::NAN);
+    let margin = claim.threshold - (value - expected).abs();
+    of_constants(value, margin, Some(expected))
+}
+
+fn of_constants(value: f64, margin: f64, expected: Option<f64>) -> Finding {
     let accuracy = ROUNDED * f64::EPSILON * value.abs();
     let mut tally = Tally::default();
-    tally.margin(claim.threshold - (value - expected).abs(), accuracy);
+    tally.margin(margin, accuracy);
     Finding {
         verdict: tally.verdict(),
         leaning: tally.leaning(),
         value,
         accuracy,
-        expected: Some(expected),
+        expected,
         detail: "from the printed constants alone".to_owned(),
         nearest_change: None,
     }

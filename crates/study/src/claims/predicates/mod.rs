@@ -18,10 +18,7 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("pulses-separate", passages::pulses_separate),
     ("return-takes-longer", passages::return_takes_longer),
     ("return-is-split", passages::return_is_split),
-    (
-        "loosening-lengthens-return",
-        passages::loosening_lengthens_return,
-    ),
+    (CLOSING, passages::closing_gaps_shortens_return),
     ("return-scatters-more", passages::return_scatters_more),
     ("gaps-open", passages::gaps_open),
     ("tof-falls", monotony::tof_falls),
@@ -34,8 +31,11 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("ratio-crosses-once", crossing::once_upward),
     ("ratio-crosses-at", crossing::at_speed),
     ("ratio-mainly-rises", ratios::mainly_rises),
+    ("ratio-mainly-rises-log", ratios::mainly_rises_log),
     ("ratio-ends-higher", ratios::ends_higher),
     ("ratio-has-dips", ratios::has_dips),
+    ("oil-either-way", ratios::either_way),
+    ("ratios-differ", trends::ratios_differ),
     ("trends-alike", trends::alike),
     ("trend-against-viscosity", trends::against_viscosity),
     (
@@ -45,14 +45,20 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("attenuates-more", attenuation::attenuates_more),
     ("dynamic-viscosity", constants::dynamic_viscosity),
     ("viscosity-ratio", constants::viscosity_ratio),
+    ("viscosities-similar", constants::viscosities_similar),
     ("relaxation-time", constants::relaxation_time),
     ("relaxation-order", constants::relaxation_order),
     ("no-rebound", striker::no_rebound),
-    ("overlaps-data", data::overlaps_data),
+    ("peaks-overlap-data", data::peaks),
+    ("tofs-overlap-data", data::tofs),
+    ("ratios-overlap-data", data::ratios),
 ];
 
 /// Predicates on what a shot leaves behind when the pulses have passed.
 pub(super) static OF_THE_END: [&str; 2] = ["gaps-open", "no-rebound"];
+
+/// The predicate on shots whose gaps close when the pulse meets the wall.
+pub(super) const CLOSING: &str = "closing-gaps-shortens-return";
 
 /// A predicate on single shots by its name.
 #[must_use]

@@ -1,7 +1,7 @@
 //! Predicates on how the ratios of different liquids go together.
 
-use super::{Worst, missing};
-use crate::claims::{Claim, Evidence, Finding, Ratio, Tally};
+use super::{Worst, curves, missing};
+use crate::claims::{Branch, Claim, Curve, Evidence, Finding, Ratio, Tally};
 
 /// Two ratio curves at the speeds that both have, each speed with its weight.
 struct Pair {
@@ -158,6 +158,40 @@ pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence
         tally.margin(value - claim.threshold, accuracy);
         worst.see(value - claim.threshold, value, accuracy, || {
             format!("{} m/s", first.speed_m_s)
+        });
+    }
+    worst.finding(tally)
+}
+
+/// At every speed the ratios of two cases differ by more than the threshold times
+/// the standard error of their difference. The dry ToF cancels: the number is
+/// |T₁ − T₂|/s with s² = s₁² + s₂², and Δ = (ΔT₁ + ΔT₂)/s + (|T₁ − T₂|/s) Δs/s.
+pub(super) fn ratios_differ(claim: &Claim, evidence: &Evidence) -> Finding {
+    let curves = curves(claim, evidence).unwrap_or_default();
+    let [one, other] = curves[..] else {
+        return missing();
+    };
+    let branch = Branch::Incident;
+    let unsure = |curve: &Curve| {
+        let slopes = curve.slope_accuracies(branch);
+        slopes.into_iter().fold(0.0, f64::max)
+    };
+    let of_error = unsure(one).max(unsure(other));
+    let errors = other.standard_errors_s(branch);
+    let others: Vec<_> = other.points.iter().zip(errors).collect();
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for (a, error) in one.points.iter().zip(one.standard_errors_s(branch)) {
+        let partner = others.iter().find(|(b, _)| b.speed_m_s == a.speed_m_s);
+        let Some((b, as_unsure)) = partner else {
+            continue;
+        };
+        let error = error.hypot(*as_unsure);
+        let value = (a.tof_s(branch) - b.tof_s(branch)).abs() / error;
+        let of_tofs = a.tof_accuracy_s(branch) + b.tof_accuracy_s(branch);
+        let accuracy = of_tofs / error + value * of_error;
+        tally.margin(value - claim.threshold, accuracy);
+        worst.see(value - claim.threshold, value, accuracy, || {
+            format!("{} and {} at {} m/s", one.case, other.case, a.speed_m_s)
         });
     }
     worst.finding(tally)
