@@ -31,6 +31,11 @@ reference:
     target/reference/bin/pip install --quiet -r bench/reference/requirements.txt
     cd bench/reference && ../../target/reference/bin/python run.py && ../../target/reference/bin/python check.py
 
+# Random harsh chains by the program and by an independent integration: just test-random 1000
+test-random *options:
+    cargo build --release --locked -p hertzchain-cli -p hertzchain-random
+    target/release/hertzchain-random {{options}}
+
 # The same shots by general integrators and LAMMPS, side by side (needs Python; about ten minutes)
 bench-peers *options:
     bench/peers/run.sh {{options}}

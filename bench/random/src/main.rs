@@ -1,0 +1,262 @@
+//! Random harsh chains: the program beside an independent integration.
+//!
+//! `cargo run --release -p hertzchain-random -- 1000` draws rows of unlike beads, integrates each by
+//! a method and code of its own, asks the program about it in several ways, and prints what differs.
+//! Files of rows with a finding are kept.
+
+mod compare;
+mod draw;
+mod motion;
+mod physics;
+mod program;
+mod reference;
+mod row;
+#[cfg(test)]
+mod tests;
+
+use compare::{Finding, compare, search_ends_s};
+use program::{Answer, Ask, Silence, ask};
+use reference::Reference;
+use row::Row;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+const USAGE: &str = "usage: hertzchain-random [COUNT] [--seed N] [--from N] [--jobs N] \
+     [--program FILE] [--keep FOLDER] [--only shot|sweep]";
+
+/// What is to be done.
+struct Options {
+    count: u64,
+    seed: u64,
+    from: u64,
+    jobs: usize,
+    program: PathBuf,
+    keep: PathBuf,
+    only: Option<String>,
+}
+
+impl Options {
+    fn parsed(mut words: impl Iterator<Item = String>) -> Result<Self, String> {
+        let jobs = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut options = Self {
+            count: 100,
+            seed: 1,
+            from: 0,
+            jobs,
+            program: "target/release/hertzchain".into(),
+            keep: "target/random".into(),
+            only: None,
+        };
+        while let Some(word) = words.next() {
+            let mut value = || words.next().ok_or_else(|| USAGE.to_owned());
+            let number = |text: String| text.parse::<u64>().map_err(|_| USAGE.to_owned());
+            match word.as_str() {
+                "--seed" => options.seed = number(value()?)?,
+                "--from" => options.from = number(value()?)?,
+                "--jobs" => options.jobs = number(value()?)?.max(1) as usize,
+                "--program" => options.program = value()?.into(),
+                "--keep" => options.keep = value()?.into(),
+                "--only" => options.only = Some(value()?),
+                count => options.count = number(count.to_owned())?,
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// One row, one way of asking.
+struct Outcome {
+    name: String,
+    said: Result<Answer, Silence>,
+    error: Option<f64>,
+    finding: Option<Finding>,
+}
+
+/// Ways to ask the program about every row.
+fn asks(only: Option<&str>) -> Vec<Ask> {
+    let mut asks = vec![Ask::new("shot", &[]), Ask::new("shot", &["-a", "1e-9"])];
+    for accuracy in ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"] {
+        asks.push(Ask::new("sweep", &["-a", accuracy]));
+    }
+    asks.retain(|ask| only.is_none_or(|only| ask.verb == only));
+    asks
+}
+
+/// The same shot with durations that cover the window in which its pulses are looked for.
+fn durations(answer: &Answer) -> Vec<Ask> {
+    let Ok(peaks) = &answer.peaks else {
+        return Vec::new();
+    };
+    let until_s = search_ends_s(peaks);
+    let ask = |share: f64| Ask::new("shot", &["--duration", &format!("{:?} s", share * until_s)]);
+    vec![ask(1.0001), ask(1.3)]
+}
+
+/// Asks in all ways; the reference covers what all of them looked for.
+fn outcomes(options: &Options, row: &Row, file: &Path) -> Vec<Outcome> {
+    let ask = |how: Ask| {
+        let said = ask(&options.program, file, row.speed_m_s, &how);
+        (how.name(), said)
+    };
+    let mut said: Vec<_> = asks(options.only.as_deref()).into_iter().map(ask).collect();
+    if let Some((_, Ok(answer))) = said.first()
+        && options.only.as_deref() != Some("sweep")
+    {
+        said.extend(durations(answer).into_iter().map(ask));
+    }
+    let needed = said.iter().filter_map(|(_, said)| {
+        let said = said.as_ref().ok()?;
+        Some(said.peaks.as_ref().map_or(said.duration_s, search_ends_s))
+    });
+    let until_s = 1.02 * needed.fold(0.0, f64::max);
+    let reference = match until_s > 0.0 {
+        true => Reference::new(row, until_s).ok(),
+        false => None,
+    };
+    let outcome = |(name, said): (String, Result<Answer, Silence>)| {
+        let verdict = said.as_ref().ok().zip(reference.as_ref());
+        let verdict = verdict.map(|(answer, reference)| compare(answer, reference));
+        let (error, finding) = match verdict {
+            Some(verdict) => (verdict.error, verdict.finding),
+            None => (None, said.is_ok().then_some(Finding::Unresolved)),
+        };
+        Outcome {
+            name,
+            said,
+            error,
+            finding,
+        }
+    };
+    said.into_iter().map(outcome).collect()
+}
+
+/// Counts by way of asking.
+#[derive(Default)]
+struct Tally {
+    runs: u64,
+    refused: u64,
+    too_slow: u64,
+    findings: BTreeMap<&'static str, u64>,
+    worst_over: f64,
+    force_passes: f64,
+}
+
+fn tallied(tally: &mut Tally, outcome: &Outcome) {
+    match &outcome.said {
+        Err(Silence::Refused(_)) => tally.refused += 1,
+        Err(Silence::TooSlow) => tally.too_slow += 1,
+        Ok(answer) => {
+            tally.runs += 1;
+            tally.force_passes += answer.force_passes;
+            let stated = answer.reached.unwrap_or(answer.asked);
+            if !matches!(outcome.finding, Some(Finding::Unresolved)) {
+                tally.worst_over = tally.worst_over.max(outcome.error.unwrap_or(0.0) / stated);
+            }
+        }
+    }
+    if let Some(finding) = &outcome.finding {
+        *tally.findings.entry(finding.word()).or_default() += 1;
+    }
+}
+
+/// One line a finding, and the file kept.
+fn print_findings(options: &Options, at: u64, text: &str, outcomes: &[Outcome]) {
+    let name = format!("{}-{at}.toml", options.seed);
+    let mut keep = false;
+    for outcome in outcomes {
+        let finding = match (&outcome.finding, &outcome.said) {
+            (Some(Finding::Unresolved), Ok(_)) | (None, Ok(_)) => continue,
+            (Some(finding), Ok(answer)) => format!(
+                "{finding:?}, accuracy reached {:?}, notes {:?}",
+                answer.reached, answer.notes
+            ),
+            (_, Err(Silence::TooSlow)) => "too slow".into(),
+            (_, Err(Silence::Refused(why))) => format!("refused: {why}"),
+        };
+        keep = true;
+        println!("{name}\t{}\t{finding}", outcome.name);
+    }
+    if keep && let Err(error) = std::fs::write(options.keep.join(&name), text) {
+        eprintln!("error: {name}: {error}");
+    }
+}
+
+fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
+    std::fs::create_dir_all(&options.keep)?;
+    let next = AtomicU64::new(options.from);
+    let tallies = Mutex::new(BTreeMap::<String, Tally>::new());
+    let work = |job: usize| {
+        let file = options
+            .keep
+            .join(format!(".row-{}-{job}.toml", std::process::id()));
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            if at >= options.from + options.count {
+                break;
+            }
+            let row = draw::row(options.seed, at);
+            let text = row.toml();
+            if let Err(error) = std::fs::write(&file, &text) {
+                eprintln!("error: {}: {error}", file.display());
+                break;
+            }
+            let outcomes = outcomes(options, &row, &file);
+            let Ok(mut tallies) = tallies.lock() else {
+                break;
+            };
+            print_findings(options, at, &text, &outcomes);
+            for outcome in &outcomes {
+                let name = match outcome.name.split_once("--duration") {
+                    Some((verb, _)) => format!("{verb}--duration"),
+                    None => outcome.name.clone(),
+                };
+                tallied(tallies.entry(name).or_default(), outcome);
+            }
+        }
+        let _ = std::fs::remove_file(&file);
+    };
+    std::thread::scope(|scope| {
+        for job in 0..options.jobs {
+            scope.spawn(move || work(job));
+        }
+    });
+    Ok(tallies.into_inner().unwrap_or_default())
+}
+
+fn main() -> ExitCode {
+    let options = match Options::parsed(std::env::args().skip(1)) {
+        Ok(options) => options,
+        Err(usage) => {
+            eprintln!("{usage}");
+            return ExitCode::from(2);
+        }
+    };
+    let tallies = match run(&options) {
+        Ok(tallies) => tallies,
+        Err(error) => {
+            eprintln!("error: {}: {error}", options.keep.display());
+            return ExitCode::FAILURE;
+        }
+    };
+    let mut wrong = false;
+    for (name, tally) in &tallies {
+        println!(
+            "{name}: {} runs, {} refused, {} too slow, worst error over the accuracy stated {:.2}, \
+             force passes {:.3e}, {:?}",
+            tally.runs,
+            tally.refused,
+            tally.too_slow,
+            tally.worst_over,
+            tally.force_passes,
+            tally.findings
+        );
+        wrong |= tally.findings.keys().any(|word| *word != "unresolved");
+    }
+    match wrong {
+        true => ExitCode::FAILURE,
+        false => ExitCode::SUCCESS,
+    }
+}
