@@ -98,29 +98,57 @@ fn stated_errors_of_clipped_pulses_hold_the_true_ones() {
     }
 }
 
+/// What an amplifier before the digitiser makes of a voltage.
+type Amplifier = fn(f64, f64) -> f64;
+
+const HARD: Amplifier = |volts, end| volts.min(end);
+/// Straight up to nine tenths of its end.
+const SOFT: Amplifier = |volts, end| {
+    let rest = 0.1 * end;
+    let above = volts - 0.9 * end;
+    volts.min(0.9 * end) + rest * (above.max(0.0) / rest).tanh()
+};
+
+/// Of 25 shots that an amplifier clipped before noise was added, incident times within 1.96
+/// stated errors, and how many are flagged.
+fn clipped_before_noise(
+    source: &Source,
+    amplifier: Amplifier,
+    share: f64,
+    noise: f64,
+) -> [usize; 2] {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let true_s = source.maxima_s[1] - source.maxima_s[0];
+    let (mut within, mut flagged) = (0, 0);
+    for _ in 0..25 {
+        let (_, mut samples) = source.recorded(0.0, f64::INFINITY, &mut rng);
+        for volts in &mut samples {
+            *volts = amplifier(*volts, share * source.highest) + noise * normal(&mut rng);
+        }
+        let shot = measured(&samples, &Method::default());
+        let saturated = shot.found.doubts.contains(&Doubt::Saturation(Place::Wall));
+        flagged += usize::from(saturated);
+        let inside = |t: Estimate| (t.value - true_s).abs() < 1.96 * t.sigma;
+        within += usize::from(shot.flight.is_ok_and(|flight| inside(flight.incident_s)));
+    }
+    [within, flagged]
+}
+
 #[test]
 fn tops_that_an_amplifier_clipped_before_the_digitiser_are_seen_in_its_noise() {
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
-    for source in [bells(), dry()] {
-        let true_s = source.maxima_s[1] - source.maxima_s[0];
-        for (share, noise) in [(0.75, 1e-3), (0.75, 1e-2), (0.5, 1e-3), (0.5, 1e-2)] {
-            let (_, mut samples) = source.recorded(0.0, share * source.highest, &mut rng);
-            samples
-                .iter_mut()
-                .for_each(|x| *x += noise * normal(&mut rng));
-            let shot = measured(&samples, &Method::default());
-            let doubts = &shot.found.doubts;
-            assert!(
-                doubts.contains(&Doubt::Saturation(Place::Wall)),
-                "{share} {noise}: {doubts:?}"
-            );
-            let found = shot.flight.unwrap().incident_s;
-            let off = (found.value - true_s).abs();
-            // Three deviations: eight shots.
-            assert!(
-                off < 3.0 * found.sigma,
-                "{share} {noise}: {off:e} {found:?}"
-            );
+    for (name, source) in [("bells", bells()), ("dry", dry())] {
+        for share in [0.95, 0.9, 0.85, 0.7] {
+            for noise in [1e-3, 1e-2] {
+                let hard = clipped_before_noise(&source, HARD, share, noise);
+                // Three binomial errors below 95 %, and one in ten unseen in most noise.
+                assert!(
+                    hard[0] >= 20 && hard[1] >= 22,
+                    "{name} {share} {noise}: {hard:?}"
+                );
+                // Rounded corners are no bell's: 80 % are covered.
+                let soft = clipped_before_noise(&source, SOFT, share, noise);
+                assert!(soft[0] >= 17, "soft {name} {share} {noise}: {soft:?}");
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Channels, Doubt, Finding, Found, Place, Pulse};
 use crate::Rails;
-use crate::picks::{Sight, flat_top};
+use crate::picks::{Sight, clipped_top};
 use crate::saturation::has_run;
 
 /// Looks at the pulses as they were recorded: filters leave neither rails nor steps.
@@ -63,7 +63,7 @@ fn flat_tops(found: &mut Found, recorded: Channels<'_>, coarse: &[Place]) -> Vec
             summed: matches!(recorded, Channels::Summed(_)),
             wall: None,
         };
-        pulse.clipped = flat_top(&sight, pulse);
+        pulse.clipped = clipped_top(&sight, pulse);
         doubts.extend(pulse.clipped.map(|_| Doubt::Saturation(pulse.place)));
     }
     doubts

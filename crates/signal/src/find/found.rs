@@ -170,6 +170,16 @@ impl Pulse {
         ((fall / rise - BEGINS) / (TRAILS - BEGINS)).clamp(0.0, 1.0)
     }
 
+    /// The same with so many samples on either side of a clipped top counted as clipped, too.
+    pub(crate) fn with_clipped_spread(&self, samples: usize) -> Self {
+        let spread =
+            |(first, last): (usize, usize)| (first.saturating_sub(samples), last + samples);
+        Self {
+            clipped: self.clipped.map(spread),
+            ..*self
+        }
+    }
+
     /// Whether a sample is clipped, or next to one that is: recorders round the corner.
     pub(crate) fn is_clipped(&self, sample: usize) -> bool {
         self.clipped
@@ -224,12 +234,8 @@ impl Found {
     /// spread them.
     pub(crate) fn spread_clipped(&mut self, samples: usize) {
         let pulses = [&mut self.passing, &mut self.wall, &mut self.returning];
-        for clipped in pulses
-            .into_iter()
-            .flatten()
-            .filter_map(|p| p.clipped.as_mut())
-        {
-            *clipped = (clipped.0.saturating_sub(samples), clipped.1 + samples);
+        for pulse in pulses.into_iter().flatten() {
+            *pulse = pulse.with_clipped_spread(samples);
         }
     }
 

@@ -4,20 +4,32 @@ use super::flanks::Flanks;
 use super::local_model::{Top, finish};
 use super::normal::{Descent, MOST, Normal, descend};
 use super::polynomial::{Polynomial, powers, slope_row};
-use super::{Picked, Sight};
+use super::{Moved, Picked, Sight};
 use crate::Pulse;
 
 /// Full width of the fit in widths of the steeper flank: down to a third of the maximum.
-const WIDTH: f64 = 1.2;
+pub(super) const WIDTH: f64 = 1.2;
 /// Degree of the logarithm: pulses of computed dry and wet rows between 0.1 and
 /// 1.2 m/s are followed to 30 ns.
-const DEGREE: usize = MOST - 1;
+pub(super) const DEGREE: usize = MOST - 1;
 /// How large even coefficients may be where nothing shows them.
 const NEARLY_NONE: f64 = 0.1;
 /// The first coefficient that makes a bell other than a Gaussian.
 const SHAPE: usize = 3;
+/// Place of the level of a capped bell among its parameters.
+pub(super) const LEVEL: usize = MOST - 1;
+/// How much of a clipped bell may be cut off, as a logarithm: half of its height and more.
+pub(super) const CUT_OFF: f64 = 0.4;
+/// What bells leave of computed pulses without noise, as a share of the height, at the top and in
+/// flanks that are fitted farther down: up to 2.5 m/s their rise begins with a kink.
+const INEXACT: (f64, f64) = (2e-4, 4e-4);
 /// Deviations by which the squares that a fit leaves may exceed those of noise.
 const ADEQUATE: f64 = 3.0;
+/// Shares of the window that are tried, in this order, where a bell leaves more than noise.
+const NARROWER: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
+/// Samples beside a clipped top that are left out, too, as a share of the width, where a window of no
+/// length is tried: amplifiers round the corners.
+const SOFT: f64 = 0.3;
 
 /// Time in samples, by y = exp(Σ c_k u^k) with u from −1 to 1 across the fit.
 ///
@@ -28,9 +40,15 @@ const ADEQUATE: f64 = 3.0;
 /// Where more is left than noise, the error grows by as much.
 pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
     let begun = pulse.at as f64;
-    let half = (0.5 * WIDTH * pulse.steep_width_samples()).max(4.0);
-    let thought = [1.0; MOST];
-    about(sight, pulse, begun, &Window { half, thought })
+    let half = 0.5 * WIDTH * pulse.steep_width_samples();
+    let tries = NARROWER.iter().map(|share| {
+        let window = Window {
+            half: (share * half).max(4.0),
+            thought: thought(*share, 1.0),
+        };
+        Some(widened(about(sight, pulse, begun, &window)?, *share))
+    });
+    adequate(tries)
 }
 
 /// As [`pick`], of a pulse whose top is clipped: its flanks are fitted, farther down, and
@@ -38,16 +56,47 @@ pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
 /// that is known. Where noise gives them no top, flanks are thought to be those of a flatter or
 /// steeper Gaussian, which hardly moves a maximum: as skewed as they like, but else no other shape.
 pub(super) fn from_flanks(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
-    let flanks = Flanks::of(sight, pulse)?;
-    let whole = flanks.pulse(pulse);
-    let half = flanks.half(pulse);
-    let widths = half / whole.width_samples / (0.5 * WIDTH);
-    let tries = [1.0, NEARLY_NONE].into_iter();
-    let mut tries = tries.map(|even| Window {
-        half,
-        thought: thought(widths, even),
+    let tries = NARROWER.iter().flat_map(|share| {
+        let spread = ((1.0 - share) * SOFT * pulse.width_samples) as usize;
+        let pulse = pulse.with_clipped_spread(spread);
+        [1.0, NEARLY_NONE].map(|even| {
+            let flanks = Flanks::of(sight, &pulse)?;
+            let whole = flanks.pulse(&pulse);
+            let half = (share * flanks.half(&pulse)).max(4.0);
+            let widths = half / whole.width_samples / (0.5 * WIDTH);
+            let thought = thought(widths, even);
+            let found = about(sight, &whole, flanks.at, &Window { half, thought })?;
+            Some(widened(found, *share))
+        })
     });
-    tries.find_map(|window| about(sight, &whole, flanks.at, &window))
+    adequate(tries)
+}
+
+/// The same with the error of a shape that is no bell over the whole window.
+fn widened((picked, adequate): (Picked, bool), share: f64) -> (Picked, bool) {
+    let moved = Moved {
+        shape_s: picked.moved.shape_s / share,
+        ..picked.moved
+    };
+    let sigma_s = picked.sigma_s / share;
+    let picked = Picked {
+        sigma_s,
+        moved,
+        ..picked
+    };
+    (picked, adequate)
+}
+
+/// The first fit that leaves no more than noise, else the last that there is.
+fn adequate(tries: impl Iterator<Item = Option<(Picked, bool)>>) -> Option<Picked> {
+    let mut last = None;
+    for (picked, adequate) in tries.flatten() {
+        if adequate {
+            return Some(picked);
+        }
+        last = Some(picked);
+    }
+    last
 }
 
 /// Where a bell is fitted, and what is thought of it beforehand.
@@ -71,8 +120,8 @@ fn thought(widths: f64, even: f64) -> [f64; MOST] {
 }
 
 /// The bell's maximum, looked for from `begun` on.
-fn about(sight: &Sight<'_>, pulse: &Pulse, begun: f64, window: &Window) -> Option<Picked> {
-    let noise = sight.broad_noise(pulse);
+fn about(sight: &Sight<'_>, pulse: &Pulse, begun: f64, window: &Window) -> Option<(Picked, bool)> {
+    let noise = sight.broad_noise(pulse).max(inexact(pulse));
     let mut centre = begun;
     for _ in 0..4 {
         let (fit, u) = fit(sight, pulse, centre, window, noise)?;
@@ -88,6 +137,16 @@ fn about(sight: &Sight<'_>, pulse: &Pulse, begun: f64, window: &Window) -> Optio
     None
 }
 
+/// What bells leave of computed pulses without noise, in the samples' unit.
+fn inexact(pulse: &Pulse) -> f64 {
+    let share = if pulse.clipped.is_some() {
+        INEXACT.1
+    } else {
+        INEXACT.0
+    };
+    share * pulse.height
+}
+
 /// At the top the logarithm's slope is 0, so slope and bend of the pulse itself
 /// are its height times those of the logarithm.
 fn picked(
@@ -96,23 +155,41 @@ fn picked(
     fit: &Polynomial,
     u: f64,
     thought: &[f64; MOST],
-) -> Picked {
+) -> (Picked, bool) {
     let at = fit.course(u);
     let height = at.value.exp();
-    let noise = sight.noise(pulse);
+    let noise = sight.noise(pulse).max(inexact(pulse));
+    let modelled = sight.broad_noise(pulse).max(inexact(pulse));
     let beyond = (fit.left / noise).powi(2) > 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt();
     let excess = if beyond { fit.left / noise } else { 1.0 };
     let top = Top {
+        noise: excess * modelled,
         height,
-        height_share: height * fit.value_variance(u).sqrt() * excess,
-        slope_share: height * fit.slope_variance(u).sqrt() * excess,
+        height_share: height * fit.value_variance(u).sqrt(),
+        slope_share: height * fit.slope_variance(u).sqrt(),
         bend: height * at.bend,
-        bend_share: height * fit.bend_variance(u).sqrt() * excess,
-        open_share: height
-            * open_variance(fit, u, sight.broad_noise(pulse), thought).sqrt()
-            * excess,
+        bend_share: height * fit.bend_variance(u).sqrt(),
+        open_share: height * open_variance(fit, u, modelled, thought).sqrt(),
+        reach: reach(fit, u, excess * modelled),
     };
-    finish(sight, pulse, fit, u, &top)
+    (finish(sight, pulse, fit, u, &top), !beyond)
+}
+
+/// Steps from the middle of a fit to either end.
+const STEPS: i32 = 24;
+
+/// From u to the farthest place at which noise may have made the logarithm the lower.
+fn reach(fit: &Polynomial, u: f64, noise: f64) -> f64 {
+    let (top, row) = (fit.course(u).value, powers(u));
+    let may_be_top = |v: &f64| {
+        let other = powers(*v);
+        let lower: [f64; MOST] = std::array::from_fn(|k| row[k] - other[k]);
+        let error = noise * fit.solution.variance(&lower).sqrt();
+        top - fit.course(*v).value < error
+    };
+    let places = (-STEPS..=STEPS).map(|step| f64::from(step) / f64::from(STEPS));
+    let apart = places.filter(may_be_top).map(|v| (v - u).abs());
+    apart.fold(0.0, f64::max)
 }
 
 /// Variance of the slope at u, for unit noise, by coefficients that may be other than the 0 they
@@ -148,41 +225,69 @@ fn fit(
         points,
         noise,
         thought: window.thought,
+        capped: false,
     };
     let mut start = [0.0; MOST];
     start[0] = pulse.height.ln();
     start[2] = -4.0 * std::f64::consts::LN_2 * widths * widths;
-    let descent = descend(
-        start,
-        |bell| data.normal(bell),
-        |bell, step| std::array::from_fn(|k| bell[k] + step[k]),
-        |before, after| before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-7),
-    )?;
+    let descent = data.descend(start)?;
     let polynomial = data.polynomial(&descent, centre, half)?;
     let u = polynomial.top()?;
     Some((polynomial, u))
 }
 
 /// Samples to be fitted, as (u, height).
-struct Data {
-    points: Vec<(f64, f64)>,
-    degree: usize,
-    noise: f64,
+pub(super) struct Data {
+    pub(super) points: Vec<(f64, f64)>,
+    pub(super) degree: usize,
+    pub(super) noise: f64,
     /// How large coefficients may be.
-    thought: [f64; MOST],
+    pub(super) thought: [f64; MOST],
+    /// Whether the bell ends at a level, which then stands in the last coefficient's place.
+    pub(super) capped: bool,
 }
 
 impl Data {
+    /// Of each sample what is left, and how the model changes there with its parameters.
     fn misses<'a>(
         &'a self,
         bell: &'a [f64; MOST],
-    ) -> impl Iterator<Item = (f64, f64, [f64; MOST])> + 'a {
+    ) -> impl Iterator<Item = (f64, [f64; MOST])> + 'a {
+        let terms = if self.capped { LEVEL } else { MOST };
         self.points.iter().map(move |(u, height)| {
-            let row = powers(*u);
-            let logarithm: f64 = row.iter().zip(bell).map(|(r, c)| r * c).sum();
-            let value = logarithm.exp();
-            (value, height - value, row)
+            let mut row = powers(*u);
+            let value = self.logarithm(bell, *u).exp();
+            if self.capped && value > bell[LEVEL] {
+                row = [0.0; MOST];
+                row[LEVEL] = 1.0;
+                return (height - bell[LEVEL], row);
+            }
+            row.iter_mut().take(terms).for_each(|r| *r *= value);
+            row.iter_mut().skip(terms).for_each(|r| *r = 0.0);
+            (height - value, row)
         })
+    }
+
+    /// The bell of least squares, from where the search begins.
+    pub(super) fn descend(&self, start: [f64; MOST]) -> Option<Descent<[f64; MOST]>> {
+        descend(
+            start,
+            |bell| self.normal(bell),
+            |bell, step| std::array::from_fn(|k| bell[k] + step[k]),
+            |before, after| before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-7),
+        )
+    }
+
+    /// Logarithm of the bell at u.
+    fn logarithm(&self, bell: &[f64; MOST], u: f64) -> f64 {
+        let terms = if self.capped { LEVEL } else { MOST };
+        let row = powers(u);
+        row.iter().zip(bell).take(terms).map(|(r, c)| r * c).sum()
+    }
+
+    /// Whether the bell is above its level at u.
+    pub(super) fn is_capped(&self, bell: &[f64; MOST], u: f64) -> bool {
+        self.capped && self.logarithm(bell, u).exp() > bell[LEVEL]
     }
 
     /// Normal equations of a step from a bell, and its sum of squares; what is
@@ -190,15 +295,25 @@ impl Data {
     fn normal(&self, bell: &[f64; MOST]) -> Option<(Normal, f64)> {
         let mut normal = Normal::new(self.degree + 1);
         let mut squares = 0.0;
-        for (value, miss, row) in self.misses(bell) {
-            normal.add(&row.map(|r| r * value), miss);
+        for (miss, row) in self.misses(bell) {
+            normal.add(&row, miss);
             squares += miss * miss;
         }
-        for (k, coefficient) in bell.iter().enumerate().skip(SHAPE) {
+        let terms = if self.capped { LEVEL } else { MOST };
+        for (k, coefficient) in bell.iter().enumerate().take(terms).skip(SHAPE) {
             let mut row = [0.0; MOST];
             let weight = self.noise / self.thought[k];
             row[k] = weight;
             let miss = -weight * coefficient;
+            normal.add(&row, miss);
+            squares += miss * miss;
+        }
+        if self.capped {
+            let weight = self.noise / CUT_OFF;
+            let mut row = [0.0; MOST];
+            row[0] = weight;
+            row[LEVEL] = -weight / bell[LEVEL];
+            let miss = -weight * (bell[0] - bell[LEVEL].ln());
             normal.add(&row, miss);
             squares += miss * miss;
         }
@@ -220,7 +335,7 @@ impl Data {
         let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
         let squares: f64 = self
             .misses(&descent.model)
-            .map(|(_, miss, _)| miss * miss)
+            .map(|(miss, _)| miss * miss)
             .sum();
         Some(Polynomial {
             centre,

@@ -7,55 +7,26 @@ use crate::Pulse;
 /// Share of the height at which it is clipped down to which flanks are looked at.
 const FOOT: f64 = 0.25;
 
-/// Share of the height up to which the flanks of a flat top are looked at.
-const SHOULDER: f64 = 0.85;
-
-/// How much higher than the top its flanks let a clipped pulse be at least: those of whole pulses,
-/// dry and wet, tell 0.65 to 1.10 of their height.
-const HIGHER: f64 = 1.2;
-
-/// Least share of the width at half the height that a clipped pulse has at nine tenths of it: whole
-/// ones have up to 0.46, one clipped at four fifths 0.6.
-const FLAT: f64 = 0.53;
-
-/// Height over noise and samples across it that a pulse needs for its top to be judged.
-const JUDGED: (f64, f64) = (20.0, 10.0);
-
-/// First and last sample of a top that is flat though nothing stands on a known end of a range: an
-/// amplifier before the digitiser has clipped it.
-pub(crate) fn flat_top(sight: &Sight<'_>, pulse: &Pulse) -> Option<(usize, usize)> {
-    let noise = sight.upright.level.noise;
-    if pulse.height < JUDGED.0 * noise || pulse.width_samples < JUDGED.1 {
-        return None;
+impl Sight<'_> {
+    /// First and last sample about a pulse's maximum above a height, single ones below it aside.
+    pub(super) fn run_above(&self, pulse: &Pulse, height: f64) -> (usize, usize) {
+        let is_above = |at: usize| {
+            let sample = self.samples.get(at);
+            sample.is_some_and(|x| self.upright.height(*x) > height)
+        };
+        let (mut first, mut last) = (pulse.at, pulse.at);
+        while first > 1 && (is_above(first - 1) || is_above(first - 2)) {
+            first -= 1;
+        }
+        while is_above(last + 1) || is_above(last + 2) {
+            last += 1;
+        }
+        (first, last)
     }
-    let above = |share: f64| run_above(sight, pulse, share * pulse.height);
-    let trial = Pulse {
-        clipped: Some(above(SHOULDER)),
-        ..*pulse
-    };
-    let (first, last) = above(0.9);
-    let wide = (last - first + 1) as f64 > FLAT * pulse.width_samples;
-    let higher = wide && Flanks::of(sight, &trial)?.height > HIGHER * pulse.height;
-    // Noise about a level: four deviations below its mean, which the largest is a little above.
-    let level = pulse.height - (6.0 * noise).max(0.01 * pulse.height);
-    higher.then(|| run_above(sight, pulse, level))
 }
 
-/// First and last sample about a pulse's maximum above a height, single ones below it aside.
-fn run_above(sight: &Sight<'_>, pulse: &Pulse, height: f64) -> (usize, usize) {
-    let is_above = |at: usize| {
-        let sample = sight.samples.get(at);
-        sample.is_some_and(|x| sight.upright.height(*x) > height)
-    };
-    let (mut first, mut last) = (pulse.at, pulse.at);
-    while first > 1 && (is_above(first - 1) || is_above(first - 2)) {
-        first -= 1;
-    }
-    while is_above(last + 1) || is_above(last + 2) {
-        last += 1;
-    }
-    (first, last)
-}
+/// Fewest samples of the longer flank that are looked at.
+const FEWEST: usize = 4;
 
 /// A bell through the flanks of a clipped pulse; in samples.
 pub(super) struct Flanks {
@@ -109,13 +80,17 @@ impl Flanks {
     }
 }
 
-/// Samples and heights from the clipped ones to the foot on either side.
+/// Samples and heights from the clipped ones to the foot on the steeper side, and as far on the other:
+/// what a pulse trails behind, or stands on, is no flank.
 fn beside(sight: &Sight<'_>, pulse: &Pulse, (first, last): (usize, usize)) -> Vec<(f64, f64)> {
     let foot = FOOT * pulse.height;
     let height = |at: &usize| sight.samples.get(*at).map(|x| sight.upright.height(*x));
     let tall = |at: usize| Some((at as f64, height(&at).filter(|height| *height > foot)?));
     let before = (0..first).rev().filter(|at| !pulse.is_clipped(*at));
     let after = (last..sight.samples.len()).filter(|at| !pulse.is_clipped(*at));
-    let before = before.map_while(tall);
-    before.chain(after.map_while(tall)).collect()
+    let before: Vec<(f64, f64)> = before.map_while(tall).collect();
+    let after: Vec<(f64, f64)> = after.map_while(tall).collect();
+    let shorter = before.len().min(after.len()).max(FEWEST);
+    let both = before.into_iter().take(shorter);
+    both.chain(after.into_iter().take(shorter)).collect()
 }

@@ -11,6 +11,8 @@ const IN_NOISE: [(usize, f64); 2] = [(4, 1.2), (2, 0.8)];
 
 /// A curve about its maximum, in units of u; shares are deviations for unit noise.
 pub(super) struct Top {
+    /// Noise, with what the curve leaves beyond it.
+    pub(super) noise: f64,
     pub(super) height: f64,
     pub(super) height_share: f64,
     pub(super) slope_share: f64,
@@ -18,6 +20,9 @@ pub(super) struct Top {
     pub(super) bend_share: f64,
     /// The part of the slope's share that is of the shape, which the samples leave open.
     pub(super) open_share: f64,
+    /// How far off the maximum may be by noise, at one deviation of heights: on a flat top farther than
+    /// slope and bend say.
+    pub(super) reach: f64,
 }
 
 /// Deviations by which noise may have sharpened a top, or steepened a flank.
@@ -27,13 +32,13 @@ impl Top {
     /// How many times as sharp it is as a Gaussian of the pulse's sides, whose mean is the
     /// geometric one; at least 1, and no more than noise can have made of it. Not asked of a clipped
     /// pulse, whose sides its flanks tell no better.
-    fn sharper(&self, pulse: &Pulse, half: f64, noise: f64) -> f64 {
+    fn sharper(&self, pulse: &Pulse, half: f64) -> f64 {
         if pulse.clipped.is_some() {
             return 1.0;
         }
         let (rise, fall) = pulse.sides_samples;
         let gaussian = 2.0 * std::f64::consts::LN_2 * half * half / (rise * fall) * self.height;
-        let least = -self.bend - BY_CHANCE * noise * self.bend_share;
+        let least = -self.bend - BY_CHANCE * self.noise * self.bend_share;
         (-self.bend / gaussian.max(least)).max(1.0)
     }
 }
@@ -71,12 +76,14 @@ pub(super) fn in_noise(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, Signa
 fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked {
     let at = fit.course(u);
     let top = Top {
+        noise: sight.broad_noise(pulse),
         height: at.value,
         height_share: fit.value_variance(u).sqrt(),
         slope_share: fit.slope_variance(u).sqrt(),
         bend: at.bend,
         bend_share: fit.bend_variance(u).sqrt(),
         open_share: 0.0,
+        reach: 0.0,
     };
     finish(sight, pulse, fit, u, &top)
 }
@@ -93,16 +100,19 @@ pub(super) fn finish(
     u: f64,
     top: &Top,
 ) -> Picked {
-    let noise = sight.broad_noise(pulse);
+    let noise = top.noise;
     let time = fit.sample(u);
     let moved_by = |slope: f64| slope / -top.bend * fit.half;
-    let by_noise = |share: f64| moved_by(noise * share) * top.sharper(pulse, fit.half, noise);
+    let by_noise = |share: f64| moved_by(noise * share) * top.sharper(pulse, fit.half);
     // What falls moves a maximum earlier.
     let under = -moved_by(sight.fall_under(pulse, time) * fit.half);
     let likely = moved_by(sight.likely_fall(pulse, time) * fit.half);
     Picked {
         time_s: time + likely,
-        sigma_s: by_noise(top.slope_share).hypot(under),
+        // Of a parabola heights differ by a deviation at two deviations of its maximum.
+        sigma_s: by_noise(top.slope_share)
+            .max(0.5 * top.reach * fit.half)
+            .hypot(under),
         moved: Moved {
             under_s: under,
             shape_s: by_noise(top.open_share),

@@ -2,6 +2,7 @@
 
 mod bell;
 mod bound;
+mod cap;
 mod correlation;
 mod flanks;
 mod local_model;
@@ -13,7 +14,7 @@ mod shape;
 mod under;
 
 pub use bound::{cramer_rao_of_samples_s, cramer_rao_s};
-pub(crate) use flanks::flat_top;
+pub(crate) use cap::clipped_top;
 pub use shape::Shape;
 
 use crate::error::SignalError;

@@ -121,6 +121,12 @@ impl Normal {
         Some(solution)
     }
 
+    /// Logarithm of the matrix's determinant.
+    pub(crate) fn log_determinant(&self) -> Option<f64> {
+        let root = self.cholesky()?;
+        Some(2.0 * (0..self.size).map(|j| root[j][j].ln()).sum::<f64>())
+    }
+
     /// Lower triangular factor of the matrix.
     fn cholesky(&self) -> Option<[[f64; MOST]; MOST]> {
         let mut root = [[0.0; MOST]; MOST];
