@@ -1,9 +1,9 @@
 """Figures of publication quality with matplotlib; each function returns axes.
 
 ``pip install hertzchain[plot]``. Functions draw into axes they are given, or into
-a new figure in the style of this package, `STYLE`::
+a new figure in the style of this package, `STYLE`, which is there for other figures, too::
 
-    with plt.style.context(hertzchain.plot.STYLE):
+    with hertzchain.plot.style():
         ...
 """
 

@@ -37,6 +37,9 @@ def style() -> AbstractContextManager[None]:
     ----------
     The style sheet at `STYLE`: columns of 85 mm, as journals of physics have.
     """
+    # A backend that is loaded within the context loses with it what it has set: Jupyter's the
+    # interactive mode, without which no later figure is shown. This loads it and draws nothing new.
+    plt.draw_if_interactive()
     return plt.style.context(STYLE)
 
 
