@@ -56,6 +56,7 @@ pub struct Spread<'a> {
     problem: &'a dyn Problem,
     fingerprint: Fingerprint,
     size: usize,
+    workers: usize,
     compute: &'a Compute<'a>,
     lost: OnceLock<String>,
 }
@@ -73,9 +74,17 @@ impl<'a> Spread<'a> {
             problem,
             fingerprint,
             size,
+            workers: 1,
             compute,
             lost: OnceLock::new(),
         }
+    }
+
+    /// The same in smaller batches where so many workers would otherwise not all
+    /// have one.
+    #[must_use]
+    pub fn among(self, workers: usize) -> Self {
+        Self { workers, ..self }
     }
 
     /// Why batches were lost, if any were.
@@ -87,7 +96,8 @@ impl<'a> Spread<'a> {
         if let Some(why) = self.lost() {
             return Err(why.to_owned());
         }
-        let batches = Batch::cut(&self.fingerprint, points, self.size);
+        let share = points.len().div_ceil(self.workers.max(1));
+        let batches = Batch::cut(&self.fingerprint, points, self.size.min(share));
         let found = (self.compute)(&batches)?;
         let sizes = batches.iter().map(|batch| batch.points.len());
         match found.iter().map(Vec::len).eq(sizes) {

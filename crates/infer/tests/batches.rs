@@ -48,6 +48,31 @@ fn a_fit_and_a_chain_have_the_same_bits_whoever_computes_them() {
 }
 
 #[test]
+fn every_worker_has_a_batch_where_there_are_points_for_it() {
+    let problem = toy();
+    let points = vec![vec![4.0, 0.8]; 9];
+    for (size, workers, batches) in [(32, 1, 1), (32, 2, 2), (32, 4, 3), (32, 20, 9), (2, 3, 5)] {
+        let cut = AtomicUsize::new(0);
+        let compute = |given: &[Batch]| {
+            cut.store(given.len(), Ordering::Relaxed);
+            Ok(backwards(&problem, given))
+        };
+        let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), size, &compute);
+        let found = spread.among(workers).residuals(&points);
+        assert_eq!(
+            cut.into_inner(),
+            batches,
+            "{size} points, {workers} workers"
+        );
+        let expected = problem.residuals(&points);
+        for (one, other) in found.iter().zip(&expected) {
+            let (one, other) = (one.as_ref().unwrap(), other.as_ref().unwrap());
+            assert_eq!(one.standardised, other.standardised);
+        }
+    }
+}
+
+#[test]
 fn batches_that_are_lost_for_good_are_told() {
     let problem = toy();
     let here = fit(&problem, &Fitting::default()).unwrap();

@@ -32,7 +32,7 @@ mod _hertzchain {
     #[pymodule_export]
     use super::law::Force;
     #[pymodule_export]
-    use super::recordings::{campaign, measure};
+    use super::recordings::{campaign, campaign_series, measure};
     #[pymodule_export]
     use super::shards::{Run, gather, shard};
     #[pymodule_export]

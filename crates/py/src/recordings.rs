@@ -25,6 +25,14 @@ fn failure(error: RigError) -> Failure {
     }
 }
 
+/// How many series a campaign has.
+#[pyfunction]
+#[pyo3(signature = (experiment, seed))]
+pub fn campaign_series(experiment: &Experiment, seed: Option<u64>) -> Result<usize, Failed> {
+    let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
+    Ok(plan.series.len())
+}
+
 /// Runs the series of a campaign that a folder does not have yet.
 #[pyfunction]
 #[pyo3(signature = (experiment, out, shard, seed, threads, progress))]

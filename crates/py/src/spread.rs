@@ -154,13 +154,15 @@ impl Elsewhere {
 }
 
 /// Contact parameters from times of flight, with residuals computed elsewhere in
-/// batches of `size` points; here without `compute`.
+/// batches of at most `size` points, one or more for each of the `workers`; here
+/// without `compute`.
 #[pyfunction]
-#[pyo3(signature = (likelihood, size, compute, progress))]
+#[pyo3(signature = (likelihood, size, workers, compute, progress))]
 pub fn fit_spread<'py>(
     py: Python<'py>,
     likelihood: &Likelihood,
     size: usize,
+    workers: usize,
     compute: Option<Py<PyAny>>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -178,7 +180,7 @@ pub fn fit_spread<'py>(
             return fitted(problem, problem, arguments);
         };
         let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
-        let spread = Spread::new(problem, problem.fingerprint(), size, &compute);
+        let spread = Spread::new(problem, problem.fingerprint(), size, &compute).among(workers);
         let found = fitted(problem, &spread, arguments);
         match spread.lost() {
             Some(why) => Err(Failure::User(why.to_owned())),

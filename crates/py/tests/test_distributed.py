@@ -63,6 +63,51 @@ def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path
     assert pickled(again) and not again.load().errors
 
 
+def test_work_is_cut_so_that_every_thread_has_some(small, client, tmp_path):
+    there = distributed.sweep(small, SPEEDS, folder=tmp_path / "there", client=client)
+    assert there.shards == 4 * 2
+    same(there.load(), hc.ensemble(small, SPEEDS))
+    few = distributed.sweep(small, SPEEDS[:3], folder=tmp_path / "few", client=client)
+    assert few.shards == 3
+    pilots = distributed.sweep(small, SPEEDS, folder=tmp_path / "pilots", client=client, judges="pilots")
+    assert pilots.shards == 2
+    same(pilots.load(), hc.ensemble(small, SPEEDS, judges="pilots"))
+    alone = distributed.sweep(small, SPEEDS, folder=tmp_path / "alone")
+    assert alone.shards == 1
+    same(alone.load(), there.load())
+    # With other workers, or none, a run goes on with the shards that it has.
+    again = distributed.sweep(small, SPEEDS, folder=tmp_path / "there")
+    assert (again.shards, again.kept) == (8, 8)
+
+
+def test_many_shots_are_cut_by_workers_and_by_size(client):
+    def parts(shots: int, client: Client | None) -> int:
+        return distributed._parts(shots, -(-shots // distributed.SHOTS_A_SHARD), distributed.SHARDS_A_THREAD, client)
+
+    assert [parts(shots, client) for shots in (1, 5, 16_000, 1_000_000)] == [1, 5, 8, 50]
+    assert [parts(shots, None) for shots in (1, 16_000, 1_000_000)] == [1, 1, 50]
+
+
+def test_numbers_of_parts_that_are_none_are_refused(small, client, tmp_path):
+    for shards in (0, -3, 2.5, True):
+        with pytest.raises(hc.OptionError, match="shards"):
+            distributed.sweep(small, SPEEDS, folder=tmp_path, client=client, shards=shards)
+        with pytest.raises(hc.OptionError, match="shards"):
+            distributed.campaign(hc.load(RIG), tmp_path, client=client, shards=shards)
+    with pytest.raises(hc.OptionError, match="points"):
+        distributed.fit(noisy("dry", 1), "dry", free="eta", folder=tmp_path, client=client, points=0)
+
+
+def test_a_campaign_is_cut_by_its_series(client, tmp_path):
+    rig = hc.load(RIG)
+    series = _native.campaign_series(rig, None)
+    run = distributed.campaign(rig, tmp_path / "there", client=client)
+    assert run.shards == min(series, 8) and not run.poisoned
+    assert distributed.campaign(rig, tmp_path / "here").shards == 1
+    assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
+    assert len(recordings(tmp_path / "there")) == series
+
+
 def test_shards_have_the_bytes_of_the_command_line(cli_shards, dry, client, tmp_path):
     distributed.sweep(dry, hc.sweep(dry, "0.2:1:12").speed_m_s, folder=tmp_path / "there", client=client, shards=2)
     assert recordings(tmp_path / "there") == cli_shards("--preset", "dry", "--speeds", "0.2:1:12")

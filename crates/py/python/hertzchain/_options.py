@@ -96,12 +96,12 @@ def _time(value: str | float | None) -> str | None:
     return f"{text(value)} s"
 
 
-def count(name: str, value: int | None, least: int = 0) -> int:
+def count(name: str, value: int | None, least: int = 0, most: int = 1024) -> int:
     """A whole number; none is 0."""
     if value is None:
         return 0
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= 1024:
-        raise OptionError(f"{name} = {value!r}: expected a whole number from {least} to 1024")
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise OptionError(f"{name} = {value!r}: expected a whole number from {least} to {most}")
     return value
 
 

@@ -47,7 +47,16 @@ if TYPE_CHECKING:
 __all__ = ["Distributed", "campaign", "fit", "sweep"]
 
 SHOTS_A_SHARD = 20_000
-"""So many that a shard takes seconds: what a scheduler spends on one is then below 2 %."""
+"""Most shots of a shard: so many that it takes seconds, and a scheduler spends less than 2 % on it."""
+
+SHARDS_A_THREAD = 4
+"""Shards for each thread of the workers, or more: they end together although some are slower."""
+
+MOST_SHARDS = 1_000_000
+"""Each is a file and a task of some ms."""
+
+UNKNOWN = 16
+"""Threads that a cluster is taken to have whose workers are yet to come."""
 
 @dataclass(frozen=True, repr=False)
 class Distributed(Tabled):
@@ -165,6 +174,18 @@ def _threads(client: Client | None) -> int:
     return 0 if client is None else 1
 
 
+def _parts(most: int, least: int, a_thread: int, client: Client | None) -> int:
+    """Into how many parts work of at most so many is cut, so that all threads of the workers have some."""
+    threads = 0 if client is None else _dask.threads(client) or UNKNOWN
+    return max(1, least, min(most, a_thread * threads))
+
+
+def _cut(folder: Path, name: str) -> int | None:
+    """Into how many shards a run was cut of which there are some in its folder: it goes on with these."""
+    found = [path.stem.rpartition("-of-")[2] for path in folder.glob(f"sweep-{name}-*-of-*.h5")]
+    return int(max(found, key=found.count)) if found else None
+
+
 def _shard(path: str, name: str, number: int, of: int, threads: int) -> tuple[int, bool | str]:
     """Computes a shard of a sweep on a worker."""
     folder = str(Path(path).parent)
@@ -214,7 +235,9 @@ def sweep(
     client : dask.distributed.Client, optional
         Everything stays in this process when absent.
     shards : int, optional
-        Parts of the run; about 20,000 shots each when absent.
+        Parts of the run. When absent, as many as the folder has some of; else four for each
+        thread of the workers (one with ``judges="pilots"``, whose pilots each shard computes),
+        and no part of more than 20,000 shots.
     progress : bool, bar or function, optional
         Told of shards.
 
@@ -244,7 +267,11 @@ def sweep(
     asked = {"options": how, "rebound": bool(rebound), "judges": judges, "threads": 0}
     run = _native.Run(experiment, speeds, list(named), list(named.values()), asked)
     path = _written(run, Path(folder))
-    of = shards or max(1, -(-speeds.size // SHOTS_A_SHARD))
+    if shards is None:
+        least = -(-speeds.size // SHOTS_A_SHARD)
+        a_thread = 1 if judges == "pilots" else SHARDS_A_THREAD
+        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, a_thread, client)
+    of = options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, of, "shard") as update:
         kept, poisoned = _dask.run(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
     return Distributed(Path(folder), of, kept, poisoned, run, experiment, speeds.shape, tuple(named))
@@ -255,7 +282,7 @@ def campaign(
     out: str | os.PathLike[str],
     *,
     client: Client | None = None,
-    shards: int,
+    shards: int | None = None,
     seed: int | None = None,
     progress: object = None,
 ) -> Distributed:
@@ -269,8 +296,9 @@ def campaign(
         Where recordings go, seen by all workers under this name.
     client : dask.distributed.Client, optional
         Everything stays in this process when absent.
-    shards : int
-        Parts into which series are dealt.
+    shards : int, optional
+        Parts into which series are dealt. When absent, four for each thread of the workers,
+        and no more than there are series; one without a client.
     progress : bool, bar or function, optional
         Told of shards.
 
@@ -291,6 +319,8 @@ def campaign(
     Series and their files: docs/rig.md; shards: docs/across-machines.md.
     """
     into = str(Path(out).resolve())
+    series = _native.campaign_series(experiment, seed)
+    shards = _parts(series, 1, SHARDS_A_THREAD, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, shards, "shard") as update:
         kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
     if len(poisoned) == shards:
@@ -299,7 +329,7 @@ def campaign(
 
 
 POINTS = 32
-"""Points of the model that a step of the sampler asks for at a time."""
+"""Most points of the model in a batch."""
 
 def fit(
     data: Any,
@@ -327,7 +357,7 @@ def fit(
     client : dask.distributed.Client, optional
         Everything stays in this process when absent.
     points : int, optional
-        Most points of a batch; as many as make a batch for every thread when absent.
+        Most points of a batch. There are smaller ones where not every thread would have one.
     progress : bool, bar or function, optional
         Told of curves.
     **how
@@ -354,9 +384,10 @@ def fit(
     told = [*words(**how), *options.listed("free", free), *kept(into)]
     name, text = table(data)
     likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
-    size, compute = POINTS, None
+    size = POINTS if points is None else options.count("points", points, 1)
+    workers, compute = 1, None
     if client is not None:
         compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
-        size = points or max(1, POINTS // max(1, _dask.threads(client)))
+        workers = _dask.threads(client) or UNKNOWN
     with options.progress(progress, None, "curve") as update:
-        return fitted(_native.fit_spread(likelihood, size, compute, update))
+        return fitted(_native.fit_spread(likelihood, size, workers, compute, update))
