@@ -22,7 +22,7 @@ impl Folder {
     /// Makes the folder if need be and checks that it can be written to,
     /// before anything is computed for it.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        if path.is_file() {
+        if path.exists() && !path.is_dir() {
             return Err(Failure::User(format!(
                 "cannot write into {}: it is a file; --out names a folder, which is made if it \
                  does not exist",

@@ -146,6 +146,11 @@ fn an_output_folder_that_is_a_file_is_called_one() {
         );
     }
     assert_eq!(fs::read_to_string(path).unwrap(), "keep me");
+    // A device is no folder either.
+    if cfg!(unix) {
+        let message = refused(&["reproduce", "--out", "/dev/null"]);
+        assert!(message.contains("it is a file"), "{message}");
+    }
 }
 
 #[test]

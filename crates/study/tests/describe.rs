@@ -270,3 +270,49 @@ fn a_dimer_s_speed_names_its_force_and_the_striker_s_own_pulse_is_near_the_compu
     // first weaker; the speed feels a sixth of that.
     assert_close(speed, computed, 0.04);
 }
+
+#[test]
+fn normal_modes_of_a_long_loaded_row_are_said_to_be_missing() {
+    let long = preset("precompressed").unwrap();
+    let long = long.set(&[("beads[0].count", 201.0)]).unwrap();
+    let (chain, _) = long.chain(None).unwrap();
+    let groups = describe_theory(&long, &chain).unwrap();
+    let modes = groups
+        .iter()
+        .find(|group| group.title.starts_with("Normal modes"));
+    let row = &modes.unwrap().rows[0];
+    assert!(
+        matches!(&row.value, Value::Text(why) if why.contains("200 beads")),
+        "{row:?}"
+    );
+}
+
+/// What theory expects of the preset `hertz` with a part of its file replaced.
+fn expected_of(from: &str, to: &str) -> Option<Group> {
+    let file = presets().iter().find(|file| file.name == "hertz").unwrap();
+    assert!(file.text.contains(from));
+    let experiment = Experiment::from_text("row.toml", &file.text.replace(from, to)).unwrap();
+    let groups = described(&experiment);
+    groups
+        .into_iter()
+        .find(|group| group.title.starts_with("Expected of theory"))
+}
+
+#[test]
+fn theory_expects_a_time_of_flight_only_where_one_pulse_runs_down_a_touching_row() {
+    let group = expected_of("0.5 m/s", "0.4 m/s").unwrap();
+    assert!(matches!(group.rows[0].value, Value::Number(_)), "{group:?}");
+    for contact in [10, 40] {
+        let gap = format!("[[gaps]]\ncontact = {contact}\ngap = \"1 mm\"\n[sensors]");
+        assert_eq!(expected_of("[sensors]", &gap), None, "contact {contact}");
+    }
+    for mass in ["1 g", "80 g"] {
+        let striker = format!("[striker]\nmass = \"{mass}\"\nradius = \"6.35 mm\"");
+        let group = expected_of("[striker]", &striker).unwrap();
+        let said = &group.rows[0].value;
+        assert!(
+            matches!(said, Value::Text(why) if why.starts_with("not estimated")),
+            "{group:?}"
+        );
+    }
+}

@@ -133,7 +133,7 @@ fn spread(rigs: &[(f64, &Observed)], si: f64, name: &str, of: Of) -> Series {
 
 /// Rebound over speed against speed.
 fn rebounds(evidence: &Evidence) -> Figure {
-    let mut chart = Chart::new("Striker speed $v_0$ (m/s)", "rebound / $v_0$").x_log();
+    let mut chart = Chart::new("Striker speed $v_0$ (m/s)", "Rebound / $v_0$").x_log();
     for observed in shown(evidence) {
         let speeds: Vec<f64> = observed.speeds.iter().map(|at| at.speed_m_s).collect();
         let share = |at: &AtSpeed| {

@@ -112,7 +112,7 @@ pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, St
     groups.push(rest::at_rest(chain, &system));
     groups.extend(rest::linear_waves(chain, &system));
     groups.push(theory::scales(&system));
-    groups.extend(theory::expected(experiment, chain));
+    groups.extend(theory::expected(experiment, chain, &system));
     groups.extend(rig::rig(experiment));
     groups.retain(|group| !group.rows.is_empty());
     if experiment.units() == Units::Dimensionless {
@@ -134,7 +134,7 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
     groups.extend(rest::linear_waves(chain, &system));
     groups.extend(small_waves::dispersion(chain, &system));
     groups.extend(small_waves::modes(chain, &system));
-    groups.extend(theory::expected(experiment, chain));
+    groups.extend(theory::expected(experiment, chain, &system));
     if experiment.units() == Units::Dimensionless {
         groups.iter_mut().for_each(drop_units);
     }
