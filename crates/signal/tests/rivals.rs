@@ -110,3 +110,36 @@ fn a_rival_told_to_be_the_higher_is_the_return() {
         flight.reflected_s.unwrap().value
     );
 }
+
+/// At many samples a width, and in steps of a digitiser, noise makes many maxima on one top.
+#[test]
+fn maxima_on_one_top_are_no_fragments_of_it() {
+    let scene = Scene {
+        interval_s: 1e-7,
+        samples: 40_000,
+        noise: 3e-3,
+        ..Scene::default()
+    };
+    let step = 4.0 / 256.0;
+    for seed in 0..8 {
+        let clean = Scene {
+            seed,
+            ..scene.clone()
+        }
+        .summed();
+        let steps: Vec<f64> = clean.iter().map(|x| (x / step).round() * step).collect();
+        // Differences of neighbours: noise that falls off towards low frequencies.
+        let blue: Vec<f64> = clean
+            .windows(2)
+            .map(|pair| 2.0 * pair[1] - pair[0])
+            .collect();
+        for samples in [steps, blue] {
+            let shot = measure(Channels::Summed(&samples), 1e-7, &Measuring::default()).unwrap();
+            let doubts = shot.found.doubts;
+            let alike = doubts
+                .iter()
+                .any(|d| matches!(d, Doubt::Alike(_) | Doubt::Saturation(_)));
+            assert!(!alike, "{seed}: {doubts:?}");
+        }
+    }
+}

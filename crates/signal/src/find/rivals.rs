@@ -2,7 +2,7 @@
 
 use super::smooth::{Maximum, Smooth};
 use super::{Channels, Doubt, Found, Place, Pulse};
-use crate::picks::{Sight, fitted_height};
+use crate::picks::{Sight, fitted};
 use crate::{Estimate, Rival};
 
 /// Maxima whose smoothed heights are so many standard errors below the largest are looked at
@@ -10,6 +10,8 @@ use crate::{Estimate, Rival};
 const CLOSE: f64 = 7.0;
 /// So many of them: a return has two or three fragments of like height.
 const MOST: usize = 2;
+/// Share of the width within which two maxima are those of one top: noise, or a digitiser's steps, on it.
+const APART: f64 = 0.5;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
 const TELLS: f64 = 3.0;
 
@@ -21,14 +23,22 @@ pub(super) fn others(
     smooth: &Smooth,
 ) -> Vec<Maximum> {
     let least = chosen.height - CLOSE * smooth.noise;
+    let (rise, fall) = smooth.sides(chosen);
+    let apart = (APART * (rise + fall)) as usize;
     let near = |m: &&Maximum| {
         let at = m.at as f64;
-        m.at != chosen.at && at > from && at < to && m.height > least
+        at > from && at < to && m.height > least
     };
-    let mut others: Vec<Maximum> = maxima.iter().filter(near).copied().collect();
-    others.sort_by(|a, b| b.height.total_cmp(&a.height));
-    others.truncate(MOST);
-    others
+    let mut near: Vec<Maximum> = maxima.iter().filter(near).copied().collect();
+    near.sort_by(|a, b| b.height.total_cmp(&a.height));
+    let mut tops = vec![*chosen];
+    for maximum in near {
+        let is_other = |top: &Maximum| top.at.abs_diff(maximum.at) > apart;
+        if tops.len() <= MOST && tops.iter().all(is_other) {
+            tops.push(maximum);
+        }
+    }
+    tops.split_off(1)
 }
 
 /// Compares the heights of pulses found with those of others of their place, as fits to all
@@ -42,10 +52,18 @@ pub(super) fn tell(found: &mut Found, others: &[Pulse], channels: Channels<'_>) 
         if whole.is_none() || pulses.len() < 2 {
             continue;
         }
-        let with_height = |pulse: &Pulse| (*pulse, height(found, pulse, channels));
-        let mut all: Vec<(Pulse, Estimate)> = pulses.iter().map(with_height).collect();
-        all.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
-        let [(first, most), (second, next), ..] = all[..] else {
+        let mut tops: Vec<(Pulse, f64, Estimate)> = Vec::new();
+        for pulse in pulses {
+            let (time, height) = top(found, &pulse, channels);
+            let is_same = |other: &(Pulse, f64, Estimate)| {
+                (other.1 - time).abs() < APART * pulse.width_samples
+            };
+            if !tops.iter().any(is_same) {
+                tops.push((pulse, time, height));
+            }
+        }
+        tops.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
+        let [(first, _, most), (second, _, next), ..] = tops[..] else {
             continue;
         };
         *found.slot(place) = Some(first);
@@ -63,8 +81,9 @@ pub(super) fn tell(found: &mut Found, others: &[Pulse], channels: Channels<'_>) 
     }
 }
 
-/// Height of a maximum by the samples about it; that of the smoothed signal where they fit nothing.
-fn height(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> Estimate {
+/// Sample and height of a maximum by fits to the samples about it; those of the smoothed signal where
+/// they fit nothing.
+fn top(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> (f64, Estimate) {
     let upright = *found.upright(pulse.place);
     let sight = Sight {
         samples: match pulse.place {
@@ -76,8 +95,13 @@ fn height(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> Estimate {
         summed: matches!(channels, Channels::Summed(_)),
         wall: None,
     };
-    fitted_height(&sight, pulse).unwrap_or(Estimate {
-        value: pulse.height,
-        sigma: upright.level.noise,
-    })
+    let (at, height, error) = fitted(&sight, pulse).map_or(
+        (pulse.at as f64, pulse.height, upright.level.noise),
+        |picked| (picked.time_s, picked.height, picked.height_sigma),
+    );
+    let height = Estimate {
+        value: height,
+        sigma: error,
+    };
+    (at, height)
 }

@@ -42,7 +42,10 @@ impl Smooth {
         Self {
             first,
             values: running::triangle(&values, length),
-            noise: level.noise.min(level.broad_noise() * white),
+            // Of noise whose neighbours differ in sign, averages leave what their ends do.
+            noise: level
+                .noise
+                .min((level.broad_noise() * white).max(level.noise * n.powf(-1.5))),
             length,
         }
     }

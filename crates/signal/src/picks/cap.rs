@@ -82,10 +82,16 @@ fn samples(sight: &Sight<'_>, centre: f64, half: f64, noise: f64) -> Option<Data
         ((start as f64 + at - centre) / half, height)
     };
     let points = heights.chunks(together).enumerate().map(mean);
+    // Where a step of the digitiser exceeds the noise, neighbours are rounded the same way.
+    let level = &sight.upright.level;
+    let averaged = level.noise >= 0.5 * sight.upright.step;
     let data = Data {
         points: points.filter(|(u, _)| u.abs() <= 1.0).collect(),
         degree: DEGREE,
-        noise: noise / (together as f64).sqrt(),
+        noise: match averaged {
+            true => noise / (together as f64).sqrt(),
+            false => noise.max(0.5 * sight.upright.step),
+        },
         thought: [1.0; MOST],
         capped: false,
     };

@@ -251,13 +251,9 @@ pub fn pick(
     })
 }
 
-/// Height of a pulse's maximum with its error, as the samples about it tell.
-pub(crate) fn fitted_height(sight: &Sight<'_>, pulse: &Pulse) -> Option<Estimate> {
-    let picked = Picker::Maximum.pick(sight, pulse).ok()?;
-    Some(Estimate {
-        value: picked.height,
-        sigma: picked.height_sigma,
-    })
+/// A pulse's maximum as the samples about it tell, in samples.
+pub(crate) fn fitted(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
+    Picker::Maximum.pick(sight, pulse).ok()
 }
 
 impl Picked {
