@@ -44,6 +44,9 @@ pub struct SpeedRow {
     /// Of those that count, shots whose return has two maxima of which all of them together do
     /// not tell the largest: their reflected times do not count.
     pub returns_undecided: usize,
+    /// Of those that count, shots without a return. Where fewer than half of them have one, it may be noise,
+    /// and none counts.
+    pub returns_missing: usize,
     /// Incident time of flight in s.
     pub incident_s: Summary,
     /// Reflected time of flight in s.
@@ -245,21 +248,23 @@ fn by<'a>(
 fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
     let counted: Vec<&Timed<'_>> = group.iter().copied().filter(|shot| shot.counts).collect();
     let own: Vec<&Flight> = counted.iter().map(|shot| shot.flight).collect();
-    let settled = match keep_dubious {
+    let mut settled = match keep_dubious {
         true => own.iter().map(|flight| Some(**flight)).collect(),
         false => settled(&own),
     };
     let timed = |flight: &&Flight| flight.reflected_s.is_some();
+    let now = settled.iter().flatten();
+    let few = 2 * now.clone().filter(timed).count() < now.count();
+    let returns_undecided = undecided(&own, &settled);
+    if few && !keep_dubious {
+        let flights = settled.iter_mut().flatten();
+        flights.for_each(|flight| *flight = without_return(flight));
+    }
     let pairs = counted.iter().zip(&settled);
     let counted: Vec<Timed<'_>> = pairs
         .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
         .collect();
-    let with_return = own
-        .iter()
-        .zip(&settled)
-        .filter(|(own, now)| now.is_some() && timed(own));
     let returns = counted.iter().filter(|shot| timed(&shot.flight)).count();
-    let returns_undecided = with_return.count() - returns;
     let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
         let values = counted.iter().filter_map(|shot| value(shot.flight));
         summary(&values.collect::<Vec<_>>())
@@ -276,6 +281,7 @@ fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<Speed
         at_mean_speed_s: [moved(0), moved(1)],
         shots: (counted.len(), untimed + group.len() - counted.len()),
         returns_undecided,
+        returns_missing: counted.len() - returns - returns_undecided,
         incident_s: of(&|flight| Some(flight.incident_s))?,
         reflected_s: of(&|flight| flight.reflected_s),
         wall_over_passing: of(&|flight| Some(flight.wall_over_passing))?,
@@ -286,6 +292,26 @@ fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<Speed
             of(&|flight| Some(exact(flight.picks.returning?.width_s))),
         ],
     })
+}
+
+/// How many flights have lost their returns because it is open which maximum is the largest.
+fn undecided(own: &[&Flight], settled: &[Option<Flight>]) -> usize {
+    let pairs = own.iter().zip(settled);
+    let lost = pairs.filter(|(own, now)| {
+        let now = now.is_some_and(|now| now.reflected_s.is_none());
+        now && own.reflected_s.is_some()
+    });
+    lost.count()
+}
+
+/// The same shot as if nothing had come back.
+fn without_return(flight: &Flight) -> Flight {
+    let mut flight = *flight;
+    flight.reflected_s = None;
+    flight.covariance_s2 = 0.0;
+    flight.returning_over_passing = None;
+    flight.picks.returning = None;
+    flight
 }
 
 /// The mean of measured speeds is the mean of these very shots' speeds, whatever

@@ -100,7 +100,7 @@ pub fn speeds_csv(curves: &Curves) -> String {
     for time in ["tof_incident", "tof_reflected"] {
         text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
     }
-    text += ",speed_error_shots,returns_undecided\n";
+    text += ",speed_error_shots,returns_undecided,returns_missing\n";
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -148,6 +148,7 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain([
             row.speed_error_shots.to_string(),
             row.returns_undecided.to_string(),
+            row.returns_missing.to_string(),
         ]);
     line(cells)
 }

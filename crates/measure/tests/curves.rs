@@ -32,21 +32,8 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
     (0..4000).map(sample).collect()
 }
 
-/// A series of five shots whose times of flight differ by 0.2 samples.
-fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
-    told_series(folder, case, speed_m_s, height, &[])
-}
-
-/// The same, of which the file tells more.
-fn told_series(
-    folder: &Path,
-    case: &str,
-    speed_m_s: f64,
-    height: f64,
-    told: &[(&str, &str)],
-) -> PathBuf {
-    let path = folder.join(format!("{case}-{speed_m_s}.h5"));
-    let info = SeriesInfo {
+fn info(case: &str, told: &[(&str, &str)]) -> SeriesInfo {
+    SeriesInfo {
         channels: Channels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
@@ -63,21 +50,80 @@ fn told_series(
             .chain(told)
             .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
             .collect(),
+    }
+}
+
+fn push(writer: &mut SeriesWriter, shot: u64, speed_m_s: f64, samples: &[i16]) {
+    let row = ShotRow {
+        shot,
+        programmed_speed_m_s: speed_m_s,
+        measured_speed_m_s: speed_m_s + 0.002 * (shot as f64 - 2.0),
+        triggered: true,
+        contacts: &[],
+        samples,
+        truth: &[],
     };
-    let mut writer = SeriesWriter::create(&path, &info).unwrap();
+    writer.push(&row).unwrap();
+}
+
+/// As [`series`], of which only so many shots have a return.
+fn returning_series(folder: &Path, returns: u64) -> PathBuf {
+    let path = folder.join("few.h5");
+    let mut writer = SeriesWriter::create(&path, &info("dry", &[])).unwrap();
+    for shot in 0..5 {
+        let mut samples = samples(700.0, 9000.0, shot);
+        if shot >= returns {
+            let noise = samples[..1000].to_vec();
+            samples.splice(
+                1500..2500,
+                noise.iter().map(|n| n.clamp(&-30, &30)).copied(),
+            );
+        }
+        push(&mut writer, shot, 0.5, &samples);
+    }
+    writer.finish().unwrap()
+}
+
+#[test]
+fn a_return_that_fewer_than_half_of_a_speeds_shots_have_counts_in_nothing() {
+    let folder = folder("few-returns");
+    for (returns, missing) in [(5, 0), (3, 2), (2, 5)] {
+        let mut measured = measured(&[returning_series(&folder, returns)]);
+        // Without the row a shot of two pulses is doubtful; here it is known.
+        for shot in &mut measured.shots {
+            shot.doubts.clear();
+        }
+        let curves = Curves::of(&measured.shots, &Grouping::default());
+        let row = &curves.cases[0].rows[0];
+        let counted = row.reflected_s.map_or(0, |reflected| reflected.count);
+        assert_eq!((row.shots.0, row.returns_missing), (5, missing));
+        assert_eq!(counted, 5 - missing);
+    }
+}
+
+/// A series of five shots whose times of flight differ by 0.2 samples.
+fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
+    told_series(folder, case, speed_m_s, height, &[])
+}
+
+/// The same, of which the file tells more.
+fn told_series(
+    folder: &Path,
+    case: &str,
+    speed_m_s: f64,
+    height: f64,
+    told: &[(&str, &str)],
+) -> PathBuf {
+    let path = folder.join(format!("{case}-{speed_m_s}.h5"));
+    let mut writer = SeriesWriter::create(&path, &info(case, told)).unwrap();
     for shot in 0..5_u64 {
         let incident = 630.0 * speed_m_s.powf(-0.2) + 0.2 * (shot as f64 - 2.0);
-        writer
-            .push(&ShotRow {
-                shot,
-                programmed_speed_m_s: speed_m_s,
-                measured_speed_m_s: speed_m_s + 0.002 * (shot as f64 - 2.0),
-                triggered: true,
-                contacts: &[],
-                samples: &samples(incident, height, shot),
-                truth: &[],
-            })
-            .unwrap();
+        push(
+            &mut writer,
+            shot,
+            speed_m_s,
+            &samples(incident, height, shot),
+        );
     }
     writer.finish().unwrap()
 }

@@ -13,6 +13,7 @@ mod nonsense;
 mod picking;
 mod power_law;
 mod reduction;
+mod returns;
 mod rivals;
 mod shared;
 #[path = "common/source.rs"]

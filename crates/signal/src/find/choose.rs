@@ -1,6 +1,7 @@
 //! Which maximum is which pulse.
 
 use super::Finding;
+use super::significance::{LEAST as LEAST_SEEN, error_of_height};
 use super::smooth::Maximum;
 use super::track::{BLOCK, Track};
 
@@ -18,6 +19,8 @@ const LEAST_WALL: f64 = 0.42;
 /// The same where no third pulse is there and nobody knows the row: returning pulses have up to 0.67
 /// of the passing one's height.
 const HIGHEST_RETURN: f64 = 0.7;
+/// Least height of a return over the wall's pulse in computed rows, dry and wet.
+const LEAST_RETURN: f64 = 0.15;
 /// Expected incident times between what a time to the wall and one to the wall and back can be.
 const TO_AND_FRO: f64 = 1.5;
 
@@ -139,7 +142,10 @@ fn of_two(
     let time = (second.at - first.at) as f64;
     let falls = is_no_wall(&second, &first);
     let may_be_back = second.height < HIGHEST_RETURN * first.height;
-    let shows_all = !ends_early(first.at, second.at, track.samples.len());
+    let noise = track.upright.level.broad_noise();
+    let seen =
+        LEAST_RETURN * second.height > 2.0 * LEAST_SEEN * noise * error_of_height(track.width);
+    let shows_all = seen && !ends_early(first.at, second.at, track.samples.len());
     let to_and_fro = |beads| time > TO_AND_FRO * expected(beads, track.width);
     match (falls, finding.beads) {
         (_, Some(beads)) if may_be_back && to_and_fro(beads) => Chosen {

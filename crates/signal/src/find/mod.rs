@@ -6,6 +6,7 @@ mod doubts;
 mod found;
 mod options;
 mod rivals;
+mod significance;
 mod smooth;
 mod track;
 
@@ -75,10 +76,19 @@ type Looked = (Found, Vec<Pulse>);
 fn summed(samples: &[f64], finding: &Finding) -> Result<Looked, SignalError> {
     let track = Track::new(samples, finding.polarity)?;
     let end = choose::end_of_interest(&track, finding);
-    let (smooth, maxima) = look(&track, end);
+    let (smooth, mut maxima) = look(&track, end);
     let mut chosen = choose::summed(&maxima, &track, finding);
+    if significance::retain(&mut maxima, &track, &smooth, chosen.windows[2]) {
+        chosen = choose::summed(&maxima, &track, finding);
+    }
+    let mut closer = closer(&View::new(&track, &smooth, &maxima), &mut chosen, end);
+    if chosen.returning.is_some() && closer.is_none() {
+        let (from, to) = chosen.windows[2];
+        maxima.retain(|m| (m.at as f64) <= from || (m.at as f64) >= to);
+        chosen = choose::summed(&maxima, &track, finding);
+        closer = None;
+    }
     let one = View::new(&track, &smooth, &maxima);
-    let closer = closer(&one, &mut chosen, end);
     let back = closer
         .as_ref()
         .map_or(one, |(s, m)| View::new(&track, s, m));
@@ -97,12 +107,23 @@ fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Looked, S
     let began = track.first;
     let reached = wall.first + wall.width as usize;
     let end = reached + 4 * reached.saturating_sub(began) + 3 * track.width as usize;
-    let (sensor_smooth, sensor_maxima) = look(&track, end);
+    let (sensor_smooth, mut sensor_maxima) = look(&track, end);
     let (wall_smooth, wall_maxima) = look(&wall, end);
     let mut chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+    if significance::retain(
+        &mut sensor_maxima,
+        &track,
+        &sensor_smooth,
+        chosen.windows[2],
+    ) {
+        chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+    }
     let sensor = View::new(&track, &sensor_smooth, &sensor_maxima);
     let wall = View::new(&wall, &wall_smooth, &wall_maxima);
     let closer = closer(&sensor, &mut chosen, end);
+    if closer.is_none() {
+        chosen.returning = None;
+    }
     let back = closer.as_ref();
     let back = back.map_or(sensor, |(s, m)| View::new(&track, s, m));
     Ok(gather(&chosen, [sensor, wall, back]))
@@ -154,7 +175,8 @@ fn closer(
     let (from, to) = chosen.windows[2];
     let back = chosen.returning.filter(|_| to > from)?;
     let start = (from - sensor.track.width).max(0.0) as usize;
-    let (smooth, maxima) = look_at(sensor.track, start..end, back.height);
+    let (smooth, mut maxima) = look_at(sensor.track, start..end, back.height);
+    significance::retain(&mut maxima, sensor.track, &smooth, (from, to));
     let largest = choose::largest(&maxima, from, to)?;
     chosen.returning = Some(largest);
     Some((smooth, maxima))

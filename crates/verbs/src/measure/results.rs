@@ -130,6 +130,7 @@ fn row(row: &SpeedRow) -> Value {
         "shots": row.shots.0,
         "left_out": row.shots.1,
         "returns_undecided": row.returns_undecided,
+        "returns_missing": row.returns_missing,
         "tof_incident_s": summary(&row.incident_s),
         "tof_reflected_s": row.reflected_s.as_ref().map(summary),
         "wall_over_passing": summary(&row.wall_over_passing),

@@ -117,7 +117,11 @@ fn counts(row: &SpeedRow) -> String {
         0 => String::new(),
         open => format!(", {open} returns undecided"),
     };
-    format!("{counted}{left_out}{undecided}")
+    let missing = match row.returns_missing {
+        0 => String::new(),
+        missing => format!(", {missing} without a return"),
+    };
+    format!("{counted}{left_out}{undecided}{missing}")
 }
 
 fn curve(case: &Case) -> String {
