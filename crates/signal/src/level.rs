@@ -55,6 +55,9 @@ pub(crate) fn median_and_spread(values: &[f64]) -> Option<(f64, f64)> {
 pub fn level(quiet: &[f64]) -> Result<Level, SignalError> {
     SignalError::enough(quiet.len(), 8)?;
     all_finite(quiet)?;
+    let calm = calm(quiet);
+    let quiet_samples = quiet.len();
+    let quiet = calm.as_slice();
     let (centre, spread) = median_and_spread(quiet).unwrap_or_default();
     let reach = (5.0 * spread).max(3.0 * smallest_step(quiet, centre));
     // Differences from the median keep the digits of a small noise on a large offset.
@@ -71,8 +74,35 @@ pub fn level(quiet: &[f64]) -> Result<Level, SignalError> {
         offset: centre + mean,
         noise,
         correlation: correlation(&clipped),
-        quiet_samples: quiet.len(),
+        quiet_samples,
     })
+}
+
+/// Parts into which a quiet stretch is divided.
+const PARTS: usize = 64;
+/// Robust deviations of the parts' means beyond which one holds more than noise.
+const MORE: f64 = 4.0;
+
+/// The samples but for parts whose mean lies far off, and their neighbours: a small pulse before the first
+/// one, or what crosses over from another channel, is no noise.
+fn calm(quiet: &[f64]) -> Vec<f64> {
+    let length = (quiet.len() / PARTS).max(8);
+    let parts: Vec<&[f64]> = quiet.chunks(length).collect();
+    let mean = |part: &&[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    let means: Vec<f64> = parts.iter().map(mean).collect();
+    let (centre, spread) = median_and_spread(&means).unwrap_or_default();
+    let is_off = |at: usize| {
+        let mean = means.get(at);
+        mean.is_some_and(|mean| (mean - centre).abs() > MORE * spread)
+    };
+    let is_calm = |at: &usize| !(is_off(*at) || is_off(at + 1) || (*at > 0 && is_off(at - 1)));
+    let calm = (0..parts.len()).filter(is_calm);
+    let kept: Vec<f64> = calm.flat_map(|at| parts[at]).copied().collect();
+    // Where that is not plain, all of them are.
+    match spread > 0.0 && 2 * kept.len() > quiet.len() {
+        true => kept,
+        false => quiet.to_vec(),
+    }
 }
 
 /// Smallest difference from `centre` that is not 0: the digitiser's step, if there is one.

@@ -12,6 +12,7 @@ mod finding;
 mod nonsense;
 mod picking;
 mod power_law;
+mod quiet;
 mod reduction;
 mod returns;
 mod rivals;

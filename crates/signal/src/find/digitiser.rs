@@ -47,23 +47,40 @@ pub(super) fn judge(found: &mut Found, recorded: Channels<'_>, finding: &Finding
     }
 }
 
+/// Share of a whole pulse's height below which no other pulse of its channel is clipped.
+const AS_HIGH: f64 = 0.9;
+
 /// Marks the tops that something before the digitiser has clipped.
 fn flat_tops(found: &mut Found, recorded: Channels<'_>, coarse: &[Place]) -> Vec<Doubt> {
     let channels = [recorded.sensor(), recorded.wall()];
     let uprights = [found.sensor, found.wall_channel];
+    let summed = matches!(recorded, Channels::Summed(_));
+    let channel = |pulse: &Pulse| usize::from(pulse.place == Place::Wall && !summed);
     let pulses = [&mut found.passing, &mut found.wall, &mut found.returning];
     let whole = pulses.into_iter().flatten().filter(|p| p.clipped.is_none());
-    let mut doubts = Vec::new();
-    for pulse in whole.filter(|pulse| !coarse.contains(&pulse.place)) {
+    let mut whole: Vec<&mut Pulse> = whole.collect();
+    let mut highest = [0.0_f64; 2];
+    for pulse in &mut whole {
         let which = usize::from(pulse.place == Place::Wall);
         let sight = Sight {
             samples: channels[which],
             upright: uprights[which],
             rails: None,
-            summed: matches!(recorded, Channels::Summed(_)),
+            summed,
             wall: None,
         };
-        pulse.clipped = clipped_top(&sight, pulse);
+        if !coarse.contains(&pulse.place) {
+            pulse.clipped = clipped_top(&sight, pulse);
+        }
+        if pulse.clipped.is_none() {
+            highest[channel(pulse)] = highest[channel(pulse)].max(pulse.height);
+        }
+    }
+    let mut doubts = Vec::new();
+    for pulse in whole {
+        // One channel ends at one level.
+        let end = AS_HIGH * highest[channel(pulse)];
+        pulse.clipped = pulse.clipped.filter(|_| pulse.height > end);
         doubts.extend(pulse.clipped.map(|_| Doubt::Saturation(pulse.place)));
     }
     doubts

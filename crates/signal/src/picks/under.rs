@@ -10,6 +10,9 @@ const STRETCH: f64 = 0.3;
 /// Full widths after a return within which both sensors' forces come to their least.
 const AFTER: f64 = 5.0;
 
+/// Standard deviation of the fall under a return over the largest that there may be.
+const DEVIATION: f64 = 0.5;
+
 /// Full widths at half maximum of each of two stretches before a return that tell how fast the
 /// wall's signal dies away: longer than the ringing on it.
 const DECAY: f64 = 1.5;
@@ -19,7 +22,7 @@ impl Sight<'_> {
     /// as it did from one stretch to the next before the return began, by equal shares in equal
     /// times. 0 where it did not fall there, where it is nothing, and in two channels.
     ///
-    /// Never more than 1/e of what [`Self::fall_under`] allows for.
+    /// Never more than 1/e of the largest that there may be.
     pub(super) fn likely_fall(&self, pulse: &Pulse, time: f64) -> f64 {
         let Some(wall) = self.wall.filter(|_| self.summed) else {
             return 0.0;
@@ -37,8 +40,18 @@ impl Sight<'_> {
         let rate = (before / after).ln() / length;
         let at_foot = after * (-rate * 0.5 * length).exp();
         let fall = at_foot * rate * (-rate * (time - foot)).exp();
-        let most = self.fall_under(pulse, time).max(0.0);
+        let most = self.largest_fall_under(pulse, time).max(0.0);
         fall.min(most * std::f64::consts::E.recip())
+    }
+
+    /// Standard deviation, with its sign, of the fall a sample of what may lie under a pulse at its
+    /// maximum: of a return half of the largest fall, but for one that trails.
+    pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
+        let share = match self.wall {
+            Some(_) => DEVIATION + (1.0 - DEVIATION) * pulse.trailing(),
+            None => 1.0,
+        };
+        share * self.largest_fall_under(pulse, time)
     }
 
     /// Fall, a sample, of what may lie under a pulse at its maximum.
@@ -47,7 +60,7 @@ impl Sight<'_> {
     /// begins to nothing at its maximum; under one that trails, and whose flat top little can
     /// shift far, within its rise, and the more so the more it trails. Under the returning pulse it is the wall's, which falls as far as
     /// [`Self::may_fall`] says.
-    pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
+    fn largest_fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let rise = pulse.sides_samples.0;
         let foot = time - 2.0 * FOOT * rise;
         let length = STRETCH * pulse.width_samples;
@@ -58,7 +71,16 @@ impl Sight<'_> {
         match self.wall {
             Some(wall) => self.may_fall(pulse, wall as f64, foot, there) / (time - foot),
             None => {
-                let trailing = pulse.trailing();
+                // What falls quickly before the foot has gone by the maximum.
+                let before = self.beyond_noise(foot - 2.0 * length, foot - length);
+                let steps = (time - foot) / length;
+                let falls = there > 0.0 && before > there;
+                let kept = if falls {
+                    (there / before).powf(0.5 * steps)
+                } else {
+                    1.0
+                };
+                let (there, trailing) = (kept * there, pulse.trailing());
                 there * (trailing / rise + (1.0 - trailing) / (time - foot))
             }
         }
