@@ -85,7 +85,6 @@ pub const BREAKS: &[(&str, Change)] = &[
         each(e, "dry", |p| p.tof_reflected_s = 0.99 * p.tof_incident_s)
     }),
     ("loosening", |e| each(e, "dry", closed(0.01))),
-    ("loosening-adds", |e| each(e, "dry", closed(-0.01))),
     ("gaps", |e| each(e, "dry", |p| p.loosened_m = -1e-7)),
     ("return-error-bars", |e| {
         each(e, "dry", |p| {

@@ -176,6 +176,24 @@ fn gaps_of_more_than_a_millimetre_are_no_small_gaps() {
 }
 
 #[test]
+fn loosening_that_makes_little_of_the_difference_holds_in_part() {
+    for (share, verdict) in [
+        (0.6, Verdict::Holds),
+        (0.3, Verdict::InPart),
+        (0.01, Verdict::Fails),
+    ] {
+        let mut evidence = agreeing();
+        each(&mut evidence, "dry", |p| {
+            p.excess_s[1] = (1.0 - share) * p.excess_s[0]
+        });
+        let finding = decide("loosening", &evidence);
+        assert_eq!(finding.verdict, verdict, "{share}: {finding:?}");
+        // Rounding of a difference.
+        assert!((finding.value - share).abs() < 1e-12, "{finding:?}");
+    }
+}
+
+#[test]
 fn a_split_that_the_figure_could_just_show_holds_in_part() {
     for (second, verdict) in [
         (0.6, Verdict::Holds),
