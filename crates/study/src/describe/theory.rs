@@ -274,7 +274,7 @@ pub(super) fn loaded(chain: &Chain, system: &System) -> Option<Group> {
 
 /// A striker whose mass is that of a bead within this factor hands on nearly all of
 /// its energy in one pulse.
-const ALIKE: f64 = 1.1;
+const SIMILAR: f64 = 1.1;
 
 /// Time of flight that theory expects of a row of equal beads that just touch:
 /// under load pulses run at the speed of sound or faster, gaps delay them.
@@ -291,7 +291,7 @@ pub(super) fn expected(experiment: &Experiment, chain: &Chain, system: &System) 
     let beads = (chain.beads.len() - experiment.sensor_bead()) as f64 + 0.5;
     let mut group = Group::new("Expected of theory, without losses or a train of waves");
     let masses = striker(chain)?.0.mass_kg / chain.beads.first()?.mass_kg;
-    if !(ALIKE.recip()..=ALIKE).contains(&masses) {
+    if !(SIMILAR.recip()..=SIMILAR).contains(&masses) {
         let why = "not estimated: a striker much lighter or heavier than a bead makes more than one pulse or rebounds";
         group.text("incident time of flight", why);
         return Some(group);

@@ -211,8 +211,8 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
 }
 
 /// How far ratios reach to both sides of 1: of two oils at the speed where that
-/// is most, and of the oil that reaches farthest over its speeds. The number is the
-/// smaller of the two; negative where all lie on one side.
+/// is most, and of the oil with most of it over its speeds. The number is the smaller
+/// of the two; negative where all lie on one side.
 pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
     let oils: Vec<Vec<Ratio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
     let Some(first) = oils.first().filter(|_| oils.iter().all(|o| !o.is_empty())) else {
