@@ -47,6 +47,17 @@ def test_curves_and_ratios_are_those_of_the_sweeps(small):
     assert np.allclose(ratio, 1.0, rtol=1e-12)  # logarithm and back
 
 
+def test_ratios_are_not_drawn_where_the_dry_curve_has_no_speeds(small):
+    wet = hc.sweep(small, [0.2, 0.295, 0.5, 0.61, 1.0])
+    with pytest.warns(hc.ExperimentWarning, match="2 of 5 ratios of oil are not drawn"):
+        ratio = plot.ratios({"oil": wet}, hc.sweep(small, [0.3, 0.4, 0.5, 0.6])).lines[0].get_ydata()
+    assert np.isnan(ratio[[0, 4]]).all()
+    # The same chain: a chord of a curved line is off by some 1e-3.
+    assert np.allclose(ratio[1:4], 1.0, atol=2e-3)
+    with pytest.warns(hc.ExperimentWarning, match="5 of 5"):
+        plot.ratios({"oil": wet}, hc.sweep(small, [2.0]))
+
+
 def test_the_papers_figures_are_of_its_model():
     axes = plot.figure2()
     assert axes.shape == (4,) and all(ax.lines for ax in axes)

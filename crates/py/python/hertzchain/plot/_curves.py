@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from ..curves import Sweep
+from ..errors import ExperimentWarning
 from ..recording import Case
 from ..results import PowerLaw
 from ._style import MARKERS, colour_of, on_axes, styled, time_scale
@@ -108,6 +110,20 @@ def _log_axes(ax: Axes) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
+CONTINUED = np.log(1.02)
+"""How far a curve is continued beyond its ends, in ln(speed)."""
+
+
+def _continued(at: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A curve between its points and, along its last chords, a little beyond; infinite farther out."""
+    found = np.interp(at, x, y)
+    for end, inner, outside in ((0, 1, x[0] - at), (-1, -2, at - x[-1])):
+        slope = (y[end] - y[inner]) / (x[end] - x[inner]) if x.size > 1 else 0.0
+        found = np.where(outside > 0.0, y[end] + slope * (at - x[end]), found)
+        found = np.where(outside > CONTINUED, np.inf, found)
+    return found
+
+
 @styled
 def ratios(
     wet: Mapping[str, Curve], dry: Curve, end: str = "incident", markers: Mapping[str, str] | None = None, ax: Axes | None = None
@@ -119,8 +135,8 @@ def ratios(
     wet : mapping of str to Sweep or Case
         By name of the oil.
     dry : Sweep or Case
-        At least over the same speeds; between its own it is interpolated in
-        logarithms.
+        Over the same speeds: it is interpolated in logarithms, and continued by 2 % of a speed.
+        Ratios beyond are not drawn.
     end : {"incident", "reflected"}
         Whose times of flight.
     markers : mapping of str to str, optional
@@ -138,6 +154,11 @@ def ratios(
     KeyError
         A curve without such a column.
 
+    Warns
+    -----
+    ExperimentWarning
+        Ratios that are not drawn.
+
     References
     ----------
     The paper's Fig. 4: [Labbe2017].
@@ -150,7 +171,11 @@ def ratios(
     for at, (name, curve) in enumerate(wet.items()):
         columns = columns_of(curve)
         speeds = columns["speed_m_s"]
-        ratio = columns[column] / np.exp(np.interp(np.log(speeds), *known))
+        times = _continued(np.log(speeds), *known)
+        if beyond := int(np.isinf(times).sum()):
+            text = f"{beyond} of {speeds.size} ratios of {name} are not drawn: the dry curve has no times of flight at their speeds"
+            warnings.warn(text, ExperimentWarning, stacklevel=3)
+        ratio = columns[column] / np.exp(np.where(np.isinf(times), np.nan, times))
         marker = (markers or {}).get(name, MARKERS[at % 5])
         ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
