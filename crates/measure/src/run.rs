@@ -5,7 +5,7 @@ use crate::several::{Content, content};
 use crate::speeds::Speeds;
 use crate::{Example, Level, Refused, Shot, ShotList};
 use hertzchain_records::{Parts, ReadOptions, Record, read};
-use hertzchain_signal::Measuring;
+use hertzchain_signal::{Doubt, Measuring};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -115,6 +115,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
     let (of_files, refused): (Vec<PathBuf>, Vec<Refused>) = refused.into_iter().unzip();
     speeds.deal(&mut measurement, options, &of_files);
     measurement.refused.splice(0..0, refused);
+    measurement.note_spikes();
     if let Some(list) = &options.list {
         measurement.unmatched = list.unmatched(files, &measurement.shots);
     }
@@ -217,8 +218,8 @@ impl Measurement {
         if let Some(corner_hz) = told_high_pass_hz(record, options) {
             self.note(
                 &format!(
-                    "tells that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
-                     taken out; --high-pass takes another, 0 leaves it"
+                    "states that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
+                     corrected; --ac-coupling states another corner, 0 leaves the droop"
                 ),
                 &record.file,
             );
@@ -256,6 +257,30 @@ impl Measurement {
                 text: text.to_owned(),
                 files: vec![file.to_owned()],
             }),
+        }
+    }
+
+    /// How many samples were no part of the signal, and in which files.
+    fn note_spikes(&mut self) {
+        let of = |shot: &Shot| {
+            let counts = shot.doubts.iter().map(|doubt| match doubt {
+                Doubt::Spikes(samples) => *samples,
+                _ => 0,
+            });
+            counts.sum::<usize>()
+        };
+        let spiked = self.shots.iter().filter(|shot| of(shot) > 0);
+        let (shots, samples) = (
+            spiked.clone().count(),
+            spiked.clone().map(of).sum::<usize>(),
+        );
+        let files: Vec<PathBuf> = spiked.map(|shot| shot.file.clone()).collect();
+        let text = format!(
+            "{samples} samples of spikes in {shots} shots were replaced by what their neighbours \
+             say; the flags of these shots count them"
+        );
+        for file in files {
+            self.note(&text, &file);
         }
     }
 

@@ -40,6 +40,7 @@ mod power_law;
 mod reduce;
 mod running;
 mod saturation;
+mod spikes;
 mod zero_phase;
 
 pub use cutter::{Cutter, Segment, Trigger};
@@ -64,4 +65,5 @@ pub use reduce::{
     ratios_at_common, shared, summary,
 };
 pub use saturation::Rails;
+pub use spikes::without_spikes;
 pub use zero_phase::LowPass;

@@ -6,7 +6,7 @@ use crate::error::SignalError;
 use crate::find::conditioned_pulses;
 use crate::{
     Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, pick, undroop,
-    upright,
+    upright, without_spikes,
 };
 
 /// What is done to a shot's samples, and how pulses are picked.
@@ -43,6 +43,21 @@ pub fn measure(
 ) -> Result<Measured, SignalError> {
     SignalError::positive("sampling interval in s", interval_s)?;
     let finding = &measuring.finding;
+    let (one, other);
+    let (channels, spikes) = match channels {
+        Channels::Summed(samples) => {
+            one = without_spikes(samples);
+            (Channels::Summed(&one.0), one.1.len())
+        }
+        Channels::Separate { sensor, wall } => {
+            (one, other) = (without_spikes(sensor), without_spikes(wall));
+            let (sensor, wall) = (&one.0, &other.0);
+            (
+                Channels::Separate { sensor, wall },
+                one.1.len() + other.1.len(),
+            )
+        }
+    };
     let recorded = channels;
     let conditioned = |samples, polarity| measuring.conditioned(samples, interval_s, polarity);
     let (sensor, wall);
@@ -78,6 +93,9 @@ pub fn measure(
     let lost = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     if lost && found.returning.is_some() {
         found.doubt(vec![Doubt::NotPicked(Place::Returning)]);
+    }
+    if spikes > 0 {
+        found.doubt(vec![Doubt::Spikes(spikes)]);
     }
     Ok(Measured { found, flight })
 }

@@ -3,6 +3,7 @@
 
 mod clipping;
 mod common;
+mod crosstalk;
 mod cutting;
 mod droop;
 #[path = "common/dry.rs"]
@@ -19,4 +20,5 @@ mod rivals;
 mod shared;
 #[path = "common/source.rs"]
 mod source;
+mod spikes;
 mod zero_phase;

@@ -2,6 +2,7 @@
 
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Flight, Measuring, Polarity, SignalError, Upright, measure, upright,
+    without_spikes,
 };
 
 /// Samples are used from so many incident times of flight before the passing
@@ -23,8 +24,8 @@ const QUIET: usize = 32;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// Nobody tells how fast the striker was.
-    #[error("{0}: nobody tells the striker's speed")]
+    /// Neither the record nor the table of shots has the striker's speed.
+    #[error("{0}: no speed of the striker: add a line of this record to the table of --shots")]
     NoSpeed(String),
     /// Pulses that are not there.
     #[error("{source_name}: {error}")]
@@ -108,6 +109,7 @@ impl Pulses {
             height_v: flight.picks.passing.height,
         };
         for samples in volts {
+            let samples = &without_spikes(samples).0[..];
             let up = upright(samples, Polarity::default()).map_err(|_| no_noise())?;
             let sigma_v = sigma(&up, width).ok_or_else(no_noise)?;
             let window = samples.get(from..to.min(samples.len())).unwrap_or(&[]);

@@ -225,11 +225,16 @@ fn doubtful(
         let ratio = (back.at - wall.at) as f64 / incident;
         back.height > 0.9 * wall.height || !times_back(finding).contains(&ratio)
     });
-    let odd_time = finding.beads.is_some_and(|beads| {
+    let odd_time = is_odd_time(finding, incident, width);
+    first.at != passing.at || rival || odd_return || odd_time || is_no_wall(&wall, &passing)
+}
+
+/// Whether an incident time is not what the passing pulse's width lets expect of a known row.
+fn is_odd_time(finding: &Finding, incident: f64, width: f64) -> bool {
+    finding.beads.is_some_and(|beads| {
         let ratio = incident / expected(beads, width);
         !(0.5..2.0).contains(&ratio)
-    });
-    first.at != passing.at || rival || odd_return || odd_time || is_no_wall(&wall, &passing)
+    })
 }
 
 /// Reflected over incident times of flight. Both ways are as long, and what returns is weaker
@@ -243,15 +248,24 @@ fn times_back(finding: &Finding) -> std::ops::Range<f64> {
 }
 
 /// As [`summed`], with the wall in a channel of its own.
-pub(super) fn separate(sensor: &[Maximum], wall: &[Maximum], track: &Track<'_>) -> Chosen {
+///
+/// By crosstalk either channel may show the other's pulses at their own times: none of the sensor's
+/// pulses is looked for within half a width of the wall's.
+pub(super) fn separate(
+    sensor: &[Maximum],
+    wall: &[Maximum],
+    track: &Track<'_>,
+    finding: &Finding,
+) -> Chosen {
     let Some(wall) = largest(wall, 0.0, f64::INFINITY) else {
         return Chosen {
             passing: largest(sensor, 0.0, f64::INFINITY),
             ..Chosen::default()
         };
     };
-    let reached = wall.at as f64;
-    let Some(passing) = largest(sensor, 0.0, reached) else {
+    let (width, reached) = (track.width, wall.at as f64);
+    let before = reached - 0.5 * width;
+    let Some(passing) = largest(sensor, 0.0, before) else {
         return Chosen {
             wall: Some(wall),
             order_doubtful: true,
@@ -259,18 +273,21 @@ pub(super) fn separate(sensor: &[Maximum], wall: &[Maximum], track: &Track<'_>) 
         };
     };
     let incident = reached - passing.at as f64;
-    let early = (passing.at as f64) < track.first as f64 - track.width;
-    let late = passing.at as f64 > track.first as f64 + 2.0 * track.width;
+    let back = reached + (EARLIEST * incident).max(0.5 * width);
+    let latest = reached + 3.0 * incident;
+    let returning = largest(sensor, back, latest);
+    let early = (passing.at as f64) < track.first as f64 - width;
+    let late = passing.at as f64 > track.first as f64 + 2.0 * width;
+    let odd_return = returning.is_some_and(|found| {
+        let ratio = (found.at as f64 - reached) / incident;
+        found.height > passing.height || !times_back(finding).contains(&ratio)
+    });
     Chosen {
         passing: Some(passing),
         wall: Some(wall),
-        returning: largest(sensor, reached, reached + 3.0 * incident),
-        order_doubtful: early || late,
+        returning,
+        order_doubtful: early || late || odd_return || is_odd_time(finding, incident, width),
         lost: false,
-        windows: [
-            (0.0, reached),
-            (0.0, f64::INFINITY),
-            (reached, reached + 3.0 * incident),
-        ],
+        windows: [(0.0, before), (0.0, f64::INFINITY), (back, latest)],
     }
 }

@@ -59,6 +59,8 @@ pub enum Doubt {
     CoarseSteps(Place),
     /// Fewer than five samples lie across a pulse's half maximum.
     FewSamples(Place),
+    /// So many samples of spikes were replaced by what their neighbours say.
+    Spikes(usize),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
@@ -92,6 +94,8 @@ impl fmt::Display for Doubt {
             Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
             Self::CoarseSteps(place) => write!(f, "{place} pulse in coarse steps"),
             Self::FewSamples(place) => write!(f, "{place} pulse of few samples"),
+            Self::Spikes(1) => f.write_str("1 sample of a spike replaced"),
+            Self::Spikes(samples) => write!(f, "{samples} samples of spikes replaced"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
         }
     }

@@ -25,8 +25,8 @@ use track::Track;
 ///
 /// The rules are those of a computed shot: the wall's pulse is the largest
 /// maximum at the wall, the passing pulse the largest before it at the sensor,
-/// the returning one the largest at the sensor within three incident times
-/// after it. In a summed channel the wall's pulse is the largest after the
+/// the returning one the largest at the sensor from 0.6 to three incident times
+/// after it: before that comes what the wall's pulse leaves in the sensor's channel by crosstalk. In a summed channel the wall's pulse is the largest after the
 /// first pulse; the return is looked for from 0.6 incident times after it until
 /// the wall could be reached again. One shot a record: cut longer ones first.
 ///
@@ -109,14 +109,14 @@ fn separate(sensor: &[f64], wall: &[f64], finding: &Finding) -> Result<Looked, S
     let end = reached + 4 * reached.saturating_sub(began) + 3 * track.width as usize;
     let (sensor_smooth, mut sensor_maxima) = look(&track, end);
     let (wall_smooth, wall_maxima) = look(&wall, end);
-    let mut chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+    let mut chosen = choose::separate(&sensor_maxima, &wall_maxima, &track, finding);
     if significance::retain(
         &mut sensor_maxima,
         &track,
         &sensor_smooth,
         chosen.windows[2],
     ) {
-        chosen = choose::separate(&sensor_maxima, &wall_maxima, &track);
+        chosen = choose::separate(&sensor_maxima, &wall_maxima, &track, finding);
     }
     let sensor = View::new(&track, &sensor_smooth, &sensor_maxima);
     let wall = View::new(&wall, &wall_smooth, &wall_maxima);
