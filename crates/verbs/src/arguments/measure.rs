@@ -94,8 +94,11 @@ pub struct Picking {
     /// Low-pass without delay, forward and backward, at so many Hz
     #[arg(long, value_name = "RATE", value_parser = rate)]
     pub low_pass: Option<f64>,
-    /// Take out the droop of the amplifier's high-pass, whose corner is at so many Hz; 0 leaves it, also where a recording tells of one
+    /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
     #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
+    pub ac_coupling: Option<f64>,
+    /// The former name of --ac-coupling, rejected since it reads as a filter to be applied
+    #[arg(long, hide = true, value_parser = renamed)]
     pub high_pass: Option<f64>,
 }
 
@@ -176,6 +179,13 @@ pub fn rate(text: &str) -> Result<f64, String> {
     let rate = number.parse().ok().map(|number: f64| number * size);
     let rate = rate.filter(|rate| rate.is_normal() && *rate > 0.0);
     rate.ok_or_else(|| "expected a rate such as 1MHz, 500kS/s or 1e6".to_owned())
+}
+
+/// Rejects the former name of --ac-coupling.
+fn renamed(_: &str) -> Result<f64, String> {
+    Err("no filter is applied: --ac-coupling (ac_coupling in Python) is the corner of the AC coupling \
+         whose droop is corrected"
+        .to_owned())
 }
 
 /// A rate, or 0.

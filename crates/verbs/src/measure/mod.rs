@@ -84,7 +84,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
                 .to_owned(),
         ));
     }
-    let high_pass_hz = high_pass_hz(&arguments.picking, rig.as_ref());
+    let high_pass_hz = ac_coupling_hz(&arguments.picking, rig.as_ref());
     Ok(Options {
         keep_droop: high_pass_hz == Some(0.0),
         reading: ReadOptions {
@@ -142,10 +142,10 @@ pub fn list(file: &Path) -> Result<ShotList, Failure> {
     ShotList::parse(&text).map_err(|error| wrong(&error))
 }
 
-/// Corner of the amplifier's high-pass, 0 for none, if an option or the rig's file tells.
-fn high_pass_hz(picking: &Picking, rig: Option<&Experiment>) -> Option<f64> {
+/// Corner of the amplifier's high-pass in Hz, 0 for none, if an option or the rig's file has it.
+fn ac_coupling_hz(picking: &Picking, rig: Option<&Experiment>) -> Option<f64> {
     let of_rig = || Some(rig?.campaign().amplifier.high_pass_hz);
-    picking.high_pass.or_else(of_rig)
+    picking.ac_coupling.or_else(of_rig)
 }
 
 fn measuring(
