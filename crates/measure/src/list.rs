@@ -128,6 +128,12 @@ impl ShotList {
         Some((entry.speed_m_s?, entry.speed_error_m_s))
     }
 
+    /// The case of a file's shot, if the table has it.
+    #[must_use]
+    pub fn case(&self, file: &Path, shot: Option<u64>) -> Option<&str> {
+        self.find(file, shot)?.case.as_deref()
+    }
+
     /// What is said of a shot, by the first line that does.
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&Entry> {
         let lines = self.by_name.get(file.file_name()?)?;

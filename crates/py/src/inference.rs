@@ -67,8 +67,9 @@ fn found<'py>(
 
 /// Whether a file is a table of curves; what else can be read is a recording.
 #[pyfunction]
-pub fn is_table(path: PathBuf) -> PyResult<bool> {
-    Ok(hertzchain_verbs::inference::is_table(&path).map_err(Failed::from)?)
+pub fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<bool> {
+    let found = hertzchain_verbs::inference::is_table(&path, with_options_of_recordings);
+    Ok(found.map_err(Failed::from)?)
 }
 
 /// Contact parameters from whole pulses of recordings.

@@ -16,7 +16,7 @@ use hertzchain_verbs::inference;
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = match &arguments.data[..] {
-        [one] if inference::is_table(one)? => one,
+        [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
         _ => return pulses::run(arguments),
     };
     let data = inference::data(table, &arguments.measured)?;

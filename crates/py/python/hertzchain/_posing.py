@@ -45,12 +45,12 @@ def table(data: Any, name: str = "data") -> tuple[str, str]:
     raise OptionError(f"data of type {type(data).__name__}: expected a file, columns by name, a table, or what `measure` gives")
 
 
-def recordings(data: Any) -> list[str] | None:
-    """Paths of recordings; None if the data are a table."""
+def recordings(data: Any, described: bool = False) -> list[str] | None:
+    """Paths of recordings; None if the data are a table. Whether options of recordings are given decides where titles do not."""
     data = _only(data)
     if isinstance(data, (str, os.PathLike)):
         path = os.fspath(data)
-        return None if _native.is_table(path) else [path]
+        return None if _native.is_table(path, described) else [path]
     if isinstance(data, (list, tuple)):
         return [os.fspath(path) for path in data]
     return None

@@ -139,13 +139,14 @@ def fit(
     told += options.listed("free", free)
     told += [f"--against={model}={given}" for model, given in rivals.items()]
     told += kept(folder)
-    files = recordings(data)
+    told += options.words(shots=shots, rate=rate)
+    told += [f"--channel={name}" for name in ([channel] if isinstance(channel, (str, int)) else channel)]
+    files = recordings(data, shots is not None or rate is not None or channel != ())
     with options.progress(progress, None, "curve") as update:
         if files is None:
             name, text = table(data)
             return fitted(_native.fit((name, text), modelled(model), [*told, "--", name], update))
-        told += options.words(shots=shots, rate=rate, most_shots=most_shots)
-        told += [f"--channel={name}" for name in ([channel] if isinstance(channel, (str, int)) else channel)]
+        told += options.words(most_shots=most_shots)
         return fitted(_native.fit_pulses(modelled(model), [*told, "--", *files], update))
 
 

@@ -186,6 +186,14 @@ pub struct Recorded {
     pub most_shots: usize,
 }
 
+impl Recorded {
+    /// Whether an option says something of how files are to be read as recordings.
+    #[must_use]
+    pub fn describes_files(&self) -> bool {
+        self.shots.is_some() || self.rate.is_some() || !self.channel.is_empty()
+    }
+}
+
 /// Arguments of `design`.
 #[derive(Debug, Args)]
 pub struct Design {

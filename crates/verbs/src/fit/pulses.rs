@@ -100,8 +100,12 @@ fn records(
                     continue;
                 }
             };
-            let asked = arguments.measured.case.as_ref();
-            if asked.is_some_and(|case| record.case.as_ref().is_some_and(|own| own != case)) {
+            let asked = arguments.measured.case.as_deref();
+            let listed = told
+                .as_ref()
+                .and_then(|list| list.case(&record.file, record.shot));
+            let own = listed.or(record.case.as_deref());
+            if asked.is_some_and(|case| own.is_some_and(|own| own != case)) {
                 continue;
             }
             let speed = speed(&record, told.as_ref(), experiment, arguments);
@@ -125,7 +129,9 @@ fn speed(
     arguments: &Arguments,
 ) -> Option<Estimate> {
     let listed = told.and_then(|list| list.speed(&record.file, record.shot));
-    let (value, error) = listed.or(Some((record.speed_m_s?, record.speed_error_m_s)))?;
+    // A record without a speed of its own must not end the look at the table.
+    let recorded = || Some((record.speed_m_s?, record.speed_error_m_s));
+    let (value, error) = listed.or_else(recorded)?;
     let usual = experiment.campaign().photogate.error_m_s;
     Some(Estimate {
         value,
