@@ -1,5 +1,6 @@
-"""The three notebooks run from beginning to end, and their code has sound types."""
+"""The three notebooks run from beginning to end and show what they should, and their code has sound types."""
 
+import base64
 import json
 import subprocess
 import sys
@@ -17,10 +18,32 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 LONG = {"infer"}
 
 
+FIGURES = {"infer": 2, "measure": 2, "predict": 4}
+"""Figures that each notebook shows."""
+
+LAST = {
+    "measure": """
+assert {name: case["speed_m_s"].size for name, case in measured.cases.items()} == dict.fromkeys(("dry", "pump", "gear", "motor"), 4)
+assert not measured.lost and measured.verdict is None
+assert all((case["shots"] == 2).all() for case in measured.cases.values())
+assert all(len(ratio["incident"]) == 4 for ratio in measured.ratios)
+"""
+}
+"""What is asked of a notebook's names at its end: every speed and every shot that was recorded is measured."""
+
+
 @pytest.mark.parametrize("path", [pytest.param(path, marks=[pytest.mark.long] * (path.stem in LONG)) for path in NOTEBOOKS], ids=lambda path: path.stem)
 def test_a_notebook_runs(path):
     notebook = nbformat.read(path, as_version=4)
+    if path.stem in LAST:
+        notebook.cells.append(nbformat.v4.new_code_cell(LAST[path.stem]))
     NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    figures = [base64.b64decode(output.data["image/png"]) for output in outputs if "image/png" in output.get("data", {})]
+    assert len(figures) == FIGURES[path.stem]
+    # A figure of empty axes has less than ten kilobytes.
+    assert all(len(figure) > 10_000 for figure in figures), [len(figure) for figure in figures]
+    assert not [output.text for output in outputs if output.output_type == "stream" and output.name == "stderr"]
 
 
 def test_there_is_one_notebook_a_question():
