@@ -63,6 +63,7 @@ impl Measured {
         let noise = Noise {
             speed_m_s: 0.0005,
             time_s: 5e-6,
+            correlation: 0.0,
         };
         match self {
             Measured::Well => truth.measured(seed),

@@ -136,3 +136,27 @@ fn one_of_several_cases_must_be_chosen() {
     let pump = of(Some("pump")).unwrap();
     assert_eq!((pump.case.as_str(), pump.rows.len()), ("pump", 1));
 }
+
+#[test]
+fn the_correlation_is_that_of_the_times_that_are_read() {
+    let head = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,\
+                tof_reflected_s_error,tof_correlation";
+    let row = "0.5,1e-3,7e-4,1e-7,7.3e-4,1e-7,";
+    let read = |text: &str| Data::parse("a.csv", text, &Selection::default());
+    let plain = read(&format!("{head}\n{row}-0.4\n")).unwrap();
+    assert_eq!(plain.rows[0].correlation, Some(-0.4));
+    assert!(plain.lines_without_correlation().is_empty());
+    let finer = format!(
+        "{head},tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error,\
+         tof_reflected_at_mean_speed_s,tof_reflected_at_mean_speed_s_error,\
+         tof_at_mean_speed_correlation\n{row}0.9,7e-4,1e-7,7.3e-4,1e-7,-0.6\n"
+    );
+    assert_eq!(read(&finer).unwrap().rows[0].correlation, Some(-0.6));
+    let without = read(&format!("{head}\n{row}\n")).unwrap();
+    assert_eq!(without.rows[0].correlation, None);
+    assert_eq!(without.lines_without_correlation(), [2]);
+    for wrong in ["1", "-1.5", "nan"] {
+        let told = read(&format!("{head}\n{row}{wrong}\n")).unwrap_err();
+        assert!(told.to_string().contains("tof_correlation"), "{told}");
+    }
+}

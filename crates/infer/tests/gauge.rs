@@ -204,6 +204,7 @@ fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
     let noise = Noise {
         speed_m_s: 1e-5,
         time_s: 1e-8,
+        correlation: 0.0,
     };
     let wet = Truth::of(&pump, &speeds_between(0.09, 0.6, 7)).measured_with(noise, 5);
     let gauge = gauge(wet, 5);
@@ -232,6 +233,7 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
     let noise = Noise {
         speed_m_s: 1e-5,
         time_s: 1e-8,
+        correlation: 0.0,
     };
     let wet = Truth::of(&pump, &[0.0759, 0.0967, 0.1251]).measured_with(noise, 8);
     let gauge = gauge(wet, 8);
@@ -266,6 +268,7 @@ fn a_row_that_no_pair_gives_is_told_as_such() {
         let noise = Noise {
             speed_m_s: 1e-5,
             time_s: 1e-8,
+            correlation: 0.0,
         };
         let mut wet = truth.measured_with(noise, 9);
         let ratio = times * truth.curve[0][3].unwrap();

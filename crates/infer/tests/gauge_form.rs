@@ -67,6 +67,7 @@ fn said(gauge: &Gauge, form: &PowerForm) -> String {
 const KNOWN_BETTER: Noise = Noise {
     speed_m_s: 6.7e-5,
     time_s: 1.1e-7,
+    correlation: 0.0,
 };
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::Shot;
 use crate::alike::settled;
+use crate::correlation::{Pairs, correlation, of_ratios, shared_s2};
 use crate::lost::{At, Lost, lost};
 use hertzchain_signal::{
     Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
@@ -58,6 +59,10 @@ pub struct SpeedRow {
     /// taken there by its own measured speed, with all errors: what power laws and ratios are
     /// made of.
     pub at_mean_speed_s: [Option<Estimate>; 2],
+    /// Correlation of the standard errors of both plain means; `None` without both.
+    pub correlation: Option<f64>,
+    /// Correlation of the errors of both times at the mean speed: they share the wall's pick.
+    pub correlation_at_mean_speed: Option<f64>,
     /// Wall's peak over passing peak.
     pub wall_over_passing: Summary,
     /// Returning peak over passing peak.
@@ -95,6 +100,8 @@ pub struct WetOverDry {
     pub incident: Vec<Ratio>,
     /// Of reflected times.
     pub reflected: Vec<Ratio>,
+    /// Correlation of each incident ratio's error with that of the reflected one at its speed.
+    pub correlations: Vec<Option<f64>>,
 }
 
 /// Everything that shots with speeds tell.
@@ -273,17 +280,22 @@ fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<Speed
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
     let speed_m_s = mean_speed(&speeds)?;
     let speed_error_shots = if are_known(&speeds) { 0 } else { speeds.len() };
-    let moved = |time: usize| at_speed(&counted, speed_m_s, time);
+    let moved = [0, 1].map(|time| at_speed(&counted, speed_m_s, time));
+    let incident_s = of(&|flight| Some(flight.incident_s))?;
+    let reflected_s = of(&|flight| flight.reflected_s);
+    let errors = |back: Summary| [incident_s.error, back.error];
     Some(SpeedRow {
         speed_m_s,
         speed_error_shots,
         shared_s: [shared_s(&counted, 0), shared_s(&counted, 1)],
-        at_mean_speed_s: [moved(0), moved(1)],
+        at_mean_speed_s: moved.map(|of| of.map(AtSpeed::estimate)),
+        correlation: reflected_s.and_then(|back| both_times(&counted, None).of_means(errors(back))),
+        correlation_at_mean_speed: correlation_at_speed(&counted, speed_m_s, moved),
         shots: (counted.len(), untimed + group.len() - counted.len()),
         returns_undecided,
         returns_missing: counted.len() - returns - returns_undecided,
-        incident_s: of(&|flight| Some(flight.incident_s))?,
-        reflected_s: of(&|flight| flight.reflected_s),
+        incident_s,
+        reflected_s,
         wall_over_passing: of(&|flight| Some(flight.wall_over_passing))?,
         returning_over_passing: of(&|flight| flight.returning_over_passing),
         widths_s: [
@@ -342,13 +354,42 @@ fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
     shared(&own)
 }
 
+/// Mean of times that are taken to one speed, and the parts of its error.
+#[derive(Clone, Copy)]
+struct AtSpeed {
+    mean_s: f64,
+    /// Variance in s² by the errors of picking, as far as shots do not share them.
+    picking_s2: f64,
+    /// What scatters besides, less what errors of measured speeds account for.
+    excess_s2: f64,
+    /// What all shots share, in s.
+    shared_s: f64,
+    /// What the mean speed's error moves it by, in s.
+    of_speed_s: f64,
+}
+
+impl AtSpeed {
+    fn estimate(self) -> Estimate {
+        let alone = (self.picking_s2 + self.excess_s2).sqrt();
+        Estimate {
+            value: self.mean_s,
+            sigma: alone.hypot(self.shared_s),
+        }
+    }
+}
+
+/// What a time is multiplied by to be that at another speed.
+fn to_speed(shot: &Timed<'_>, speed_m_s: Estimate) -> f64 {
+    (speed_m_s.value / shot.speed.value).powf(EXPONENT)
+}
+
 /// Mean of times that are taken to one speed, with the error of what scatters besides
 /// measured speeds: their errors are the mean speed's, and count there. At least
 /// that of picking; and what all shots share on top.
-fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Estimate> {
+fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtSpeed> {
     let moved = |shot: &Timed<'_>| {
         let of = [Some(shot.flight.incident_s), shot.flight.reflected_s][time]?;
-        let factor = (speed_m_s.value / shot.speed.value).powf(EXPONENT);
+        let factor = to_speed(shot, speed_m_s);
         Some(Estimate {
             value: factor * of.value,
             sigma: factor * alone(of.sigma, shot.flight.moved()[time]),
@@ -357,13 +398,48 @@ fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<Est
     let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();
     let summary = summary(&moved)?;
     let squares: f64 = moved.iter().map(|one| one.sigma.powi(2)).sum();
-    let of_picking = squares / (summary.count as f64).powi(2);
-    let of_speed = EXPONENT * summary.mean * speed_m_s.sigma / speed_m_s.value;
-    let besides = summary.error.powi(2) - of_speed.powi(2);
-    Some(Estimate {
-        value: summary.mean,
-        sigma: besides.max(of_picking).sqrt().hypot(shared_s(shots, time)),
+    let picking_s2 = squares / (summary.count as f64).powi(2);
+    let of_speed_s = EXPONENT * summary.mean * speed_m_s.sigma / speed_m_s.value;
+    let besides = summary.error.powi(2) - of_speed_s.powi(2);
+    Some(AtSpeed {
+        mean_s: summary.mean,
+        picking_s2,
+        excess_s2: (besides - picking_s2).max(0.0),
+        shared_s: shared_s(shots, time),
+        of_speed_s,
     })
+}
+
+/// Shots that have both times: as measured, or taken to one speed.
+fn both_times(shots: &[Timed<'_>], speed_m_s: Option<Estimate>) -> Pairs {
+    let pair = |shot: &Timed<'_>| {
+        let factor = speed_m_s.map_or(1.0, |speed_m_s| to_speed(shot, speed_m_s));
+        let times = [shot.flight.incident_s, shot.flight.reflected_s?];
+        let covariance = match speed_m_s {
+            Some(_) => shot.flight.covariance_alone_s2(),
+            None => shot.flight.covariance_s2,
+        };
+        let times = times.map(|time| factor * time.value);
+        Some((times, factor.powi(2) * covariance))
+    };
+    let both: Vec<_> = shots.iter().filter_map(pair).collect();
+    Pairs::new(&both, shots.len())
+}
+
+/// Correlation of the errors of both times at the mean speed, part by part.
+fn correlation_at_speed(
+    shots: &[Timed<'_>],
+    speed_m_s: Estimate,
+    moved: [Option<AtSpeed>; 2],
+) -> Option<f64> {
+    let [forth, back] = [moved[0]?, moved[1]?];
+    let pairs = both_times(shots, Some(speed_m_s));
+    let of_speed = forth.of_speed_s * back.of_speed_s;
+    let excess = pairs.excess(of_speed, [forth.excess_s2, back.excess_s2]);
+    let returned = shots.iter().map(|shot| shot.flight);
+    let returned: Vec<&Flight> = returned.filter(|f| f.reflected_s.is_some()).collect();
+    let covariance = pairs.picking + excess + shared_s2(&returned);
+    correlation(covariance, [forth, back].map(|of| of.estimate().sigma))
 }
 
 fn points(rows: &[SpeedRow], time: usize) -> Vec<Point> {
@@ -405,10 +481,15 @@ fn ratios(cases: &[Case], grouping: &Grouping) -> Vec<WetOverDry> {
         ratios_at_common(&upper, &lower, grouping.gap_m_s, EXPONENT)
     };
     let wet = cases.iter().filter(|case| case.name != grouping.reference);
-    wet.map(|case| WetOverDry {
-        case: case.name.clone(),
-        incident: over(case, 0),
-        reflected: over(case, 1),
+    wet.map(|case| {
+        let (incident, reflected) = (over(case, 0), over(case, 1));
+        let rows = (&case.rows[..], &dry.rows[..]);
+        WetOverDry {
+            case: case.name.clone(),
+            correlations: of_ratios(rows, (&incident, &reflected), EXPONENT),
+            incident,
+            reflected,
+        }
     })
     .collect()
 }

@@ -7,6 +7,7 @@
 //! sits are plain numbers in [`hertzchain_signal::Finding`].
 
 mod alike;
+mod correlation;
 mod curves;
 mod example;
 mod level;

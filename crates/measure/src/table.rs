@@ -1,7 +1,7 @@
 //! Results as CSV, in SI.
 
 use crate::{Case, Curves, Lost, Shot, SpeedRow};
-use hertzchain_signal::{Estimate, Picked, PowerLaw, Ratio, Summary};
+use hertzchain_signal::{Estimate, Flight, Picked, PowerLaw, Ratio, Summary};
 use std::io::{self, Write};
 use std::iter::once;
 
@@ -46,7 +46,7 @@ pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
 
 fn shot_lines(shots: &[Shot]) -> impl Iterator<Item = String> {
     let titles = "file,shot,case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s,\
-                    tof_reflected_s,tof_reflected_sigma_s,wall_over_passing,\
+                    tof_reflected_s,tof_reflected_sigma_s,tof_correlation,wall_over_passing,\
                     wall_over_passing_sigma,returning_over_passing,returning_over_passing_sigma,\
                     passing_peak_v,wall_peak_v,returning_peak_v,\
                     passing_width_s,wall_width_s,returning_width_s,flags\n"
@@ -73,6 +73,7 @@ fn shot_line(shot: &Shot) -> String {
         .chain(both(shot.speed_m_s))
         .chain(both(flight.map(|flight| flight.incident_s)))
         .chain(both(flight.and_then(|flight| flight.reflected_s)))
+        .chain([cell(flight.and_then(Flight::correlation))])
         .chain(both(flight.map(|flight| flight.wall_over_passing)))
         .chain(both(
             flight.and_then(|flight| flight.returning_over_passing),
@@ -100,7 +101,8 @@ pub fn speeds_csv(curves: &Curves) -> String {
     for time in ["tof_incident", "tof_reflected"] {
         text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
     }
-    text += ",speed_error_shots,returns_undecided,returns_missing\n";
+    text += ",speed_error_shots,returns_undecided,returns_missing";
+    text += ",tof_correlation,tof_at_mean_speed_correlation\n";
     for case in &curves.cases {
         text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
     }
@@ -149,6 +151,8 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
             row.speed_error_shots.to_string(),
             row.returns_undecided.to_string(),
             row.returns_missing.to_string(),
+            cell(row.correlation),
+            cell(row.correlation_at_mean_speed),
         ]);
     line(cells)
 }
@@ -198,15 +202,21 @@ fn law_line(case: &Case, time: &str, law: &PowerLaw) -> String {
     line(cells)
 }
 
-/// One line a ratio.
+/// One line a ratio; last the correlation of its error with that of the other time's ratio.
 #[must_use]
 pub fn ratios_csv(curves: &Curves) -> String {
-    let mut text = "case,time,speed_m_s,ratio,ratio_error\n".to_owned();
+    let mut text = "case,time,speed_m_s,ratio,ratio_error,correlation\n".to_owned();
     for wet in &curves.ratios {
+        let correlation = |ratio: &Ratio| {
+            let speeds = wet.incident.iter().map(|ratio| ratio.speed);
+            let mut both = speeds.zip(&wet.correlations);
+            both.find_map(|(speed, of)| of.filter(|_| speed == ratio.speed))
+        };
         for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
             let one = |ratio: &Ratio| {
                 let name = [quoted(&wet.case), time.to_owned(), cell(Some(ratio.speed))];
-                line(name.into_iter().chain(both(Some(ratio.ratio))))
+                let last = [cell(correlation(ratio))];
+                line(name.into_iter().chain(both(Some(ratio.ratio))).chain(last))
             };
             text.extend(ratios.iter().map(one));
         }

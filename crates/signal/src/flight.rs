@@ -32,6 +32,26 @@ pub struct Flight {
 }
 
 impl Flight {
+    /// Correlation of the errors of both times of flight; `None` without a return, or where an
+    /// error is 0.
+    #[must_use]
+    pub fn correlation(&self) -> Option<f64> {
+        let product = self.incident_s.sigma * self.reflected_s?.sigma;
+        (product > 0.0).then(|| self.covariance_s2 / product)
+    }
+
+    /// The part of the covariance in s² that repeated shots do not share: without what moved the
+    /// wall's pulse and the sampling interval in all of them.
+    #[must_use]
+    pub fn covariance_alone_s2(&self) -> f64 {
+        let Some(reflected_s) = self.reflected_s else {
+            return 0.0;
+        };
+        let of_interval = self.interval_error.powi(2) * self.incident_s.value * reflected_s.value;
+        let Moved { under_s, shape_s } = self.picks.wall.moved;
+        self.covariance_s2 - of_interval + under_s.powi(2) + shape_s.powi(2)
+    }
+
     /// The same with a sampling interval whose relative standard error is this: times of
     /// flight are wrong by as much, all of one recording alike.
     #[must_use]

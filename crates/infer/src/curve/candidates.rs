@@ -61,6 +61,8 @@ pub struct ExpectedErrors {
     pub time_s: f64,
     /// Of ratios of peaks.
     pub ratio: f64,
+    /// Correlation of the errors of both times at one speed.
+    pub correlation: f64,
 }
 
 /// Where a file has the push on bead 1.
@@ -84,10 +86,16 @@ impl ExpectedErrors {
             median(values.collect())
         };
         let speeds = data.rows.iter().map(|row| row.speed_m_s.sigma).collect();
+        let both = data
+            .rows
+            .iter()
+            .filter(|row| row.values[..2].iter().all(Option::is_some));
+        let correlations = both.filter_map(|row| row.correlation).collect();
         Self {
             speed_m_s: median(speeds).unwrap_or(0.0),
             time_s: of(true).unwrap_or(f64::NAN),
             ratio: of(false).unwrap_or(USUAL_RATIO_ERROR),
+            correlation: median(correlations).unwrap_or(0.0),
         }
     }
 }
@@ -326,6 +334,7 @@ pub(super) fn expected(
                 sigma: errors.speed_m_s,
             },
             values: Observable::ALL.map(value),
+            correlation: Some(errors.correlation),
             freedom: Freedom::KNOWN,
         }
     };

@@ -227,7 +227,7 @@ impl CurveProblem {
         let stencil = &self.stencils[row];
         let own = stencil.own();
         let mut misses = Vec::new();
-        let mut errors = Errors::of_speed(measured.freedom.speed);
+        let mut errors = Errors::new(measured.freedom.speed, measured.correlation());
         for of in measured.observables() {
             let Some(value) = measured.value(of) else {
                 continue;

@@ -12,16 +12,20 @@ pub(super) struct Errors {
     /// Degrees of freedom of each, then of the speed's.
     freedom: Vec<f64>,
     of_speed: f64,
+    /// Correlation of the errors of the first two.
+    correlation: f64,
 }
 
 impl Errors {
-    /// None yet, of a speed whose error has these degrees of freedom.
-    pub(super) fn of_speed(freedom: f64) -> Self {
+    /// None yet, of a speed whose error has these degrees of freedom; errors of the first two
+    /// numbers have this correlation.
+    pub(super) fn new(of_speed: f64, correlation: f64) -> Self {
         Self {
             sigmas: Vec::new(),
             moved: Vec::new(),
             freedom: Vec::new(),
-            of_speed: freedom,
+            of_speed,
+            correlation,
         }
     }
 
@@ -31,17 +35,49 @@ impl Errors {
         self.moved.push(moved);
     }
 
+    /// Covariance of two of the numbers by their own errors: B.
+    fn own(&self, i: usize, j: usize) -> f64 {
+        let correlation = match (i, j) {
+            _ if i == j => 1.0,
+            (0, 1) | (1, 0) => self.correlation,
+            _ => 0.0,
+        };
+        correlation * self.sigmas[i] * self.sigmas[j]
+    }
+
+    /// B⁻¹ s: what the speed moves, weighed by the numbers' own errors.
+    fn weighed(&self) -> Vec<f64> {
+        let in_sigmas: Vec<f64> = self
+            .moved
+            .iter()
+            .zip(&self.sigmas)
+            .map(|(moved, sigma)| moved / sigma)
+            .collect();
+        let weigh = |(at, own): (usize, &f64)| {
+            let known = in_sigmas.get(1 - at.min(1)).filter(|_| at < 2);
+            let beside = known.map_or(*own, |other| {
+                (own - self.correlation * other) / (1.0 - self.correlation.powi(2))
+            });
+            beside / self.sigmas[at]
+        };
+        in_sigmas.iter().enumerate().map(weigh).collect()
+    }
+
     /// Each by what its own uncertainty costs, in its share of the row's covariance
-    /// C = diag(σᵢ²) + s sᵀ: sᵀ C⁻¹ s = q/(1 + q) of the speed and σᵢ² (C⁻¹)ᵢᵢ = 1 − (sᵢ/σᵢ)²/(1 + q) of the
-    /// others, q = Σ (sᵢ/σᵢ)²; they sum to the number of rows.
+    /// C = B + s sᵀ, B of the numbers' own errors: sᵀ C⁻¹ s = q/(1 + q) of the speed and
+    /// (C⁻¹ B)ᵢᵢ = 1 − sᵢ (B⁻¹ s)ᵢ/(1 + q) of the others, q = sᵀ B⁻¹ s; they sum to the number of rows.
     pub(super) fn widened(mut self) -> Self {
-        let pairs = self.sigmas.iter().zip(&self.moved);
-        let parts: Vec<f64> = pairs
-            .map(|(sigma, moved)| (moved / sigma).powi(2))
+        let parts: Vec<f64> = self
+            .weighed()
+            .iter()
+            .zip(&self.moved)
+            .map(|(w, s)| w * s)
             .collect();
         let q: f64 = parts.iter().sum();
         for (at, part) in parts.iter().enumerate() {
-            self.sigmas[at] *= widening(1.0 - part / (1.0 + q), self.freedom[at]);
+            // Correlated numbers may share less than nothing with the speed.
+            let share = (1.0 - part / (1.0 + q)).clamp(0.0, 1.0);
+            self.sigmas[at] *= widening(share, self.freedom[at]);
         }
         let of_speed = widening(q / (1.0 + q), self.of_speed);
         self.moved.iter_mut().for_each(|moved| *moved *= of_speed);
@@ -52,22 +88,21 @@ impl Errors {
 /// Lower triangle of a row's covariance.
 type Triangle = [[f64; 4]; 4];
 
-/// Standardises what one speed's measurements miss: with their own standard
-/// errors σᵢ and `sᵢ`, what an error of the speed of one σ moves each by, their
-/// covariance is C = diag(σᵢ²) + s sᵀ. Given C = L Lᵀ the result is L⁻¹ r with
+/// Standardises what one speed's measurements miss: with B the covariance of their own errors
+/// and `sᵢ`, what an error of the speed of one σ moves each by, their
+/// covariance is C = B + s sᵀ. Given C = L Lᵀ the result is L⁻¹ r with
 /// ln Lᵢᵢ; the sum of its squares is rᵀ C⁻¹ r.
 ///
 /// The first is standardised by itself, each further one by what it tells beside
 /// those before it.
 pub(super) fn whiten(residuals: &[f64], errors: &Errors) -> Vec<(f64, f64)> {
-    let (sigmas, moved) = (&errors.sigmas, &errors.moved);
+    let moved = &errors.moved;
     let mut triangle: Triangle = [[0.0; 4]; 4];
     let mut white: Vec<(f64, f64)> = Vec::with_capacity(residuals.len());
     for i in 0..residuals.len().min(4) {
         for j in 0..=i {
-            let own = if i == j { sigmas[i] * sigmas[i] } else { 0.0 };
             let sum: f64 = (0..j).map(|k| triangle[i][k] * triangle[j][k]).sum();
-            let rest = own + moved[i] * moved[j] - sum;
+            let rest = errors.own(i, j) + moved[i] * moved[j] - sum;
             triangle[i][j] = match i == j {
                 true => rest.sqrt(),
                 false => rest / triangle[j][j],
@@ -84,7 +119,7 @@ mod tests {
     use super::*;
 
     fn errors(sigmas: &[f64], moved: &[f64], freedom: f64) -> Errors {
-        let mut errors = Errors::of_speed(freedom);
+        let mut errors = Errors::new(freedom, 0.0);
         for (sigma, moved) in sigmas.iter().zip(moved) {
             errors.push(*sigma, freedom, *moved);
         }
@@ -112,6 +147,26 @@ mod tests {
         // Rounding of some ten operations.
         assert!((squares - exact).abs() < 1e-14, "{squares} {exact}");
         assert!((2.0 * ln_sigmas - determinant.ln()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn errors_that_are_correlated_among_themselves_enter_the_inverse_covariance() {
+        let (sigma, moved, correlation) = ([0.5, 0.3], [0.8, -0.6], -0.6);
+        let mut errors = errors(&sigma, &moved, 19.0);
+        errors.correlation = correlation;
+        let r = [0.7, -0.4];
+        let [a, b, c]: [f64; 3] = [0.25 + 0.64, -0.48 - 0.6 * 0.15, 0.09 + 0.36];
+        let determinant = a * c - b * b;
+        let exact = (r[0] * r[0] * c - 2.0 * r[0] * r[1] * b + r[1] * r[1] * a) / determinant;
+        let white = whiten(&r, &errors);
+        let squares: f64 = white.iter().map(|(w, _)| w * w).sum();
+        // Rounding of some ten operations.
+        assert!((squares - exact).abs() < 1e-14, "{squares} {exact}");
+        // s C⁻¹ s of the speed, the rest of two is the numbers' own.
+        let of_speed = (0.64 * c - 2.0 * 0.8 * -0.6 * b + 0.36 * a) / determinant;
+        let shares = errors.weighed();
+        let q: f64 = shares.iter().zip(&moved).map(|(w, s)| w * s).sum();
+        assert!((q / (1.0 + q) - of_speed).abs() < 1e-14, "{q} {of_speed}");
     }
 
     #[test]

@@ -62,6 +62,14 @@ pub(super) fn sigma(of: Observable, measured: Estimate) -> Option<String> {
     })
 }
 
+/// What is wrong with a correlation.
+pub(super) fn correlation(value: f64) -> Option<String> {
+    let sound = value.abs() < 1.0;
+    (!sound).then(|| {
+        format!("{value} is no correlation of two errors; expected a number between -1 and 1")
+    })
+}
+
 /// What is wrong with the standard error of a speed: none is allowed.
 pub(super) fn speed_sigma(measured: Estimate) -> Option<String> {
     let Estimate { value, sigma } = measured;

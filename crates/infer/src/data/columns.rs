@@ -29,6 +29,8 @@ pub(super) struct Columns {
     pub(super) shots: Option<Column>,
     pub(super) speed: Measured,
     pub(super) observables: [Option<Measured>; 4],
+    /// Correlation of the errors of both times of flight.
+    pub(super) correlation: Option<Column>,
 }
 
 impl Columns {
@@ -62,7 +64,14 @@ impl Columns {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
             return Err(missing(&names.join("` or `"), instead(titles, wanted)));
         }
+        // It is that of the times which are read: a table's finer ones, or its plain means.
+        let finer = observables[0].as_ref().map(|of| of.value.title.as_str());
+        let correlation = match finer == Observable::Incident.finer_column() {
+            true => "tof_at_mean_speed_correlation",
+            false => "tof_correlation",
+        };
         Ok(Self {
+            correlation: find(titles, &[correlation]),
             case: find(titles, &["case"]),
             shots: find(titles, &["shots"]),
             speed,

@@ -88,6 +88,9 @@ pub struct DataRow {
     pub speed_m_s: Estimate,
     /// Measured values in the order of [`Observable::ALL`].
     pub values: [Option<Estimate>; 4],
+    /// Correlation of the errors of incident and reflected time, which share the wall's pick;
+    /// without it they are taken as independent.
+    pub correlation: Option<f64>,
     /// How well all these standard errors are known.
     pub freedom: Freedom,
 }
@@ -97,6 +100,14 @@ impl DataRow {
     #[must_use]
     pub fn value(&self, of: Observable) -> Option<Estimate> {
         self.values[of.index()]
+    }
+
+    /// Correlation of the errors of its first two values: of both times, where both are there.
+    pub(crate) fn correlation(&self) -> f64 {
+        match self.values {
+            [Some(_), Some(_), ..] => self.correlation.unwrap_or(0.0),
+            _ => 0.0,
+        }
     }
 
     /// Degrees of freedom of the scatter that an observable's standard error comes from.
@@ -146,6 +157,17 @@ impl Data {
     pub fn lines_of_exact_speeds(&self) -> Vec<u64> {
         let exact = self.rows.iter().filter(|row| row.speed_m_s.sigma == 0.0);
         let mut lines: Vec<u64> = exact.map(|row| row.line).collect();
+        lines.sort_unstable();
+        lines
+    }
+
+    /// Lines with both times of flight whose errors have no stated correlation.
+    #[must_use]
+    pub fn lines_without_correlation(&self) -> Vec<u64> {
+        let both = |row: &&DataRow| row.values[..2].iter().all(Option::is_some);
+        let rows = self.rows.iter().filter(both);
+        let unknown = rows.filter(|row| row.correlation.is_none());
+        let mut lines: Vec<u64> = unknown.map(|row| row.line).collect();
         lines.sort_unstable();
         lines
     }

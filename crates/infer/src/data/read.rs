@@ -207,6 +207,7 @@ impl Reader<'_> {
             line,
             speed_m_s,
             values,
+            correlation: self.correlation(record, line)?,
             freedom,
         };
         Ok(values.iter().any(Option::is_some).then_some(row))
@@ -264,6 +265,16 @@ impl Reader<'_> {
         let estimate = Estimate { value, sigma };
         self.sound(check::sigma(of, estimate), line, place)?;
         Ok(Some(estimate))
+    }
+
+    /// Correlation of the errors of both times, where the table has one.
+    fn correlation(&self, record: &StringRecord, line: u64) -> Result<Option<f64>, DataError> {
+        let Some(column) = &self.columns.correlation else {
+            return Ok(None);
+        };
+        let value = self.number(record, line, column)?;
+        self.sound(value.and_then(check::correlation), line, column)?;
+        Ok(value)
     }
 
     /// Degrees of freedom of the scatter from which a standard error comes; infinite if

@@ -50,6 +50,8 @@ pub struct Noise {
     pub speed_m_s: f64,
     /// Of each time of flight in s.
     pub time_s: f64,
+    /// Correlation of both times' errors: −1/2 where three picks are as good.
+    pub correlation: f64,
 }
 
 impl Noise {
@@ -58,6 +60,7 @@ impl Noise {
         Self {
             speed_m_s: SPEED_M_S / SHOTS.sqrt(),
             time_s: TIME_S / SHOTS.sqrt(),
+            correlation: 0.0,
         }
     }
 }
@@ -189,9 +192,12 @@ impl Truth {
                 let exact = self.curve[at][of as usize].unwrap();
                 exact * (self.slopes[at][of as usize] * moved).exp()
             };
+            let (first, second) = (normal(), normal());
+            let rest = (1.0 - noise.correlation.powi(2)).sqrt();
+            let errors = [first, noise.correlation * first + rest * second];
             let times = [Observable::Incident, Observable::Reflected].map(|of| {
                 Some(Estimate {
-                    value: shifted(of) + time_error * normal(),
+                    value: shifted(of) + time_error * errors[of as usize],
                     sigma: time_error,
                 })
             });
@@ -208,6 +214,7 @@ impl Truth {
                     sigma: speed_error,
                 },
                 values: [times[0], times[1], None, peaks],
+                correlation: Some(noise.correlation),
                 freedom: Freedom::KNOWN,
             }
         };

@@ -150,7 +150,8 @@ class Case:
     name : str
         Name of the case, such as ``"dry"``.
     columns : dict of str to ndarray, shape (speeds,)
-        ``speed_m_s``, ``tof_incident_s`` … with ``*_error`` for standard errors.
+        ``speed_m_s``, ``tof_incident_s`` … with ``*_error`` for standard errors, and
+        ``tof_correlation`` of those of both times, which share the wall's pick.
     power_law_incident, power_law_reflected : PowerLaw or None
         Weighted fits.
 
@@ -308,7 +309,7 @@ def measure(
     polarity: Literal["positive", "negative"] | None = None,
     wall_polarity: Literal["positive", "negative"] | None = None,
     low_pass: str | float | None = None,
-    high_pass: str | float | None = None,
+    ac_coupling: str | float | None = None,
     rig: Path_ | None = None,
     shots: Path_ | None = None,
     speed_error: float | None = None,
@@ -317,6 +318,7 @@ def measure(
     keep_dubious: bool = False,
     threads: int | None = None,
     progress: object = None,
+    high_pass: str | float | None = None,
 ) -> Measured:
     """Measures times of flight on recordings of any rig, with errors and curves.
 
@@ -340,8 +342,13 @@ def measure(
         Channel, column or array by name or number from 1; two: the sensor bead's, the wall's.
     method : {"local", "onset", "correlation", "shape"}
         How pulses are timed.
-    low_pass, high_pass : str or float, optional
-        Corners of filters in Hz.
+    low_pass : str or float, optional
+        Corner in Hz of a low-pass to apply, without delay.
+    ac_coupling : str or float, optional
+        Corner in Hz of the AC coupling (high-pass) that the signal went through: its droop is
+        corrected. 0 leaves it.
+    high_pass : str or float, optional
+        The former name of ``ac_coupling``: rejected.
     level : float, optional
         In V: where shots of a long recording begin.
     trust_rate, time_unit, shot_samples, whole, rows, onset, beads, sensor, polarity, \
@@ -374,7 +381,7 @@ wall_polarity, reference, keep_dubious
     told = options.words(
         rate=rate, trust_rate=trust_rate, time_unit=time_unit, shot_samples=shot_samples, level=level, whole=whole,
         rows=rows, method=method, onset=onset, beads=beads, sensor=sensor, polarity=polarity,
-        wall_polarity=wall_polarity, low_pass=low_pass, high_pass=high_pass, rig=rig, shots=shots,
+        wall_polarity=wall_polarity, low_pass=low_pass, ac_coupling=ac_coupling, high_pass=high_pass, rig=rig, shots=shots,
         speed_error=speed_error, speed_gap=speed_gap, reference=reference, keep_dubious=keep_dubious,
     )  # fmt: skip
     told += [f"--channel={name}" for name in channels]
@@ -447,6 +454,7 @@ def _case(raw: Mapping[str, Any]) -> Case:
             found = row[name] or {}
             put(name, found.get("mean"))
             put(f"{name}_error", found.get("error"))
+        put("tof_correlation", row["tof_correlation"])
     laws = (raw["power_law_incident"], raw["power_law_reflected"])
     made = {name: np.array(values, dtype=float) for name, values in columns.items()}
     return Case(raw["case"], made, *(PowerLaw.of(law) for law in laws))

@@ -43,9 +43,13 @@ pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
     data_of(file, measured, measured.case.clone())
 }
 
-/// Whether a file is a table of curves: text whose first line names a column of
-/// speeds. What else can be read is a recording.
-pub fn is_table(file: &Path) -> Result<bool, Failure> {
+/// Whether a file is a table of curves: text whose first line, comments aside, names a column of
+/// speeds. What else can be read is a recording, as is text with any other beginning where options
+/// of recordings are given: an oscilloscope's preamble.
+///
+/// # Errors
+/// A file that can't be read.
+pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, Failure> {
     let unread = |error: &dyn std::fmt::Display| {
         Failure::User(format!("{} can't be read: {error}", file.display()))
     };
@@ -58,12 +62,15 @@ pub fn is_table(file: &Path) -> Result<bool, Failure> {
     probe.map_err(|error| unread(&error))?;
     let binary = begin.contains(&0) || std::str::from_utf8(&begin).is_err();
     let text = String::from_utf8_lossy(&begin);
-    let first = text.lines().next().unwrap_or_default();
+    let mut lines = text.lines().map(str::trim);
+    let title = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
+    let first = title.unwrap_or_default();
     let numbers = first
         .split([',', ';', '\t'])
         .all(|cell| cell.trim().parse::<f64>().is_ok());
     let times = first.to_ascii_lowercase().contains("time");
-    Ok(!binary && !numbers && (first.contains(SPEEDS) || !times))
+    let record = times || with_options_of_recordings;
+    Ok(!binary && !numbers && (first.contains(SPEEDS) || !record))
 }
 
 /// Bytes that tell a table from a recording.
@@ -116,6 +123,7 @@ pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
     let all = [
         exact_speeds(data, measured),
         few_shots(data),
+        uncorrelated(data),
         not_there(data, measured),
     ];
     let all: Vec<String> = all.into_iter().flatten().collect();
@@ -153,6 +161,16 @@ fn few_shots(data: &Data) -> Option<String> {
         "{}, {which}: errors from the scatter of fewer than {FEWEST_SHOTS} shots are themselves too uncertain to \
          correct for, and are taken as known: intervals are too narrow by an unknown factor. Shoot more, or take \
          errors over many rows (--error-shots known says that they are)",
+        data.file
+    ))
+}
+
+fn uncorrelated(data: &Data) -> Option<String> {
+    let which = which(data, &data.lines_without_correlation())?;
+    Some(format!(
+        "{}, {which}: the errors of incident and reflected times are taken as independent. Both times share the wall's \
+         pick, so they usually are not: add a column `tof_correlation`, as `hertzchain measure` writes it (0 for \
+         independent errors)",
         data.file
     ))
 }

@@ -74,6 +74,7 @@ fn wet_over_dry(wet: &WetOverDry) -> Value {
         "case": wet.case,
         "incident": wet.incident.iter().map(ratio).collect::<Value>(),
         "reflected": wet.reflected.iter().map(ratio).collect::<Value>(),
+        "correlations": wet.correlations,
     })
 }
 
@@ -94,6 +95,7 @@ fn shot(shot: &Shot) -> Value {
         Ok(flight) => {
             all["tof_incident_s"] = estimate(flight.incident_s);
             all["tof_reflected_s"] = flight.reflected_s.map_or(Value::Null, estimate);
+            all["tof_correlation"] = json!(flight.correlation());
             all["wall_over_passing"] = estimate(flight.wall_over_passing);
             all["returning_over_passing"] =
                 flight.returning_over_passing.map_or(Value::Null, estimate);
@@ -139,6 +141,8 @@ fn row(row: &SpeedRow) -> Value {
         "tof_reflected_shared_s": row.shared_s[1],
         "tof_incident_at_mean_speed_s": row.at_mean_speed_s[0].map(estimate),
         "tof_reflected_at_mean_speed_s": row.at_mean_speed_s[1].map(estimate),
+        "tof_correlation": row.correlation,
+        "tof_at_mean_speed_correlation": row.correlation_at_mean_speed,
         "widths_s": row.widths_s.map(|width| width.map(|width| width.mean)),
     })
 }
