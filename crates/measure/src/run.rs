@@ -5,7 +5,7 @@ use crate::several::{Content, content};
 use crate::speeds::Speeds;
 use crate::{Example, Level, Refused, Shot, ShotList};
 use hertzchain_records::{Parts, ReadOptions, Record, read};
-use hertzchain_signal::{Doubt, Measuring};
+use hertzchain_signal::{Bandwidth, Doubt, Measuring};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -55,6 +55,8 @@ pub struct Measurement {
     pub refused: Vec<Refused>,
     /// What was taken for granted, and of which files.
     pub notes: Vec<Note>,
+    /// The amplifier's low-pass that maxima were corrected for.
+    pub bandwidth: Option<Bandwidth>,
     /// What the list of shots and the recordings do not find in each other.
     pub unmatched: Vec<String>,
     /// The first good shot of every case, with its samples.
@@ -93,7 +95,10 @@ type Read = Box<dyn Iterator<Item = Result<Record, (PathBuf, Refused)>>>;
 /// number of threads.
 #[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
-    let mut measurement = Measurement::default();
+    let mut measurement = Measurement {
+        bandwidth: options.measuring.bandwidth,
+        ..Measurement::default()
+    };
     let records = files.iter().flat_map(|file| records(file, options));
     let mut records = records.take_while(|_| !watch.stopped());
     let mut refused = Vec::new();

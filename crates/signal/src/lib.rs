@@ -54,7 +54,7 @@ pub use flight::{Estimate, Flight};
 pub use level::{Level, level, median};
 pub use measure::{Measured, Measuring, measure};
 pub use picks::{
-    Method, Moved, Picked, PickedRival, Picks, Shape, Template, cramer_rao_of_samples_s,
+    Bandwidth, Method, Moved, Picked, PickedRival, Picks, Shape, Template, cramer_rao_of_samples_s,
     cramer_rao_s, pick,
 };
 pub use power_law::{

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 
 use crate::error::SignalError;
 use crate::find::conditioned_pulses;
+use crate::picks::pick_before;
 use crate::{
-    Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, pick, undroop,
+    Bandwidth, Channels, Doubt, Finding, Flight, Found, LowPass, Method, Place, Polarity, undroop,
     upright, without_spikes,
 };
 
@@ -20,6 +21,8 @@ pub struct Measuring {
     pub high_pass_s: Option<f64>,
     /// A low-pass without delay, if one is wanted.
     pub low_pass: Option<LowPass>,
+    /// The amplifier's low-pass, if its delay and what it does to maxima are to be taken out.
+    pub bandwidth: Option<Bandwidth>,
 }
 
 /// A measured shot.
@@ -88,7 +91,8 @@ pub fn measure(
         true => [None; 2],
         false => finding.rails_of(channels),
     };
-    let picks = pick(channels, interval_s, &found, &measuring.method, rails);
+    let how = (rails, measuring.bandwidth);
+    let picks = pick_before(channels, interval_s, &found, &measuring.method, how);
     let flight = picks.map(crate::Picks::flight);
     let lost = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     if lost && found.returning.is_some() {

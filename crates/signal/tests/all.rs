@@ -1,6 +1,7 @@
 //! All tests of the crate from outside, as one program: linked once.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+mod bandwidth;
 mod clipping;
 mod common;
 mod crosstalk;

@@ -63,6 +63,7 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
                     method: method.clone(),
                     high_pass_s: beads.map(|_| 1e-3),
                     low_pass: None,
+                    bandwidth: None,
                 };
                 let _ = measure(channels, interval_s, &measuring);
             }

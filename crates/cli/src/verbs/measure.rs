@@ -9,6 +9,7 @@ use crate::print;
 use hertzchain_measure::{
     Curves, Measurement, Note, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
 };
+use hertzchain_signal::Bandwidth;
 use hertzchain_verbs::arguments::measure::Measure as Arguments;
 use hertzchain_verbs::measure;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -72,6 +73,19 @@ fn tell(measured: &Measurement) {
             files => format!(" and {} more", files - 1),
         };
         eprintln!("note: {}{more}: {text}", first.unwrap_or_default());
+    }
+    eprintln!("note: {}", corrected(measured.bandwidth));
+}
+
+/// Whether maxima are those before the amplifier's low-pass.
+fn corrected(bandwidth: Option<Bandwidth>) -> String {
+    match bandwidth {
+        Some(Bandwidth { corner_hz, order }) => format!(
+            "maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
+        ),
+        None => "times are not corrected for the amplifier's low-pass: its corner is not stated \
+                 (--bandwidth, --rig)"
+            .to_owned(),
     }
 }
 

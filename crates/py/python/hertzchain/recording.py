@@ -210,6 +210,8 @@ class Measured:
         What could not be read.
     lost : list
         Speeds of cases at which no shot has a time that counts, with the number of shots.
+    bandwidth : dict or None
+        Corner in Hz and order of the amplifier's low-pass that maxima are corrected for.
     notes, unmatched : list
         What was taken for granted; what table and recordings do not find in each other.
     verdict : str or None
@@ -226,6 +228,7 @@ class Measured:
     cases: dict[str, Case]
     ratios: list[dict[str, Any]]
     notes: list[dict[str, Any]]
+    bandwidth: dict[str, float] | None
     unmatched: list[str]
     lost: list[dict[str, Any]]
     refused: list[str]
@@ -310,6 +313,8 @@ def measure(
     wall_polarity: Literal["positive", "negative"] | None = None,
     low_pass: str | float | None = None,
     ac_coupling: str | float | None = None,
+    bandwidth: str | float | None = None,
+    bandwidth_order: Literal["first", "second"] = "first",
     rig: Path_ | None = None,
     shots: Path_ | None = None,
     speed_error: float | None = None,
@@ -349,6 +354,8 @@ def measure(
         corrected. 0 leaves it.
     high_pass : str or float, optional
         The former name of ``ac_coupling``: rejected.
+    bandwidth, bandwidth_order : str or float, {"first", "second"}, optional
+        Corner in Hz and order of the amplifier's low-pass, whose delay and rounding are taken out of maxima.
     level : float, optional
         In V: where shots of a long recording begin.
     trust_rate, time_unit, shot_samples, whole, rows, onset, beads, sensor, polarity, \
@@ -381,7 +388,8 @@ wall_polarity, reference, keep_dubious
     told = options.words(
         rate=rate, trust_rate=trust_rate, time_unit=time_unit, shot_samples=shot_samples, level=level, whole=whole,
         rows=rows, method=method, onset=onset, beads=beads, sensor=sensor, polarity=polarity,
-        wall_polarity=wall_polarity, low_pass=low_pass, ac_coupling=ac_coupling, high_pass=high_pass, rig=rig, shots=shots,
+        wall_polarity=wall_polarity, low_pass=low_pass, ac_coupling=ac_coupling, high_pass=high_pass,
+        bandwidth=bandwidth, bandwidth_order=bandwidth_order, rig=rig, shots=shots,
         speed_error=speed_error, speed_gap=speed_gap, reference=reference, keep_dubious=keep_dubious,
     )  # fmt: skip
     told += [f"--channel={name}" for name in channels]

@@ -68,6 +68,7 @@ fn flat_tops(found: &mut Found, recorded: Channels<'_>, coarse: &[Place]) -> Vec
             rails: None,
             summed,
             wall: None,
+            inverse: [0.0; 2],
         };
         if !coarse.contains(&pulse.place) {
             pulse.clipped = clipped_top(&sight, pulse);

@@ -94,6 +94,7 @@ fn top(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> (f64, Estimate) 
         rails: None,
         summed: matches!(channels, Channels::Summed(_)),
         wall: None,
+        inverse: [0.0; 2],
     };
     let (at, height, error) = fitted(&sight, pulse).map_or(
         (pulse.at as f64, pulse.height, upright.level.noise),

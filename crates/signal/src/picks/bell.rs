@@ -1,9 +1,10 @@
 //! Maximum of a bell whose skewness and flatness are free.
 
+use super::amplifier::Slope;
 use super::flanks::Flanks;
 use super::local_model::{Top, finish};
 use super::normal::{Descent, MOST, Normal, descend};
-use super::polynomial::{Polynomial, powers, slope_row};
+use super::polynomial::{Polynomial, powers};
 use super::{Moved, Picked, Sight};
 use crate::Pulse;
 
@@ -130,7 +131,7 @@ fn about(sight: &Sight<'_>, pulse: &Pulse, begun: f64, window: &Window) -> Optio
             return None;
         }
         if (next - centre).abs() <= 0.1 * window.half {
-            return Some(picked(sight, pulse, &fit, u, &window.thought));
+            return picked(sight, pulse, &fit, u, &window.thought);
         }
         centre = next;
     }
@@ -155,9 +156,10 @@ fn picked(
     fit: &Polynomial,
     u: f64,
     thought: &[f64; MOST],
-) -> (Picked, bool) {
-    let at = fit.course(u);
-    let height = at.value.exp();
+) -> Option<(Picked, bool)> {
+    let height = fit.course(u).value.exp();
+    let before = Slope::top(fit, sight.inverse, u)?;
+    let slope = Slope::of(fit, sight.inverse, before);
     let noise = sight.noise(pulse).max(inexact(pulse));
     let modelled = sight.broad_noise(pulse).max(inexact(pulse));
     let beyond = (fit.left / noise).powi(2) > 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt();
@@ -166,13 +168,13 @@ fn picked(
         noise: excess * modelled,
         height,
         height_share: height * fit.value_variance(u).sqrt(),
-        slope_share: height * fit.slope_variance(u).sqrt(),
-        bend: height * at.bend,
+        slope_share: height * fit.solution.variance(&slope.row).sqrt(),
+        bend: height * slope.bend,
         bend_share: height * fit.bend_variance(u).sqrt(),
-        open_share: height * open_variance(fit, u, modelled, thought).sqrt(),
+        open_share: height * open_variance(fit, &slope.row, modelled, thought).sqrt(),
         reach: reach(fit, u, excess * modelled),
     };
-    (finish(sight, pulse, fit, u, &top), !beyond)
+    Some((finish(sight, pulse, fit, before, &top), !beyond))
 }
 
 /// Steps from the middle of a fit to either end.
@@ -192,10 +194,10 @@ fn reach(fit: &Polynomial, u: f64, noise: f64) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// Variance of the slope at u, for unit noise, by coefficients that may be other than the 0 they
+/// Variance of a slope, for unit noise, by coefficients that may be other than the 0 they
 /// are thought to be: C P C with C the covariance and P what is thought beforehand.
-fn open_variance(fit: &Polynomial, u: f64, noise: f64, thought: &[f64; MOST]) -> f64 {
-    let along = fit.solution.covariance_with(&slope_row(u));
+fn open_variance(fit: &Polynomial, slope: &[f64; MOST], noise: f64, thought: &[f64; MOST]) -> f64 {
+    let along = fit.solution.covariance_with(slope);
     let open = along.iter().zip(thought).skip(SHAPE);
     open.map(|(covariance, thought)| (noise * covariance / thought).powi(2))
         .sum()

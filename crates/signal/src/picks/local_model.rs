@@ -70,7 +70,11 @@ pub(super) fn in_noise(sight: &Sight<'_>, pulse: &Pulse) -> Result<Picked, Signa
             place: pulse.place,
             what: "maximum",
         })?;
-    Ok(picked(sight, pulse, &fit, u))
+    let picked = picked(sight, pulse, &fit, u);
+    // Of all that a low-pass does, the delay of a slow signal.
+    let [delay, _] = sight.inverse;
+    let time_s = picked.time_s - delay;
+    Ok(Picked { time_s, ..picked })
 }
 
 fn picked(sight: &Sight<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked {

@@ -1,5 +1,6 @@
 //! Times of pulses found, by four methods, each with its uncertainty.
 
+mod amplifier;
 mod bell;
 mod bound;
 mod cap;
@@ -13,6 +14,7 @@ pub(crate) mod polynomial;
 mod shape;
 mod under;
 
+pub use amplifier::Bandwidth;
 pub use bound::{cramer_rao_of_samples_s, cramer_rao_s};
 pub(crate) use cap::clipped_top;
 pub use shape::Shape;
@@ -144,6 +146,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) summed: bool,
     /// Sample of the wall's maximum, for the pulse that comes back from there.
     pub(crate) wall: Option<usize>,
+    /// Coefficients of the inverse of the amplifier's low-pass; 0 where none is taken out.
+    pub(crate) inverse: [f64; 2],
 }
 
 impl Sight<'_> {
@@ -203,13 +207,28 @@ pub fn pick(
     method: &Method,
     rails: [Option<Rails>; 2],
 ) -> Result<Picks, SignalError> {
+    pick_before(channels, interval_s, found, method, (rails, None))
+}
+
+/// As [`pick`], with maxima as they were before an amplifier's low-pass; of other methods' times it
+/// takes nothing out.
+pub(crate) fn pick_before(
+    channels: Channels<'_>,
+    interval_s: f64,
+    found: &Found,
+    method: &Method,
+    (rails, amplifier): ([Option<Rails>; 2], Option<Bandwidth>),
+) -> Result<Picks, SignalError> {
     SignalError::positive("sampling interval in s", interval_s)?;
     method.check()?;
     let need = |pulse: &Option<Pulse>, place| pulse.ok_or(SignalError::Missing { place });
     let passing = need(&found.passing, Place::Passing)?;
     let wall = need(&found.wall, Place::Wall)?;
+    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s));
+    let inverse = inverse.transpose()?.filter(|_| *method == Method::Maximum);
     let sensor = Sight {
         samples: channels.sensor(),
+        inverse: inverse.unwrap_or_default(),
         upright: found.sensor,
         rails: rails[0],
         summed: matches!(channels, Channels::Summed(_)),

@@ -9,7 +9,7 @@ pub struct Measure {
     /// Recordings: HDF5 of a campaign, CSV and other text, NPY, NPZ, WAV, TDMS; or folders of them
     #[arg(required = true, value_name = "RECORD")]
     pub records: Vec<PathBuf>,
-    /// Experiment file or preset of the rig: number of beads, sensor bead, photogate, high-pass
+    /// Experiment file or preset of the rig: number of beads, sensor bead, photogate, both corners of the amplifier
     #[arg(long, value_name = "FILE")]
     pub rig: Option<PathBuf>,
     /// Table (CSV) with a line a file: file, case, speed, speed error; and shot, if files hold several
@@ -94,6 +94,12 @@ pub struct Picking {
     /// Low-pass without delay, forward and backward, at so many Hz
     #[arg(long, value_name = "RATE", value_parser = rate)]
     pub low_pass: Option<f64>,
+    /// Corner of the amplifier's low-pass in Hz, whose delay and rounding are taken out of maxima; 0 leaves them
+    #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
+    pub bandwidth: Option<f64>,
+    /// Order of that low-pass: one pole, or a Butterworth filter's two
+    #[arg(long, value_enum, value_name = "ORDER", default_value = "first")]
+    pub bandwidth_order: BandwidthOrder,
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
     #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
     pub ac_coupling: Option<f64>,
@@ -113,6 +119,15 @@ pub enum MethodName {
     Correlation,
     /// Where a bell of free height and width fits best
     Shape,
+}
+
+/// Orders of an amplifier's low-pass by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BandwidthOrder {
+    /// One pole
+    First,
+    /// Butterworth, two poles
+    Second,
 }
 
 /// Directions by name.

@@ -5,14 +5,16 @@ mod results;
 pub use results::{json, write_json};
 
 use crate::arguments::Input;
-use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
+use crate::arguments::measure::{
+    BandwidthOrder, Measure as Arguments, MethodName, Picking, RowsAre, Way,
+};
 use crate::failure::Failure;
 use crate::input;
-use hertzchain_experiment::Experiment;
+use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_measure::records::{Parts, ReadOptions, Rows};
 use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, Shot, ShotList};
 use hertzchain_signal::{
-    Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
+    Bandwidth, Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
 };
 use std::f64::consts::TAU;
 use std::fs;
@@ -176,7 +178,37 @@ fn measuring(
             cutoff_hz,
             order: ORDER,
         }),
+        bandwidth: bandwidth(picking, rig)?,
     })
+}
+
+/// The amplifier's low-pass, if an option or the rig's file states it; 0 for none.
+fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandwidth>, Failure> {
+    let given = picking.bandwidth;
+    if given.is_some_and(|hz| hz > 0.0) && picking.method != MethodName::Local {
+        return Err(Failure::User(
+            "--bandwidth corrects maxima, the times of --method local, and no others".to_owned(),
+        ));
+    }
+    let order = |order: BandwidthOrder| match order {
+        BandwidthOrder::First => 1,
+        BandwidthOrder::Second => 2,
+    };
+    let given = given.map(|corner_hz| Bandwidth {
+        corner_hz,
+        order: order(picking.bandwidth_order),
+    });
+    let of_rig = || {
+        let amplifier = &rig?.campaign().amplifier;
+        Some(Bandwidth {
+            corner_hz: amplifier.low_pass_hz,
+            order: match amplifier.order {
+                experiment::LowPass::First => 1,
+                experiment::LowPass::Second => 2,
+            },
+        })
+    };
+    Ok(given.or_else(of_rig).filter(|found| found.corner_hz > 0.0))
 }
 
 fn polarity(way: Option<Way>) -> Polarity {

@@ -37,6 +37,10 @@ impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { measured, curves } = self;
         let mut all = serializer.serialize_map(None)?;
+        let bandwidth = measured
+            .bandwidth
+            .map(|low_pass| json!({ "corner_hz": low_pass.corner_hz, "order": low_pass.order }));
+        all.serialize_entry("bandwidth", &bandwidth)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
         all.serialize_entry("lost", &Each(&curves.lost, lost))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
