@@ -135,7 +135,7 @@ fn systems(case: Case, speeds_m_s: &[f64]) -> Vec<System> {
 
 fn tofs(flown: ensemble::Flown) -> Option<(f64, f64)> {
     let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
-    let passages = Passages::from_signals(sensor, wall, flown.time_s, true);
+    let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let (incident, wall, reflected) = passages.peaks().ok()?;
     let back_s = reflected?.time_s - wall.time_s;
     Some((wall.time_s - incident.time_s, back_s))

@@ -64,7 +64,7 @@ fn results_of_a_dimensionless_chain_name_no_units() {
     }
     let table = fs::read_to_string(out.join("sweep.csv")).unwrap();
     let names = "speed,tof_incident,tof_reflected,sensor_peak,wall_peak,returning_peak,\
-                 striker_rebound,accuracy_reached\n";
+                 striker_rebound,accuracy_reached,competing_time,competing_peak\n";
     assert!(table.starts_with(names), "{table}");
     for name in ["time.npy", "position.npy", "velocity.npy", "force.npy"] {
         assert!(out.join(name).exists(), "{name}");

@@ -3,6 +3,7 @@
 
 use crate::keys::{Fields, Key, Kind, Limits, Need, ROOT, Variants};
 use crate::units;
+use crate::value::Units;
 use hertzchain_chain::laws::{LAWS, Parameter, Row, Source};
 use serde_json::{Map, Value, json};
 
@@ -11,23 +12,25 @@ const QUANTITY: &str = r"^\s*[-+]?(\d|\.\d)";
 
 /// JSON Schema (draft 2020-12) of an experiment file.
 ///
-/// It is wider than the program's own check in one point: it lets plain
-/// numbers stand for quantities, since dimensionless files have them.
+/// Plain numbers stand for quantities with a dimension in dimensionless files alone.
 #[must_use]
 pub fn schema() -> Value {
-    let mut schema = table(&ROOT, None);
-    if let Some(object) = schema.as_object_mut() {
-        let dialect = "https://json-schema.org/draft/2020-12/schema";
-        object.insert("$schema".to_owned(), json!(dialect));
-        object.insert("title".to_owned(), json!("hertzchain experiment"));
-    }
-    schema
+    let dimensionless = json!({
+        "properties": { "units": { "const": "dimensionless" } }, "required": ["units"],
+    });
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "hertzchain experiment",
+        "if": dimensionless,
+        "then": table(&ROOT, None, Units::Dimensionless),
+        "else": table(&ROOT, None, Units::Si),
+    })
 }
 
 /// A table; `tag` is a deciding key and its value.
-fn table(fields: &Fields, tag: Option<(&str, &str)>) -> Value {
+fn table(fields: &Fields, tag: Option<(&str, &str)>, units: Units) -> Value {
     let mut properties: Map<String, Value> = (fields.keys.iter())
-        .map(|key| (key.name.to_owned(), property(key)))
+        .map(|key| (key.name.to_owned(), property(key, units)))
         .collect();
     let always = fields.keys.iter().filter(|key| key.need == Need::Always);
     let mut required: Vec<&str> = always.map(|key| key.name).collect();
@@ -43,8 +46,8 @@ fn table(fields: &Fields, tag: Option<(&str, &str)>) -> Value {
     })
 }
 
-fn property(key: &Key) -> Value {
-    let mut schema = kind(&key.kind);
+fn property(key: &Key, units: Units) -> Value {
+    let mut schema = kind(&key.kind, units);
     let unit = match &key.kind {
         Kind::Quantity(unit, limits) | Kind::Scaled(unit, limits) if *unit != "1" => {
             format!(", in {unit}, {}", limits.words)
@@ -61,11 +64,13 @@ fn property(key: &Key) -> Value {
     schema
 }
 
-fn kind(kind: &Kind) -> Value {
+fn kind(kind: &Kind, units: Units) -> Value {
     match kind {
-        Kind::Quantity(unit, limits) => quantity(unit, limits),
-        Kind::Scaled(unit, limits) => json!({ "anyOf": [quantity(unit, limits), power_law(unit)] }),
-        Kind::Quantities(unit) => list(quantity(unit, &Limits::ANY)),
+        Kind::Quantity(unit, limits) => quantity(unit, limits, units),
+        Kind::Scaled(unit, limits) => {
+            json!({ "anyOf": [quantity(unit, limits, units), power_law(unit, units)] })
+        }
+        Kind::Quantities(unit) => list(quantity(unit, &Limits::ANY, units)),
         Kind::Count { least, most } => json!({
             "type": "integer", "minimum": least, "maximum": most,
         }),
@@ -75,13 +80,13 @@ fn kind(kind: &Kind) -> Value {
         Kind::Choice(options) => json!({ "enum": options }),
         Kind::Text => json!({ "type": "string" }),
         Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Table(fields) => table(fields, None),
-        Kind::Tables(fields) => list(table(fields, None)),
+        Kind::Table(fields) => table(fields, None, units),
+        Kind::Tables(fields) => list(table(fields, None, units)),
         Kind::Named(fields) => json!({
-            "type": "object", "additionalProperties": table(fields, None),
+            "type": "object", "additionalProperties": table(fields, None, units),
         }),
-        Kind::Variants(variants) => one_of(variants),
-        Kind::Laws => list(law()),
+        Kind::Variants(variants) => one_of(variants, units),
+        Kind::Laws => list(law(units)),
     }
 }
 
@@ -89,8 +94,16 @@ fn list(items: Value) -> Value {
     json!({ "type": "array", "minItems": 1, "items": items })
 }
 
-fn quantity(unit: &str, limits: &Limits) -> Value {
-    let mut schema = json!({ "type": ["string", "number"], "pattern": QUANTITY });
+/// What a quantity is written as: one with a dimension has its unit.
+fn types(unit: &str, units: Units) -> Value {
+    match unit != "1" && units == Units::Si {
+        true => json!("string"),
+        false => json!(["string", "number"]),
+    }
+}
+
+fn quantity(unit: &str, limits: &Limits, units: Units) -> Value {
+    let mut schema = json!({ "type": types(unit, units), "pattern": QUANTITY });
     let (least, most) = match limits.closed {
         true => ("minimum", "maximum"),
         false => ("exclusiveMinimum", "exclusiveMaximum"),
@@ -116,31 +129,31 @@ fn quantity(unit: &str, limits: &Limits) -> Value {
     schema
 }
 
-fn power_law(unit: &str) -> Value {
+fn power_law(unit: &str, units: Units) -> Value {
     json!({
         "type": "object",
         "description": "prefactor · speed^exponent, speed of the striker in m/s",
         "properties": {
-            "prefactor": quantity(unit, &Limits::ANY),
-            "exponent": quantity("1", &Limits::ANY),
+            "prefactor": quantity(unit, &Limits::ANY, units),
+            "exponent": quantity("1", &Limits::ANY, units),
         },
         "required": ["prefactor", "exponent"],
         "additionalProperties": false,
     })
 }
 
-fn one_of(variants: &Variants) -> Value {
-    let option = |(name, fields): &(&str, Fields)| table(fields, Some((variants.tag, name)));
+fn one_of(variants: &Variants, units: Units) -> Value {
+    let option = |(name, fields): &(&str, Fields)| table(fields, Some((variants.tag, name)), units);
     let options: Vec<Value> = variants.options.iter().map(option).collect();
     json!({ "oneOf": options })
 }
 
 /// A law by its name where nothing is required, or as a table.
-fn law() -> Value {
+fn law(units: Units) -> Value {
     let required = |row: &Row| row.info.parameters.iter().any(is_required);
     let bare = LAWS.iter().filter(|row| !required(row));
     let names: Vec<&str> = bare.map(|row| row.info.name).collect();
-    let tables = LAWS.iter().map(law_table);
+    let tables = LAWS.iter().map(|row| law_table(row, units));
     let options: Vec<Value> = std::iter::once(json!({ "enum": names }))
         .chain(tables)
         .collect();
@@ -151,7 +164,7 @@ fn is_required(parameter: &Parameter) -> bool {
     parameter.source == Source::Required
 }
 
-fn law_table(row: &Row) -> Value {
+fn law_table(row: &Row, units: Units) -> Value {
     let mut properties = Map::new();
     properties.insert("law".to_owned(), json!({ "const": row.info.name }));
     for parameter in row.info.parameters {
@@ -160,7 +173,7 @@ fn law_table(row: &Row) -> Value {
             unit => format!("{}, in {unit}", parameter.meaning),
         };
         let schema = json!({
-            "type": ["string", "number"], "pattern": QUANTITY, "description": about,
+            "type": types(parameter.unit, units), "pattern": QUANTITY, "description": about,
         });
         properties.insert(parameter.name.to_owned(), schema);
     }

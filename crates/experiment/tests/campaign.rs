@@ -147,7 +147,7 @@ fn voltages_and_charges_are_units() {
 
 #[test]
 fn the_schema_knows_the_campaign() {
-    let campaign = &schema()["properties"]["campaign"]["properties"];
+    let campaign = &schema()["else"]["properties"]["campaign"]["properties"];
     assert!(campaign["cases"]["items"]["properties"]["contacts"].is_object());
     assert!(campaign["amplifier"]["properties"]["gain"].is_object());
 }

@@ -6,14 +6,18 @@
 )]
 
 use hertzchain_chain::laws::LAWS;
-use hertzchain_experiment::{examples, presets, schema};
+use hertzchain_experiment::{Experiment, examples, presets, schema};
 use serde_json::{Value, json};
 
 /// The part of JSON Schema that the schema uses; anything else is an error.
 fn conforms(value: &Value, schema: &Value) -> Result<(), String> {
     for (keyword, rule) in schema.as_object().unwrap() {
+        let conditional = |then| conforms(value, rule).is_ok() == then;
         let holds = match keyword.as_str() {
             "$schema" | "title" | "description" | "examples" => true,
+            "if" if conditional(true) => return conforms(value, &schema["then"]),
+            "if" => return conforms(value, &schema["else"]),
+            "then" | "else" => continue,
             "type" => types(rule).contains(&type_of(value)) || is_whole(value, rule),
             "const" => value == rule,
             "enum" => rule.as_array().unwrap().contains(value),
@@ -36,7 +40,12 @@ fn conforms(value: &Value, schema: &Value) -> Result<(), String> {
                 }
                 true
             }
-            "properties" => true,
+            "properties" if schema.get("additionalProperties").is_some() => true,
+            "properties" => rule.as_object().unwrap().iter().all(|(key, rule)| {
+                value
+                    .get(key)
+                    .is_none_or(|member| conforms(member, rule).is_ok())
+            }),
             "additionalProperties" => return members(value, schema),
             "anyOf" => rule
                 .as_array()
@@ -147,6 +156,32 @@ fn mistakes_do_not_conform() {
         let mut changed = dry.clone();
         *changed.pointer_mut(pointer).unwrap() = wrong;
         assert!(conforms(&changed, &schema()).is_err(), "{pointer}");
+    }
+}
+
+#[test]
+fn plain_numbers_conform_where_the_program_reads_them() {
+    let read = |text: &str| Experiment::from_text("plain.toml", text).is_ok();
+    let file = |units: &str, speed: &str, laws: &str| {
+        format!(
+            "units = \"{units}\"\n[striker]\nspeed = {speed}\nmass = 1\n[[beads]]\ncount = 8\n\
+             [[contacts]]\nlaws = [{laws}]\n[far_end]\nkind = \"half-bead\"\n"
+        )
+    };
+    let hertz = "\"elastic_hertz\"";
+    let linear = "\"elastic_hertz\", { law = \"damping_linear\", coefficient = 1.0 }";
+    let dimensionless = file("dimensionless", "1", linear);
+    let si = dimensionless.replace("units = \"dimensionless\"\n", "");
+    let texts = [
+        file("dimensionless", "1", hertz),
+        dimensionless,
+        si,
+        file("SI", "1", hertz),
+    ];
+    for (text, reads) in texts.iter().zip([true, true, false, false]) {
+        assert_eq!(read(text), reads, "{text}");
+        let fits = conforms(&json_of(text), &schema());
+        assert_eq!(fits.is_ok(), reads, "{text}: {fits:?}");
     }
 }
 

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyList};
 type Column = (&'static str, fn(&Shot) -> Option<f64>);
 
 /// In the order in which they are told.
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 14] = [
     ("tof_incident_s", |shot| Some(shot.flight?.incident_s)),
     ("tof_reflected_s", |shot| shot.flight?.reflected_s),
     ("accuracy_reached", |shot| shot.accuracy_reached),
@@ -32,6 +32,26 @@ const COLUMNS: [Column; 12] = [
     ("pulse_speed_beads_per_s", |shot| shot.pulse_speed_beads_s),
     ("striker_rebound_m_s", |shot| shot.rebound?.end_m_s),
     ("duration_s", |shot| Some(shot.duration_s)),
+    ("competing_time_s", |shot| {
+        Some(
+            shot.passage
+                .as_ref()
+                .ok()?
+                .competing_arrival()?
+                .maximum
+                .time_s,
+        )
+    }),
+    ("competing_peak_n", |shot| {
+        Some(
+            shot.passage
+                .as_ref()
+                .ok()?
+                .competing_arrival()?
+                .maximum
+                .value,
+        )
+    }),
 ];
 
 /// The incident pulse's, or the largest where none is seen to pass.

@@ -293,7 +293,7 @@ fn flown(
 
 fn flight(flown: Flown) -> Option<Flight> {
     let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
-    let passages = Passages::from_signals(sensor, wall, flown.time_s, true);
+    let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let passage = passages.passage().ok()?;
     Some(Flight {
         incident_s: passage.tof_incident_s(),

@@ -10,11 +10,11 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::gun::closed_gaps;
 use crate::plan::{Pick, Plan, Solver};
-use crate::shot::{Shot, reported, shoot, shoot_checked, tie};
+use crate::shot::{Shot, ambiguous, reported, shoot, shoot_checked};
 use crate::stop::stopped;
 use crate::tuned::Tuned;
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
-use hertzchain_chain::observe::{Passages, RETURN_WITHIN};
+use hertzchain_chain::observe::Passages;
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
 
@@ -283,7 +283,7 @@ pub(crate) fn fire(
         .map(|(plan, system)| ensemble::Shot {
             system,
             step: setting.step,
-            duration_s: duration::end(plan, system).longest_s,
+            duration_s: duration::with_equal_steps_s(plan, system, setting.step),
             precision: setting.precision(plan, system),
         })
         .collect();
@@ -317,11 +317,15 @@ fn shot(plan: &Plan, (system, end): (&System, End), flown: Flown) -> Option<Shot
     let Ok([sensor, wall]) = <[_; 2]>::try_from(flown.signals) else {
         return None;
     };
-    let passages = Passages::from_signals(sensor, wall, flown.time_s, plan.duration_s.is_none());
+    let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let passage = passages.passage().ok()?;
     // Where what came last changes what came first, looks between steps are too coarse.
-    let searched_s = RETURN_WITHIN * passage.tof_incident_s();
-    if end == End::Reflected && flown.time_s < passage.wall.time_s + searched_s {
+    let unfinished = match (end, plan.duration_s) {
+        (End::Duration, Some(duration_s)) => flown.time_s < duration_s,
+        (End::Reflected, _) => flown.time_s < passage.search_ends_s,
+        _ => false,
+    };
+    if unfinished {
         return None;
     }
     let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;
@@ -345,7 +349,7 @@ fn shot(plan: &Plan, (system, end): (&System, End), flown: Flown) -> Option<Shot
         tolerance: None,
         step_s: Some(flown.step_s),
         notes: (closed_gaps(plan, system).into_iter())
-            .chain(tie(&passage, plan.accuracy))
+            .chain(ambiguous(&passage, plan.accuracy))
             .collect(),
         passage: Ok(passage),
     })

@@ -19,9 +19,7 @@ pub(crate) struct Following {
     /// When energy alone told that nothing can change any more, in s.
     decided_s: Option<f64>,
     looked: u64,
-    /// Maxima of the wall and the time of the largest when last looked.
-    wall_peak: (usize, f64),
-    last_word_m_s: Option<f64>,
+    last_word: Option<(f64, f64)>,
     /// By body after the striker: the speed that bead 1 has with the whole energy
     /// of this one, over the speed of this one.
     handed_on: Vec<f64>,
@@ -31,12 +29,8 @@ impl Following {
     /// Of a plan's sensor bead, wall and striker.
     pub(crate) fn new(plan: &Plan, end: &End) -> Self {
         let wall = has_wall(&plan.chain.far);
-        let passages = Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall);
         Self {
-            passages: match end.at_reflection {
-                true => passages,
-                false => passages.of_whole_shot(),
-            },
+            passages: Passages::new(plan.sensor_bead, plan.chain.beads.len(), wall),
             end: *end,
             sensor_bead: plan.sensor_bead,
             bead_over_striker: bead_over_striker(plan),
@@ -47,8 +41,7 @@ impl Following {
                 false => Vec::new(),
             },
             looked: 0,
-            wall_peak: (0, 0.0),
-            last_word_m_s: None,
+            last_word: None,
         }
     }
 
@@ -57,10 +50,10 @@ impl Following {
         &self.passages
     }
 
-    /// The striker's velocity in m/s when it was away for good, or was followed
-    /// for the longest time.
-    pub(crate) fn last_word_m_s(&self) -> Option<f64> {
-        self.last_word_m_s
+    /// When the striker was away for good, or was followed for the longest time, in s,
+    /// and its velocity then in m/s.
+    pub(crate) fn last_word(&self) -> Option<(f64, f64)> {
+        self.last_word
     }
 
     /// When energy alone told that nothing can change any more, in s; the shot
@@ -84,18 +77,19 @@ impl Following {
             }
             let over = self.decided_s.is_some() || returned || !self.wall;
             if over && self.awaits_striker() && self.is_away(piece, theta) {
-                self.last_word_m_s = Some(piece.body(0, theta).1);
+                self.last_word = Some((piece.time_s(theta), piece.body(0, theta).1));
             }
         }
-        let waited_s = self.end.looks.returns * self.wall_peak_s();
+        let wall_s = self.passages.wall_peak_s().unwrap_or(0.0);
+        let waited_s = self.end.looks.returns * wall_s;
         if returned && self.awaits_striker() && waited_s <= end_s {
             let theta = ((waited_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
-            self.last_word_m_s = Some(piece.body(0, theta).1);
+            self.last_word = Some((piece.time_s(theta), piece.body(0, theta).1));
         }
     }
 
     fn awaits_striker(&self) -> bool {
-        self.end.striker && self.last_word_m_s.is_none()
+        self.end.striker && self.last_word.is_none()
     }
 
     fn is_away(&self, piece: &Piece<'_>, theta: f64) -> bool {
@@ -119,16 +113,6 @@ impl Following {
             .iter()
             .sum();
         leaves && 0.5 * most_n < reflected.value
-    }
-
-    /// Time of the wall's largest maximum in s.
-    fn wall_peak_s(&mut self) -> f64 {
-        let maxima = self.passages.wall().maxima();
-        if maxima.len() != self.wall_peak.0 {
-            let largest = maxima.iter().max_by(|a, b| a.value.total_cmp(&b.value));
-            self.wall_peak = (maxima.len(), largest.map_or(0.0, |peak| peak.time_s));
-        }
-        self.wall_peak.1
     }
 }
 

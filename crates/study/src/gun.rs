@@ -6,16 +6,16 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::following::Following;
 use crate::plan::{Plan, Solver, Watch};
-use crate::shot::{Rebound, Shot, reported, tie};
+use crate::shot::{Rebound, Shot, ambiguous, reported};
 use crate::stop::{count_steps, stopped};
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Flow, Limits, Method, Observer, Outcome, Piece, run};
 use hertzchain_chain::{Start, System};
 
-/// Ends a shot that is no longer wanted, and counts its steps.
-#[derive(Default)]
+/// Ends a shot that is no longer wanted or takes too many steps, which it counts.
 struct BreakingOff {
     steps: u64,
+    most_steps: f64,
 }
 
 /// Steps that are counted at a time: threads that share a counter wait for each other.
@@ -27,10 +27,16 @@ impl Observer for BreakingOff {
         if self.steps.is_multiple_of(COUNTED) {
             count_steps(COUNTED);
         }
-        match stopped() {
+        match stopped() || self.is_long() {
             true => Flow::Finished,
             false => Flow::Continue,
         }
+    }
+}
+
+impl BreakingOff {
+    fn is_long(&self) -> bool {
+        self.steps as f64 >= self.most_steps
     }
 }
 
@@ -68,8 +74,8 @@ impl<'a> Gun<'a> {
         let mut shot = self.computed(checked)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
         let passage = shot.passage.as_ref().ok();
-        shot.notes
-            .extend(passage.and_then(|passage| tie(passage, self.plan.accuracy)));
+        let ambiguous = passage.map(|passage| ambiguous(passage, self.plan.accuracy));
+        shot.notes.extend(ambiguous.unwrap_or_default());
         let residual = residual(&shot);
         if residual > self.plan.accuracy {
             shot.notes.push(format!(
@@ -251,7 +257,10 @@ impl<'a> Gun<'a> {
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut breaking_off = BreakingOff::default();
+        let mut breaking_off = BreakingOff {
+            steps: 0,
+            most_steps: self.end.most_steps,
+        };
         let mut observers: Vec<&mut dyn Observer> =
             vec![&mut breaking_off, &mut following, &mut separation];
         if self.end.when_apart {
@@ -268,7 +277,23 @@ impl<'a> Gun<'a> {
             return Err(StudyError::Stopped);
         }
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
-        Ok(self.shot(method, outcome, &following, separation, trace))
+        let mut shot = self.shot(method, outcome, &following, separation, trace);
+        shot.finished &= !breaking_off.is_long();
+        shot.notes.extend(self.ended_early(&shot, &following));
+        Ok(shot)
+    }
+
+    /// What was not waited for.
+    fn ended_early(&self, shot: &Shot, following: &Following) -> Option<String> {
+        let searched_s = shot.passage.as_ref().ok()?.search_ends_s;
+        let decided = following.decided_s().is_some();
+        (shot.duration_s < searched_s && !decided).then(|| {
+            format!(
+                "the shot ends at t = {:.4e}, before the search for the wall's peak and the reflected pulse is over \
+                 at t = {searched_s:.4e}: a longer `duration` goes on",
+                shot.duration_s
+            )
+        })
     }
 
     fn tracer(&self) -> Option<Tracer> {
@@ -315,6 +340,8 @@ impl<'a> Gun<'a> {
         // A shot that came to the end of the rule by another way than the striker's.
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();
         let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
+        let at_end = at_end_m_s.map(|velocity_m_s| (outcome.time_s, velocity_m_s));
+        let end = following.last_word().or(at_end);
         Shot {
             flight: picked(self.plan.pick),
             compared: self.plan.compare.iter().map(|&pick| picked(pick)).collect(),
@@ -322,7 +349,8 @@ impl<'a> Gun<'a> {
             pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),
-                end_m_s: following.last_word_m_s().or(at_end_m_s),
+                end_m_s: end.map(|(_, velocity_m_s)| velocity_m_s),
+                end_s: end.map(|(time_s, _)| time_s),
             }),
             passage,
             budget: outcome.budget,

@@ -6,7 +6,7 @@ use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty}
 use serde::{Deserialize, Serialize};
 
 /// Columns of a sweep's table; the ends of their names are the units.
-pub const COLUMNS: [&str; 8] = [
+pub const COLUMNS: [&str; 10] = [
     "speed_m_s",
     "tof_incident_s",
     "tof_reflected_s",
@@ -15,6 +15,8 @@ pub const COLUMNS: [&str; 8] = [
     "returning_peak_n",
     "striker_rebound_m_s",
     "accuracy_reached",
+    "competing_time_s",
+    "competing_peak_n",
 ];
 
 /// One of [`COLUMNS`].
@@ -36,6 +38,10 @@ pub enum Column {
     Rebound,
     /// The relative accuracy reached.
     Accuracy,
+    /// When the highest maximum is that could be the arrival instead.
+    CompetingTime,
+    /// Its height.
+    CompetingPeak,
 }
 
 /// A shot that is none.
@@ -194,6 +200,7 @@ impl Rows {
 /// What is stored of a shot.
 fn cells(speed_m_s: f64, shot: &Shot) -> [Option<f64>; COLUMNS.len()] {
     let seen = shot.passage.as_ref().ok();
+    let competing = seen.and_then(|seen| Some(seen.competing_arrival()?.maximum));
     [
         Some(speed_m_s),
         shot.flight.map(|flight| flight.incident_s),
@@ -203,6 +210,8 @@ fn cells(speed_m_s: f64, shot: &Shot) -> [Option<f64>; COLUMNS.len()] {
         seen.and_then(|seen| Some(seen.reflected?.value)),
         shot.rebound.and_then(|rebound| rebound.end_m_s),
         shot.accuracy_reached,
+        competing.map(|maximum| maximum.time_s),
+        competing.map(|maximum| maximum.value),
     ]
 }
 

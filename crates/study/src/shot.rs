@@ -4,7 +4,7 @@ use crate::error::StudyError;
 use crate::flight::{Flight, relative};
 use crate::gun::Gun;
 use crate::plan::Plan;
-use hertzchain_chain::observe::{Maximum, Passage, PassageError, Trace};
+use hertzchain_chain::observe::{Competing, Maximum, Passage, PassageError, Pulse, Trace};
 use hertzchain_chain::wave::{Budget, Work};
 
 /// The striker's velocity after the impact, negative away from the chain.
@@ -16,6 +16,8 @@ pub struct Rebound {
     /// after six times the time that the pulse took to the wall. `None` when the plan does
     /// not follow it, or when a duration that was asked for was over before.
     pub end_m_s: Option<f64>,
+    /// When it had that velocity, in s: on an incline it changes in flight.
+    pub end_s: Option<f64>,
 }
 
 /// What one shot gave.
@@ -129,29 +131,33 @@ pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
 /// Errors of peaks over the accuracy asked of times, at most.
 pub(crate) const OF_PEAKS: f64 = 50.0;
 
-/// Which pulse two maxima share that are as high as can be told: the next
-/// computation may pick the other.
-pub(crate) fn tie(passage: &Passage, accuracy: f64) -> Option<String> {
-    let before = |peak: &&Maximum| peak.time_s < passage.wall.time_s;
-    let incoming: Vec<Maximum> = (passage.sensor_maxima.iter().filter(before).copied()).collect();
-    let pulses = [
-        ("passing", &incoming, Some(passage.incident)),
-        ("wall's", &passage.wall_maxima, Some(passage.wall)),
-        ("returning", &passage.returning_maxima, passage.reflected),
-    ];
-    let tied = pulses.into_iter().find(|(_, maxima, picked)| {
-        picked.is_some_and(|picked| {
-            let as_high = picked.value * (1.0 - OF_PEAKS * accuracy);
-            let other = |peak: &&Maximum| peak.value >= as_high && peak.time_s != picked.time_s;
-            maxima.iter().any(|peak| other(&peak))
+/// Pulses whose peak could be another maximum: as high as far as the accuracy allows to
+/// know, so that the next computation may pick the other, or at the sensor bead or the
+/// wall on the way in.
+pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
+    let note = |pulse: Pulse| {
+        let of_pulse = |other: &&Competing| other.pulse == pulse;
+        let others = || passage.competing.iter().filter(of_pulse);
+        let highest = others().max_by(|a, b| a.share.total_cmp(&b.share))?;
+        let Competing { share, maximum, .. } = highest;
+        let (name, time) = (pulse.name(), maximum.time_s);
+        if (1.0 - share).abs() <= OF_PEAKS * accuracy {
+            return Some(format!(
+                "the {name} pulse has two maxima whose heights differ by less than an accuracy of {accuracy:e} \
+                 resolves: its time is that of the higher, the other is at t = {time:.6e}"
+            ));
+        }
+        let count = others().count();
+        (pulse != Pulse::Reflected).then(|| {
+            format!(
+                "the arrival is ambiguous: the {name} pulse has {count} other maxim{}, the highest {share:.3} times \
+                 as high as its peak, at t = {time:.6e}",
+                if count == 1 { "um" } else { "a" },
+            )
         })
-    });
-    tied.map(|(pulse, ..)| {
-        format!(
-            "the {pulse} pulse has two maxima that are equally high as far as an accuracy of {accuracy:e} \
-             tells: its time is that of one of them"
-        )
-    })
+    };
+    let pulses = [Pulse::Incident, Pulse::Wall, Pulse::Reflected];
+    pulses.into_iter().filter_map(note).collect()
 }
 
 /// Maxima above 5 % of the largest.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod accuracy;
+mod arrivals;
 mod describe;
 mod ensemble;
 mod examples;

@@ -1,7 +1,7 @@
 //! Results as JSON, full precision, SI units in the names.
 
 use crate::missing;
-use hertzchain_chain::observe::Maximum;
+use hertzchain_chain::observe::{Competing, Maximum};
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_signal::{FitError, PowerLaw, Uncertainty};
@@ -45,6 +45,7 @@ pub fn shot(shot: &Shot, units: Units, plan: &Plan) -> Json {
         "striker_rebound": shot.rebound.map(|rebound| json!({
             "first_separation_time_s": rebound.first.map(|first| first.0),
             "first_separation_m_s": rebound.first.map(|first| first.1),
+            "end_time_s": rebound.end_s,
             "end_m_s": rebound.end_m_s,
         })),
         "energy": shot.budget.as_ref().map(budget),
@@ -65,12 +66,23 @@ fn passage(shot: &Shot, units: Units, plan: &Plan) -> Json {
             "incident": peak(&seen.incident),
             "wall": peak(&seen.wall),
             "reflected": seen.reflected.as_ref().map(peak),
+            "search_ends_s": seen.search_ends_s,
+            "competing": seen.competing.iter().map(competing).collect::<Json>(),
             "wall_maxima": peaks(&seen.wall_maxima),
             "incident_width_s": seen.incident_width_s,
             "wall_width_s": seen.wall_width_s,
             "reflected_width_s": seen.reflected_width_s,
         }),
     }
+}
+
+fn competing(other: &Competing) -> Json {
+    json!({
+        "pulse": other.pulse.name(),
+        "time_s": other.maximum.time_s,
+        "value": other.maximum.value,
+        "share": other.share,
+    })
 }
 
 fn budget(budget: &Budget) -> Json {

@@ -13,10 +13,13 @@ pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
     match (far, error) {
         (FarEnd::Free | FarEnd::Periodic { .. }, _) => "the chain has no wall".to_owned(),
         (_, PassageError::NoWallPulse { duration_s }) => {
-            format!("no pulse reached the wall within {}", time(*duration_s))
+            format!(
+                "no pulse reached the wall within {}; a longer `duration` goes on",
+                time(*duration_s)
+            )
         }
         (_, PassageError::NoIncidentPulse { wall_s }) => format!(
-            "no pulse passed the sensor bead before the wall's peak at {}",
+            "the sensor bead's signal has no maximum before the wall's peak at {}",
             time(*wall_s)
         ),
     }

@@ -8,7 +8,7 @@ use super::peaks::{Clock, Trace};
 use super::record::Recorder;
 use super::weights::Schedule;
 use crate::instruction_set::InstructionSet;
-use crate::observe::Signal;
+use crate::observe::{Signal, least_n_s};
 use crate::sensor::Sensor;
 use crate::system::System;
 use crate::wave::Work;
@@ -270,7 +270,8 @@ fn fire_block<N: Number<W>, const W: usize>(
     let steps_s: Vec<f64> = (0..lanes).map(|lane| of(lane).step_s()).collect();
     let begun = shots.iter().map(|shot| {
         let last_step = last_step(shot.duration_s, shot.step_s());
-        Lane::new(last_step, shot.system.bodies())
+        let least = least_n_s(shot.system) / shot.step_s();
+        Lane::new(last_step, shot.system.bodies(), least)
     });
     let mut flying: Vec<Lane> = begun.collect();
     let most = flying.iter().map(|lane| lane.last_step).max().unwrap_or(0);
@@ -316,6 +317,7 @@ fn signals<N: Number<W>, const W: usize>(
                     step_s: steps_s[at],
                 },
                 silent: systems[at].silence(sensor),
+                least_n_s: least_n_s(systems[at]),
             };
             signals[at].push(trace.signal(sensor, &extremes[at], settings.shapes));
         }
@@ -377,9 +379,9 @@ fn fly<N: Number<W>, const W: usize>(
 }
 
 impl Lane {
-    fn new(last_step: usize, bodies: usize) -> Self {
+    fn new(last_step: usize, bodies: usize, least: f64) -> Self {
         Self {
-            passing: Passing::default(),
+            passing: Passing::new(least),
             last_step,
             correction: 0.0,
             velocity_m_s: Vec::with_capacity(bodies),

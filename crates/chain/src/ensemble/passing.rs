@@ -2,15 +2,15 @@
 
 use super::number::Number;
 use super::record::Samples;
-use crate::observe::RETURN_WITHIN;
+use crate::observe::{RETURN_WITHIN, WALL_WITHIN};
 
 /// When a shot is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// After its duration.
     Duration,
-    /// When no later maximum of the first sensor can be the reflected pulse:
-    /// later than tw + 3 (tw − t7). The second sensor is the wall.
+    /// When no later maximum can be the wall's peak or the reflected pulse: later
+    /// than 3 tw and tw + 3 (tw − t7). The second sensor is the wall.
     Reflected,
     /// When the first sensor has fallen below 5 % of its maximum since the
     /// wall's peak, once the pulse has had the time to return. A later and
@@ -55,6 +55,8 @@ impl Peak {
 /// Follows the pulse of one lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passing {
+    /// Least height times step of a pulse.
+    least: f64,
     /// The sensor's largest maximum so far.
     highest: Peak,
     /// The same before the wall's largest sample.
@@ -67,6 +69,19 @@ pub(super) struct Passing {
 }
 
 impl Passing {
+    /// Of a lane in which a pulse has at least this height times step.
+    pub fn new(least: f64) -> Self {
+        Self {
+            least,
+            ..Self::default()
+        }
+    }
+
+    /// Whether a value at a step is a pulse's.
+    fn is_pulse(&self, value: f64, step: usize) -> bool {
+        value * step as f64 >= self.least
+    }
+
     /// Looks at the samples up to a step, closely where any is the largest yet.
     pub fn look<N: Number<W>, const W: usize>(
         &mut self,
@@ -84,11 +99,12 @@ impl Passing {
             let mut latest = [sensor.at(self.seen.saturating_sub(1).max(1)), self.now];
             for (at, after) in (first..).zip(sensor.since(first)) {
                 let [before, now] = latest;
-                if at > 2 && now >= before && now > after {
+                if at > 2 && now >= before && now > after && self.is_pulse(now, at - 1) {
                     self.highest.look(now, at - 1);
                 }
                 latest = [now, after];
-                if at_wall && pressed.next().is_some_and(|wall| self.wall.look(wall, at)) {
+                let higher = |wall: f64| self.is_pulse(wall, at) && self.wall.look(wall, at);
+                if at_wall && pressed.next().is_some_and(higher) {
                     (self.incident, self.returned) = (self.highest, Peak::default());
                 }
             }
@@ -113,17 +129,21 @@ impl Passing {
         }
     }
 
-    /// Steps from the incident peak to the wall's; 0 before the wall has seen any.
+    /// Steps from the incident peak to the wall's; 0 where there is none before it.
     fn way(&self) -> f64 {
-        self.wall.step.saturating_sub(self.incident.step) as f64
+        match self.incident.value > 0.0 {
+            true => self.wall.step.saturating_sub(self.incident.step) as f64,
+            false => 0.0,
+        }
     }
 
     /// Whether the shot is over.
     pub fn is_over(&self, end: End, silent_n: f64) -> bool {
-        if end == End::Duration || self.wall.value <= silent_n || self.incident.value <= silent_n {
+        if end == End::Duration || self.wall.value <= silent_n {
             return false;
         }
-        let too_late = self.wall.step as f64 + RETURN_WITHIN * self.way();
+        let wall = self.wall.step as f64;
+        let too_late = (WALL_WITHIN * wall).max(wall + RETURN_WITHIN * self.way());
         let back = self.returned;
         let returned = RETURNED * self.wall.value * self.wall.value;
         let passed = back.value > silent_n

@@ -32,6 +32,8 @@ pub(super) struct Trace<'a, N, const W: usize> {
     pub clock: Clock<'a>,
     /// What is not above this is no signal.
     pub silent: f64,
+    /// Least height times time of a pulse, in N s.
+    pub least_n_s: f64,
 }
 
 impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
@@ -53,7 +55,7 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
             true => self.stretches(self.silent.max(KEPT * largest)),
             false => Vec::new(),
         };
-        Signal::assembled(sensor, stretches, maxima)
+        Signal::assembled(sensor, (stretches, maxima), self.least_n_s)
     }
 
     /// Quartics through five samples each, where steps are equal and anything

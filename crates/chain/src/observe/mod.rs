@@ -5,9 +5,9 @@ mod separation;
 mod signal;
 mod tracer;
 
-pub use passage::RETURN_WITHIN;
-pub use passage::{Flank, Passage, PassageError, Passages};
+pub(crate) use passage::WALL_WITHIN;
+pub use passage::{Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN};
 pub use separation::{Apart, Separation};
-pub(crate) use signal::KEPT;
+pub(crate) use signal::{KEPT, least_n_s};
 pub use signal::{Maximum, Signal, Stretch};
 pub use tracer::{Trace, Tracer};

@@ -10,10 +10,14 @@ pub struct Passages {
     sensor: Signal,
     wall: Signal,
     ends_shot: bool,
-    whole: bool,
     until_s: f64,
+    /// How many maxima of the sensor bead and of the wall have been looked at.
     seen: (usize, usize),
-    best: Option<(Maximum, Maximum)>,
+    /// Largest maximum of the sensor bead among those.
+    incoming: Option<Maximum>,
+    best: Option<(Option<Maximum>, Maximum)>,
+    /// The search is over: what comes later changes no peak.
+    over: bool,
 }
 
 /// The pulse was not seen.
@@ -26,11 +30,45 @@ pub enum PassageError {
         duration_s: f64,
     },
     /// No maximum at the sensor bead before the wall's.
-    #[error("no pulse passed the sensor bead before the wall's peak at {wall_s:e} s")]
+    #[error("the sensor bead has no maximum before the wall's peak at {wall_s:e} s")]
     NoIncidentPulse {
         /// Time of the wall's peak in s.
         wall_s: f64,
     },
+}
+
+/// Which of the three pulses of a shot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pulse {
+    /// Past the sensor bead on its way to the wall.
+    Incident,
+    /// At the wall.
+    Wall,
+    /// Past the sensor bead on its way back.
+    Reflected,
+}
+
+impl Pulse {
+    /// Its name: `incident`, `wall` or `reflected`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Incident => "incident",
+            Self::Wall => "wall",
+            Self::Reflected => "reflected",
+        }
+    }
+}
+
+/// A maximum that could be taken for the peak of a pulse instead of the one that is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Competing {
+    /// The pulse.
+    pub pulse: Pulse,
+    /// The other maximum.
+    pub maximum: Maximum,
+    /// Its height over that of the pulse's peak.
+    pub share: f64,
 }
 
 /// Peaks and times of flight of one shot.
@@ -38,16 +76,21 @@ pub enum PassageError {
 pub struct Passage {
     /// Largest maximum of the sensor bead before the wall's peak.
     pub incident: Maximum,
-    /// Largest maximum of the wall.
+    /// The first maximum of the wall that none exceeds until the end of the search.
     pub wall: Maximum,
     /// Largest maximum of the sensor bead in (tw, tw + 3 (tw − t7)].
     pub reflected: Option<Maximum>,
+    /// End of the search for the wall's peak and the reflected pulse, in s:
+    /// max(3 tw, tw + 3 (tw − t7)).
+    pub search_ends_s: f64,
+    /// Maxima that could be taken for one of the peaks instead, by pulse and time.
+    pub competing: Vec<Competing>,
     /// All maxima of the sensor bead in the same time, small ones too: 1e-4 of
     /// its largest.
     pub returning_maxima: Vec<Maximum>,
     /// All maxima of the sensor bead above 5 % of its largest.
     pub sensor_maxima: Vec<Maximum>,
-    /// All maxima of the wall above 5 % of its largest.
+    /// All maxima of the wall until the end of the search, above 5 % of its peak.
     pub wall_maxima: Vec<Maximum>,
     /// Full width at half maximum of the incident pulse in s.
     pub incident_width_s: Option<f64>,
@@ -66,11 +109,33 @@ const REPORTED: f64 = 0.05;
 /// The reflected pulse is looked for until tw + this · (tw − t7).
 pub const RETURN_WITHIN: f64 = 3.0;
 
+/// The wall's peak is looked for until this many times its time at least: about when
+/// the pulse, back from the striker, is at the wall again.
+pub(crate) const WALL_WITHIN: f64 = 3.0;
+
+/// A maximum of at least this share of a peak's height could be taken for it.
+const COMPETES: f64 = 0.5;
+
+/// An earlier one at the sensor bead or the wall from this share on.
+const FORERUNS: f64 = 0.1;
+
+/// A maximum of the wall later than this many times its peak's time is an echo.
+const ECHO: f64 = 2.0;
+
 impl Passage {
     /// Incident time of flight in s.
     #[must_use]
     pub fn tof_incident_s(&self) -> f64 {
         self.wall.time_s - self.incident.time_s
+    }
+
+    /// The highest maximum, over its pulse's peak, that could be the incident or the
+    /// wall's peak instead.
+    #[must_use]
+    pub fn competing_arrival(&self) -> Option<&Competing> {
+        let arrival = |other: &&Competing| other.pulse != Pulse::Reflected;
+        let competing = self.competing.iter().filter(arrival);
+        competing.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
     /// Reflected time of flight in s.
@@ -89,35 +154,26 @@ impl Passages {
             sensor: Signal::new(Sensor::Bead(sensor_bead)),
             wall: Signal::new(Sensor::Contact(wall_contact)),
             ends_shot,
-            whole: !ends_shot,
             until_s: 0.0,
             seen: (0, 0),
+            incoming: None,
             best: None,
+            over: false,
         }
     }
 
-    /// These, with maxima after the end of the search counted too: for a shot
-    /// whose duration was asked for.
+    /// From the signals of a sensor bead and of the wall, followed until a time in s.
     #[must_use]
-    pub fn of_whole_shot(self) -> Self {
-        Self {
-            whole: true,
-            ..self
-        }
-    }
-
-    /// From the signals of a sensor bead and of the wall, followed until a time
-    /// in s; `ends_shot` as for [`Passages::new`].
-    #[must_use]
-    pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64, ends_shot: bool) -> Self {
+    pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64) -> Self {
         let mut passages = Self {
             sensor,
             wall,
-            ends_shot,
-            whole: !ends_shot,
+            ends_shot: true,
             until_s,
             seen: (0, 0),
+            incoming: None,
             best: None,
+            over: false,
         };
         passages.update();
         passages
@@ -135,36 +191,54 @@ impl Passages {
         &self.wall
     }
 
-    /// Incident and wall peak as far as seen.
+    /// Incident and wall peak as far as seen: the first maximum of the wall, large
+    /// enough for a pulse, that none exceeds until the end of its search, and the
+    /// largest of the sensor bead before it.
     fn update(&mut self) {
-        let seen = (self.sensor.maxima().len(), self.wall.maxima().len());
-        if seen != self.seen {
-            self.seen = seen;
-            self.best = self.incident_and_wall().ok();
+        while let Some(&peak) = self.wall.maxima().get(self.seen.1) {
+            if self.ends_s().is_some_and(|ends_s| peak.time_s > ends_s) {
+                break;
+            }
+            self.seen.1 += 1;
+            let highest = self.best.map_or(0.0, |(_, wall)| wall.value);
+            if peak.value > highest && self.wall.is_pulse(&peak) {
+                self.look_until(peak.time_s);
+                self.best = Some((self.incoming, peak));
+            }
+        }
+        self.over = self.ends_s().is_some_and(|ends_s| self.until_s > ends_s);
+    }
+
+    /// Looks at the sensor bead's maxima before a time.
+    fn look_until(&mut self, time_s: f64) {
+        let later = self.sensor.maxima().get(self.seen.0..).unwrap_or_default();
+        for peak in later.iter().take_while(|peak| peak.time_s < time_s) {
+            self.seen.0 += 1;
+            let highest = self.incoming.map_or(0.0, |incoming| incoming.value);
+            if peak.value > highest && self.sensor.is_pulse(peak) {
+                self.incoming = Some(*peak);
+            }
         }
     }
 
-    /// The wall's largest maximum and the sensor's before it. Where the search
-    /// ends the shot, what the wall sees after its end is another pulse, whatever
-    /// else the shot is followed for.
+    /// When the search ends, as far as is known.
+    fn ends_s(&self) -> Option<f64> {
+        self.best
+            .map(|(incident, wall)| search_ends_s(incident, wall))
+    }
+
     fn incident_and_wall(&self) -> Result<(Maximum, Maximum), PassageError> {
-        let mut wall: Option<Maximum> = None;
-        let mut incident = None;
-        for &peak in self.wall.maxima() {
-            let over = |(incident, wall)| peak.time_s > search_ends_s(incident, wall);
-            if !self.whole && incident.zip(wall).is_some_and(over) {
-                break;
-            }
-            if peak.value > wall.map_or(0.0, |wall| wall.value) {
-                wall = Some(peak);
-                incident = largest(self.sensor.maxima(), |other| other.time_s < peak.time_s);
-            }
-        }
         let duration_s = self.until_s;
-        let wall = wall.ok_or(PassageError::NoWallPulse { duration_s })?;
+        let (incident, wall) = self.best.ok_or(PassageError::NoWallPulse { duration_s })?;
         let wall_s = wall.time_s;
         let incident = incident.ok_or(PassageError::NoIncidentPulse { wall_s })?;
         Ok((incident, wall))
+    }
+
+    /// Time of the wall's peak in s as far as seen.
+    #[must_use]
+    pub fn wall_peak_s(&self) -> Option<f64> {
+        self.best.map(|(_, wall)| wall.time_s)
     }
 
     /// The incident, the wall's and the reflected maximum alone: what times of
@@ -193,13 +267,28 @@ impl Passages {
         };
         let returning = |peak: &&Maximum| returns(peak, incident, wall);
         let maxima = self.sensor.maxima().iter();
+        let returning_maxima: Vec<Maximum> = maxima.filter(returning).copied().collect();
+        let sensor_maxima = self.sensor.maxima();
+        let incoming = sensor_maxima.partition_point(|peak| peak.time_s < wall.time_s);
+        let search_ends_s = search_ends_s(Some(incident), wall);
+        let searched = self.wall.maxima();
+        let searched = &searched[..searched.partition_point(|peak| peak.time_s <= search_ends_s)];
+        let mut competing = competing(Pulse::Incident, &sensor_maxima[..incoming], incident);
+        competing.extend(self::competing(Pulse::Wall, searched, wall));
+        competing.extend(
+            reflected
+                .iter()
+                .flat_map(|&peak| self::competing(Pulse::Reflected, &returning_maxima, peak)),
+        );
         Ok(Passage {
             incident,
             wall,
             reflected,
-            returning_maxima: maxima.filter(returning).copied().collect(),
-            sensor_maxima: reported(self.sensor.maxima()),
-            wall_maxima: reported(self.wall.maxima()),
+            search_ends_s,
+            competing,
+            returning_maxima,
+            sensor_maxima: reported(sensor_maxima),
+            wall_maxima: reported(searched),
             incident_width_s: width(&self.sensor, incident),
             wall_width_s: width(&self.wall, wall),
             reflected_width_s: reflected.and_then(|peak| width(&self.sensor, peak)),
@@ -226,27 +315,41 @@ impl Observer for Passages {
         self.sensor.step(piece);
         self.wall.step(piece);
         self.update();
-        match self.best {
-            Some((incident, wall)) if self.ends_shot => {
-                if piece.time_s(1.0) > search_ends_s(incident, wall) {
-                    Flow::Finished
-                } else {
-                    Flow::Continue
-                }
-            }
-            _ => Flow::Continue,
+        match self.ends_shot && self.over {
+            true => Flow::Finished,
+            false => Flow::Continue,
         }
     }
 }
 
-/// Until when the reflected pulse is looked for, in s.
-fn search_ends_s(incident: Maximum, wall: Maximum) -> f64 {
-    wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s)
+/// When the search for the wall's peak and the reflected pulse ends, in s.
+fn search_ends_s(incident: Option<Maximum>, wall: Maximum) -> f64 {
+    let way_s = incident.map_or(0.0, |incident| wall.time_s - incident.time_s);
+    (WALL_WITHIN * wall.time_s).max(wall.time_s + RETURN_WITHIN * way_s)
+}
+
+/// Maxima that could be taken for a pulse's peak.
+fn competing(pulse: Pulse, maxima: &[Maximum], peak: Maximum) -> Vec<Competing> {
+    let one = |&maximum: &Maximum| Competing {
+        pulse,
+        maximum,
+        share: maximum.value / peak.value,
+    };
+    let competes = |other: &Competing| {
+        let earlier = other.maximum.time_s < peak.time_s;
+        let forerunner = earlier && pulse != Pulse::Reflected;
+        // Later than that it has been to the striker.
+        let echo = pulse == Pulse::Wall && other.maximum.time_s > ECHO * peak.time_s;
+        let least = if forerunner { FORERUNS } else { COMPETES };
+        other.share >= least && !echo && other.maximum != peak
+    };
+    maxima.iter().map(one).filter(competes).collect()
 }
 
 /// Whether a maximum of the sensor bead lies in (tw, tw + 3 (tw − t7)].
 fn returns(peak: &Maximum, incident: Maximum, wall: Maximum) -> bool {
-    peak.time_s > wall.time_s && peak.time_s <= search_ends_s(incident, wall)
+    let since_s = peak.time_s - wall.time_s;
+    since_s > 0.0 && peak.time_s <= wall.time_s + RETURN_WITHIN * (wall.time_s - incident.time_s)
 }
 
 fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
@@ -317,4 +420,81 @@ fn crossing(signal: &Signal, peak: Maximum, level: f64, side: Side) -> Option<f6
 fn root_between(outer: f64, inner: f64, f: impl Fn(f64) -> f64) -> f64 {
     let span = inner - outer;
     outer + span * bracketed_root(|s| f(outer + s * span), 0.0, 1.0, 1e-12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn passages(sensor: &[(f64, f64)], wall: &[(f64, f64)], until_s: f64) -> Passages {
+        let [sensor, wall] =
+            [(Sensor::Bead(1), sensor), (Sensor::Contact(1), wall)].map(|(which, maxima)| {
+                let seen = maxima.iter().filter(|(time_s, _)| *time_s < until_s);
+                let maximum = |&(time_s, value): &(f64, f64)| Maximum { time_s, value };
+                Signal::assembled(which, (Vec::new(), seen.map(maximum).collect()), 1e-3)
+            });
+        Passages::from_signals(sensor, wall, until_s)
+    }
+
+    fn wall_s(sensor: &[(f64, f64)], wall: &[(f64, f64)], until_s: f64) -> f64 {
+        passages(sensor, wall, until_s).wall_peak_s().unwrap()
+    }
+
+    #[test]
+    fn small_maxima_neither_start_nor_end_the_search() {
+        let sensor = [(0.4, 1e-9), (3.0, 1.0), (15.0, 0.9)];
+        let wall = [(1.0, 1e-8), (10.0, 2.0)];
+        assert_eq!(wall_s(&sensor, &wall, 40.0), 10.0);
+        let none = passages(&sensor[..1], &wall[..1], 40.0).passage();
+        assert_eq!(none, Err(PassageError::NoWallPulse { duration_s: 40.0 }));
+        let only = passages(&sensor[..1], &wall, 40.0).passage();
+        assert_eq!(only, Err(PassageError::NoIncidentPulse { wall_s: 10.0 }));
+    }
+
+    #[test]
+    fn every_duration_that_covers_the_search_has_one_peak() {
+        // A train that grows, with sensor maxima just before each of its pulses: no
+        // window counted from them would reach the next. What comes at 60, after
+        // three times 18, is none of it.
+        let wall = [
+            (4.0, 1.0),
+            (9.0, 1.2),
+            (14.0, 1.1),
+            (18.0, 1.5),
+            (60.0, 7.0),
+        ];
+        let sensor = [
+            (3.9, 1.0),
+            (8.9, 1.0),
+            (13.9, 1.0),
+            (17.9, 1.1),
+            (20.0, 1.0),
+        ];
+        for until_s in [54.1, 59.0, 61.0, 1e3] {
+            let passage = passages(&sensor, &wall, until_s).passage().unwrap();
+            assert_eq!(passage.wall.time_s, 18.0, "{until_s}");
+            assert_eq!(passage.search_ends_s, 54.0);
+            let highest = passage.wall_maxima.iter().map(|peak| peak.value);
+            assert_eq!(highest.reduce(f64::max), Some(1.5));
+        }
+    }
+
+    #[test]
+    fn maxima_that_could_be_the_peak_are_reported() {
+        let wall = [
+            (4.0, 0.15),
+            (9.0, 0.05),
+            (10.0, 1.0),
+            (12.0, 0.6),
+            (13.0, 0.4),
+            (25.0, 0.9),
+        ];
+        let passage = passages(&[(3.0, 1.0)], &wall, 40.0).passage().unwrap();
+        let competing: Vec<f64> = (passage.competing.iter())
+            .map(|other| other.maximum.time_s)
+            .collect();
+        assert_eq!(competing, [4.0, 12.0]);
+        assert_eq!(passage.competing[1].pulse, Pulse::Wall);
+        assert_eq!(passage.competing[1].share, 0.6);
+    }
 }

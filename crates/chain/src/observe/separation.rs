@@ -7,6 +7,9 @@ use crate::wave::{Flow, Observer, Piece};
 pub struct Separation {
     pressed: bool,
     first: Option<(f64, f64)>,
+    /// The same at the end of the last step, if it left the contact open: a shot that
+    /// ends there has no step after it.
+    at_end: Option<(f64, f64)>,
 }
 
 impl Separation {
@@ -14,7 +17,7 @@ impl Separation {
     /// m/s, negative away from the chain.
     #[must_use]
     pub fn first(&self) -> Option<(f64, f64)> {
-        self.first
+        self.first.or(self.at_end)
     }
 }
 
@@ -25,6 +28,8 @@ impl Observer for Separation {
                 self.first = Some((piece.start_s(), piece.body(0, 0.0).1));
             }
             self.pressed |= !piece.is_open(0);
+            let opened = self.pressed && piece.overlap(0, 1.0).0 < 0.0;
+            self.at_end = opened.then(|| (piece.time_s(1.0), piece.body(0, 1.0).1));
         }
         Flow::Continue
     }

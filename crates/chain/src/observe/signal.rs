@@ -1,6 +1,7 @@
 //! One sensor's signal as polynomials, with its maxima as roots of its rate.
 
 use crate::sensor::Sensor;
+use crate::system::System;
 use crate::wave::{Flow, Observer, Piece, bracketed_root};
 
 /// A local maximum of a signal.
@@ -45,18 +46,29 @@ impl Stretch {
         self.start_s + self.length_s
     }
 
-    /// Slopes at the two ends from one-sided five-point formulas, and how much
-    /// the slope changes over the quarter of the step next to each end.
+    /// Slopes at the two ends from one-sided five-point formulas, and how far each
+    /// may be off: what the slope changes over the next quarter of the step, and, where
+    /// no polynomial follows the signal, what a formula of one point less gives.
     fn end_slopes(&self) -> [(f64, f64); 2] {
         let [f0, f1, f2, f3, f4] = self.values;
         let start = -25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4;
         let end = 25.0 * f4 - 48.0 * f3 + 36.0 * f2 - 16.0 * f1 + 3.0 * f0;
+        let rough = 3.0 * (f0 - 4.0 * f1 + 6.0 * f2 - 4.0 * f3 + f4).abs();
+        let rough = if rough > ROUGH * f0.abs().max(f4.abs()) {
+            rough
+        } else {
+            0.0
+        };
         [
-            (start, 12.0 * (f0 - 2.0 * f1 + f2)),
-            (end, 12.0 * (f2 - 2.0 * f3 + f4)),
+            (start, 12.0 * (f0 - 2.0 * f1 + f2).abs() + rough),
+            (end, 12.0 * (f2 - 2.0 * f3 + f4).abs() + rough),
         ]
     }
 }
+
+/// Fourth difference of a step's values, over the values, from which on a quartic does
+/// not follow the signal: an infinite slope at touch leaves 1.
+const ROUGH: f64 = 0.01;
 
 /// Follows one sensor through a shot.
 #[derive(Clone, Debug)]
@@ -65,6 +77,8 @@ pub struct Signal {
     stretches: Vec<Stretch>,
     maxima: Vec<Maximum>,
     largest: f64,
+    /// Least height times time of a pulse, in N s.
+    least_n_s: f64,
     /// End of the previous step: time, value, slope.
     before: Option<(f64, f64, f64)>,
 }
@@ -72,6 +86,16 @@ pub struct Signal {
 /// Steps at whose ends the signal is below this fraction of its largest value
 /// so far are not kept: they lie below anything that is picked.
 pub(crate) const KEPT: f64 = 1e-4;
+
+/// Height times time of a pulse's peak is at least this share of the momentum of the
+/// lightest body at the shot's speed; below are rounding and the forerunners of the
+/// wave in a loaded chain. Losses keep momentum, so they leave a pulse far above.
+const FAINTEST: f64 = 1e-3;
+
+/// Least height times time of a pulse of a chain, in N s.
+pub(crate) fn least_n_s(system: &System) -> f64 {
+    FAINTEST * system.scales().momentum_n_s
+}
 
 /// A force jump smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
@@ -85,17 +109,29 @@ impl Signal {
             stretches: Vec::new(),
             maxima: Vec::new(),
             largest: 0.0,
+            least_n_s: 0.0,
             before: None,
         }
     }
 
-    /// From parts that were found otherwise.
-    pub(crate) fn assembled(sensor: Sensor, stretches: Vec<Stretch>, maxima: Vec<Maximum>) -> Self {
+    /// From parts that were found otherwise; a pulse has at least this height times
+    /// time in N s.
+    pub(crate) fn assembled(
+        sensor: Sensor,
+        (stretches, maxima): (Vec<Stretch>, Vec<Maximum>),
+        least_n_s: f64,
+    ) -> Self {
         Self {
             stretches,
             maxima,
+            least_n_s,
             ..Self::new(sensor)
         }
+    }
+
+    /// Whether a maximum is large enough for a pulse's peak.
+    pub(super) fn is_pulse(&self, peak: &Maximum) -> bool {
+        peak.value * peak.time_s >= self.least_n_s
     }
 
     /// The sensor.
@@ -130,8 +166,8 @@ impl Signal {
     }
 
     /// A slope right in sign: near a maximum the samples alone may not be.
-    fn slope(&self, piece: &Piece<'_>, theta: f64, slope: f64, change: f64) -> f64 {
-        match slope.abs() < change.abs() {
+    fn slope(&self, piece: &Piece<'_>, theta: f64, (slope, off): (f64, f64)) -> f64 {
+        match slope.abs() < off {
             true => piece.signal_rate(self.sensor, theta),
             false => slope,
         }
@@ -158,7 +194,7 @@ impl Signal {
     fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
         let slopes = stretch.end_slopes();
         let [start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
-            .map(|(theta, (slope, change))| self.slope(piece, theta, slope, change));
+            .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
         let floor = JUMP * self.largest;
         // Before a signal is first seen, and after silence, it was 0.
@@ -180,6 +216,7 @@ impl Signal {
 
 impl Observer for Signal {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
+        self.least_n_s = least_n_s(piece.system());
         if !piece.sees(self.sensor) {
             self.fall_silent();
             return Flow::Continue;
@@ -225,16 +262,17 @@ fn interior_maxima(
     for i in 1..5 {
         if slope(last) > 0.0 && slope(i) <= 0.0 {
             let (low, high) = (0.25 * last as f64, 0.25 * i as f64);
-            found.push(refined(piece, sensor, low, high));
+            found.extend(refined(piece, sensor, (low, high)));
         }
         last = i;
     }
     found
 }
 
-/// The maximum in a bracket. Slopes of samples may misjudge the ends of the
-/// bracket by a little, so it is widened where the true rate disagrees.
-fn refined(piece: &Piece<'_>, sensor: Sensor, low: f64, high: f64) -> Maximum {
+/// The maximum in a bracket. Slopes of samples may be wrong near the ends of the
+/// bracket, so it is widened where the true rate disagrees; where the signal still
+/// rises at its end, as behind an infinite slope that no polynomial follows, there is none.
+fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option<Maximum> {
     let falling = |theta: f64| -piece.signal_rate(sensor, theta);
     let low = if falling(low) < 0.0 {
         low
@@ -247,8 +285,11 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, low: f64, high: f64) -> Maximum {
         (high + 0.25).min(1.0)
     };
     let theta = bracketed_root(falling, low, high, 1e-12);
-    Maximum {
+    let maximum = Maximum {
         time_s: piece.time_s(theta),
         value: piece.signal(sensor, theta),
-    }
+    };
+    // Fixed steps run across jumps, where values decide, not rates.
+    let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
+    (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)
 }

@@ -29,6 +29,9 @@ pub struct Tracer {
 /// Numbers of an energy budget beside its losses.
 const OF_BUDGET: usize = 10;
 
+/// Share of an interval by which a sample's time may be after the end of a step.
+const ROUNDING: f64 = 1e-9;
+
 impl Tracer {
     /// Most numbers of a trace, times and energies included: 0.8 GB.
     pub const MOST_NUMBERS: usize = 100_000_000;
@@ -87,7 +90,7 @@ impl Tracer {
     }
 
     fn sample(&mut self, piece: &Piece<'_>, time_s: f64) {
-        let theta = (time_s - piece.start_s()) / piece.step_s();
+        let theta = ((time_s - piece.start_s()) / piece.step_s()).min(1.0);
         self.trace.time_s.push(time_s);
         for (sensor, column) in self.trace.sensors.iter().zip(&mut self.trace.columns) {
             column.push(piece.signal(*sensor, theta));
@@ -104,7 +107,9 @@ impl Observer for Tracer {
         }
         loop {
             let time = self.next as f64 * self.interval_s;
-            if time >= end || !self.samples() {
+            // The sample at the end of the shot belongs to its last step, whatever
+            // rounding makes of either time.
+            if time > end + ROUNDING * self.interval_s || !self.samples() {
                 break;
             }
             self.sample(piece, time);

@@ -53,6 +53,8 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             speed_m_s: 1.0,
             time_s: 1.0,
             silent_force_n: 0.0,
+            momentum_n_s: 0.0,
+            crossing_s: 1.0,
         },
         kinds: Arc::default(),
     };

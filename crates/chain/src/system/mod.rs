@@ -62,6 +62,11 @@ pub struct Scales {
     /// Forces in N below this are rounding of the static forces, or nine
     /// orders below those of the impact: no signal.
     pub silent_force_n: f64,
+    /// Momentum in N s of the lightest body at that speed.
+    pub momentum_n_s: f64,
+    /// About how long in s the wave takes from one end of the chain to the other:
+    /// contact by contact with the momentum that sets it in motion.
+    pub crossing_s: f64,
 }
 
 /// A chain at static equilibrium, ready to be set in motion.

@@ -21,6 +21,8 @@ pub(super) fn scales(system: &System, kinds: &[(usize, Pair)]) -> Scales {
         speed_m_s: speed,
         time_s,
         silent_force_n,
+        momentum_n_s: lightest * speed,
+        crossing_s: crossing_s(system, kinds, lightest * speed),
     }
 }
 
@@ -42,6 +44,32 @@ fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f6
         };
         shorter_time(system, *c, (mass_kg, speed_m_s), shortest)
     })
+}
+
+/// About how long the wave takes along the chain. Contacts keep momentum, whatever
+/// they lose, so the wave is nowhere slower than the heaviest body so far with the
+/// momentum of the start; a contact takes the time in which it stops such a body at
+/// that speed, which goes as the speed to −1/5, and a gap is crossed at it.
+fn crossing_s(system: &System, kinds: &[(usize, Pair)], least_n_s: f64) -> f64 {
+    let momentum = match system.has_striker {
+        true => system.mass_kg[0] * system.velocity_m_s[0].abs(),
+        false => least_n_s,
+    };
+    let finite = |body: usize| Some(system.mass_kg[body]).filter(|mass| mass.is_finite());
+    let mut heaviest = finite(0).unwrap_or(0.0);
+    let (mut kinds, mut last, mut sum) = (kinds.iter().peekable(), (0.0, 0.0), 0.0);
+    for contact in (0..system.contacts()).filter(|c| system.has_contact(*c)) {
+        let new_kind = kinds.next_if(|(first, _)| *first <= contact).is_some();
+        let mass = finite(contact + 1).into_iter().chain(finite(contact));
+        heaviest = mass.fold(heaviest, f64::max);
+        let speed = momentum / heaviest;
+        if new_kind || last.0 != heaviest {
+            let time = shorter_time(system, contact, (heaviest, speed), f64::INFINITY);
+            last = (heaviest, if time.is_finite() { time } else { 0.0 });
+        }
+        sum += last.1 + (-system.offset_m[contact]).max(0.0) / speed;
+    }
+    if sum.is_finite() { sum } else { 0.0 }
 }
 
 fn characteristic_speed(system: &System) -> f64 {

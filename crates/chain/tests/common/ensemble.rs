@@ -71,7 +71,7 @@ pub fn passage(flown: &Flown) -> Option<Passage> {
     let [sensor, wall] = flown.signals.as_slice() else {
         return None;
     };
-    Passages::from_signals(sensor.clone(), wall.clone(), flown.time_s, true)
+    Passages::from_signals(sensor.clone(), wall.clone(), flown.time_s)
         .passage()
         .ok()
 }

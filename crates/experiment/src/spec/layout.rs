@@ -27,9 +27,14 @@ impl Spec {
         self.check_ring()
     }
 
-    /// Bodies that move: the beads, and body 0 if there is one.
+    /// Bodies that move: the beads, body 0 if there is one, and a stop of finite mass.
     fn bodies(&self) -> RangeInclusive<usize> {
-        usize::from(matches!(self.near, Near::Free { .. }))..=self.bead_count()
+        let stop_kg = match self.far {
+            Far::HalfBead { stop_kg, .. } | Far::Plane { stop_kg, .. } => stop_kg,
+            Far::Periodic { .. } | Far::Free => None,
+        };
+        let last = self.bead_count() + usize::from(stop_kg.is_some());
+        usize::from(matches!(self.near, Near::Free { .. }))..=last
     }
 
     /// Contacts between two bodies; a free end has none.

@@ -54,7 +54,8 @@ class Sweep(Flights):
         Bounds on their relative errors.
     columns : dict of str to ndarray
         Everything: times of flight, peaks in N, widths in s, pulse speed,
-        rebound in m/s, duration in s.
+        rebound in m/s, duration in s, and time and height of the highest
+        maximum that could be the arrival instead (``competing_*``).
     power_law_incident, power_law_reflected : PowerLaw or None
         None where fewer than two speeds have a time of flight.
     pilots : dict or None

@@ -136,7 +136,8 @@ class Shot:
     pulse_speed_beads_per_s : float or None
         Beads a second between sensor bead and wall.
     passage : dict
-        Peaks (``time_s``, ``value`` in N), widths in s, or why there are none.
+        Peaks (``time_s``, ``value`` in N), widths in s, maxima that could be a peak
+        instead (``competing``), the end of the search, or why there are none.
     sensor_maxima : list of dict
         Maxima of the sensor bead's signal above 5 % of its largest.
     striker_rebound : dict or None

@@ -56,7 +56,7 @@ fn flight(style: Style, shot: &Shot) -> Rows {
             "incident time of flight".into(),
             style.exact(flight.incident_s, "s"),
         ));
-        let reflected = reflected.unwrap_or_else(|| "no pulse came back".into());
+        let reflected = reflected.unwrap_or_else(|| no_return(brief, shot));
         rows.push(("reflected time of flight".into(), reflected));
     }
     if let Some(speed) = shot.pulse_speed_beads_s {
@@ -64,21 +64,16 @@ fn flight(style: Style, shot: &Shot) -> Rows {
         rows.push(("pulse speed, sensor bead to wall".into(), speed));
     }
     if let Some(rebound) = shot.rebound {
-        let first = match rebound.first {
-            None => "it never left bead 1".to_owned(),
-            Some((time, velocity)) => {
-                format!(
-                    "{} at {}",
-                    brief.quantity(velocity, "m/s"),
-                    brief.quantity(time, "s")
-                )
-            }
+        let at = |(time, velocity): (f64, f64)| {
+            let (velocity, time) = (brief.quantity(velocity, "m/s"), brief.quantity(time, "s"));
+            format!("{velocity} at {time}")
         };
+        let first = rebound
+            .first
+            .map_or_else(|| "it never left bead 1".to_owned(), at);
         rows.push(("striker when it first separates".into(), first));
-        let end = rebound.end_m_s.map_or_else(
-            || "not followed to its end".to_owned(),
-            |velocity| brief.quantity(velocity, "m/s"),
-        );
+        let end = rebound.end_s.zip(rebound.end_m_s);
+        let end = end.map_or_else(|| "not followed to its end".to_owned(), at);
         rows.push(("striker at the end of the shot".into(), end));
     }
     if shot.flight.is_none() {
@@ -86,6 +81,18 @@ fn flight(style: Style, shot: &Shot) -> Rows {
         rows.extend(peaks.map(|peak| ("peak of the sensor bead".into(), at(brief, peak))));
     }
     rows
+}
+
+/// Why there is no reflected time of flight.
+fn no_return(brief: Style, shot: &Shot) -> String {
+    let searched_s = (shot.passage.as_ref()).map_or(0.0, |seen| seen.search_ends_s);
+    match shot.duration_s < searched_s {
+        true => "not waited for".to_owned(),
+        false => format!(
+            "no pulse came back until {}",
+            brief.quantity(searched_s, "s")
+        ),
+    }
 }
 
 /// Longer chains have traces for that.
@@ -134,6 +141,11 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
     if let Some(peak) = &seen.reflected {
         pulse("sensor bead, reflected", peak, seen.reflected_width_s);
     }
+    let competing = seen.competing.iter().take(MOST_OTHERS);
+    rows.extend(competing.map(|other| {
+        let name = format!("{} pulse, competing", other.pulse.name());
+        (name, at(brief, &other.maximum))
+    }));
     let others: Vec<&Maximum> = (seen.sensor_maxima.iter())
         .filter(|peak| **peak != seen.incident && Some(**peak) != seen.reflected)
         .collect();

@@ -14,13 +14,15 @@ use hertzchain_verbs::table::{self, cell};
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
 
-const SHOWN: [Shown; 6] = [
+const SHOWN: [Shown; 8] = [
     ("speed", "m/s", 1.0, Column::Speed),
     ("incident ToF", "µs", 1e-6, Column::Incident),
     ("reflected ToF", "µs", 1e-6, Column::Reflected),
     ("sensor peak", "N", 1.0, Column::SensorPeak),
     ("wall peak", "N", 1.0, Column::WallPeak),
     ("rebound", "m/s", 1.0, Column::Rebound),
+    ("competing maximum", "µs", 1e-6, Column::CompetingTime),
+    ("competing peak", "N", 1.0, Column::CompetingPeak),
 ];
 
 /// Whether no speed has a shot.
