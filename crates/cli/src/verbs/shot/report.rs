@@ -3,7 +3,7 @@
 use crate::format::{Style, digits, pairs};
 use crate::print::heading;
 use hertzchain_chain::Start;
-use hertzchain_chain::observe::{Maximum, Passage};
+use hertzchain_chain::observe::{Maximum, Passage, Pulse};
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::Experiment;
 use hertzchain_study::{Plan, Shot};
@@ -123,6 +123,9 @@ fn at(style: Style, peak: &Maximum) -> String {
 /// Most other maxima of the sensor bead that are listed.
 const MOST_OTHERS: usize = 8;
 
+/// Most maxima that could be a pulse's peak that are listed, the highest first.
+const MOST_COMPETING: usize = 3;
+
 fn pulses(style: Style, seen: &Passage) -> Rows {
     let brief = Style::brief(style.units);
     let mut rows = Rows::new();
@@ -141,11 +144,14 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
     if let Some(peak) = &seen.reflected {
         pulse("sensor bead, reflected", peak, seen.reflected_width_s);
     }
-    let competing = seen.competing.iter().take(MOST_OTHERS);
-    rows.extend(competing.map(|other| {
-        let name = format!("{} pulse, competing", other.pulse.name());
-        (name, at(brief, &other.maximum))
-    }));
+    for pulse in [Pulse::Incident, Pulse::Wall, Pulse::Reflected] {
+        let of_pulse = seen.competing.iter().filter(|other| other.pulse == pulse);
+        let mut highest: Vec<_> = of_pulse.collect();
+        highest.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let name = format!("{} pulse, competing", pulse.name());
+        let shown = highest.iter().take(MOST_COMPETING);
+        rows.extend(shown.map(|other| (name.clone(), at(brief, &other.maximum))));
+    }
     let others: Vec<&Maximum> = (seen.sensor_maxima.iter())
         .filter(|peak| **peak != seen.incident && Some(**peak) != seen.reflected)
         .collect();
