@@ -100,6 +100,11 @@ pub fn doubt(ending: &Ending) -> Option<String> {
     }
 }
 
+/// Sentences, one a line.
+pub fn lines(sentences: Vec<String>) -> String {
+    sentences.iter().map(|one| format!("{one}\n")).collect()
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 mod tests {

@@ -2,6 +2,7 @@
 
 use crate::finding::Problem;
 use crate::keys::ranges::SPEED;
+use crate::reference;
 use crate::spec::{Far, Near, Shape, Spec};
 use crate::validity;
 use crate::value::{Units, short};
@@ -26,7 +27,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
     let far = far(&spec.far, last, &materials);
     oddities.extend(inelastic(spec));
     oddities.extend(closed_gaps(spec));
-    let chain = Chain {
+    let mut chain = Chain {
         start,
         far,
         initial: initial(spec),
@@ -39,6 +40,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
         tension: spec.tension,
         beads,
     };
+    chain.sections = reference::parted(spec, &chain)?;
     oddities.extend(validity::warnings(spec, &chain));
     Ok((chain, oddities))
 }

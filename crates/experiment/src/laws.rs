@@ -1,5 +1,6 @@
 //! Contact laws of a file, by the registry's declarations.
 
+use crate::check::whole;
 use crate::document::{Node, Value};
 use crate::finding::Problem;
 use crate::keys::Limits;
@@ -18,7 +19,19 @@ pub struct LawSpec {
     /// Parameter values by name, in SI; also the stiffness that a law takes from
     /// the section's `elastic_hertz`, and 1 where a chain has no materials.
     pub given: Vec<(&'static str, f64)>,
+    /// Values that are those of one contact, by name, with that contact: the others of the
+    /// section keep the ratios to it that materials and radii give them.
+    pub(crate) references: Vec<(&'static str, usize)>,
     pub(crate) span: Range<usize>,
+}
+
+/// Key of the contact that a law's K or A belongs to.
+pub(crate) const CONTACT: &str = "contact";
+
+/// Whether a parameter follows from materials and radii, contact by contact, where the file
+/// gives none.
+pub(crate) fn is_own(parameter: &Parameter) -> bool {
+    parameter.source == Source::Materials
 }
 
 impl LawSpec {
@@ -35,10 +48,15 @@ impl LawSpec {
 
     /// The law itself.
     pub(crate) fn build(&self) -> Result<Arc<dyn Law>, Problem> {
+        self.build_with(&self.given)
+    }
+
+    /// The law with other values.
+    pub(crate) fn build_with(&self, given: &[(&str, f64)]) -> Result<Arc<dyn Law>, Problem> {
         let problem = |e: hertzchain_chain::laws::LawError| {
             Problem::new(&self.span, format!("law `{}` can't be used", e.law), e.what)
         };
-        self.row.build(&self.given).map_err(problem)
+        self.row.build(given).map_err(problem)
     }
 }
 
@@ -49,6 +67,7 @@ pub(crate) fn check(node: &Node, units: Units) -> Vec<Problem> {
         Err(problem) => return vec![problem],
     };
     let mut problems = unknown_parameters(node, row);
+    problems.extend(contact(node).err());
     let unsound = unsound(node, row, units);
     for parameter in row.info.parameters {
         // Its unit is not known: the exponent's own report comes first.
@@ -89,18 +108,30 @@ fn unsound(node: &Node, row: &Row, units: Units) -> Vec<&'static str> {
 /// One member of `laws`, already checked.
 pub(crate) fn read(node: &Node, units: Units) -> Result<LawSpec, Problem> {
     let row = row_of(node)?;
-    let mut given = Vec::new();
+    let contact = contact(node)?;
+    let (mut given, mut references) = (Vec::new(), Vec::new());
     for parameter in row.info.parameters {
         if let Some(value) = node.get(parameter.name) {
             let si = expected(parameter, row, node, units, |e| e.read(value))?;
             given.push((parameter.name, si.value));
+            let own = contact.filter(|_| is_own(parameter));
+            references.extend(own.map(|contact| (parameter.name, contact)));
         }
     }
     Ok(LawSpec {
         row,
         given,
+        references,
         span: node.span.clone(),
     })
+}
+
+/// The contact that a law's K or A belongs to, where the file names one.
+fn contact(node: &Node) -> Result<Option<usize>, Problem> {
+    node.get(CONTACT)
+        .map(|value| whole(CONTACT, 0, i64::MAX, value))
+        .transpose()
+        .map(|found| found.and_then(|contact| usize::try_from(contact).ok()))
 }
 
 /// Refuses the same law with the same parameters twice in one section: its
@@ -156,13 +187,17 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
 
 /// Whether a key that the law does not know is a slip of this one.
 fn is_misspelt(name: &str, node: &Node, row: &Row) -> bool {
-    let known = |key: &str| key == "law" || row.info.parameters.iter().any(|p| p.name == key);
+    let known = |key: &str| {
+        key == "law" || key == CONTACT || row.info.parameters.iter().any(|p| p.name == key)
+    };
     let mut strange = node.entries().iter().filter(|entry| !known(&entry.key));
     strange.any(|entry| nearest::of(&entry.key, [name]).is_some())
 }
 
 fn unknown_parameters(node: &Node, row: &Row) -> Vec<Problem> {
-    let known: Vec<&str> = row.info.parameters.iter().map(|p| p.name).collect();
+    let own = row.info.parameters.iter().any(is_own).then_some(CONTACT);
+    let names = row.info.parameters.iter().map(|p| p.name);
+    let known: Vec<&str> = names.chain(own).collect();
     let strange = |key: &str| key != "law" && !known.contains(&key);
     let entries = node.entries().iter().filter(|entry| strange(&entry.key));
     entries

@@ -60,6 +60,7 @@ mod motion_file;
 mod nearest;
 mod paths;
 mod presets;
+mod reference;
 mod schema;
 mod spec;
 mod syntax;
@@ -79,6 +80,7 @@ pub use laws::LawSpec;
 pub use paths::{Named, PathError, Place};
 pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
 pub use reading::{Pick, Reading, Switch, SwitchError};
+pub use reference::Reference;
 pub use schema::schema;
 pub use spec::{
     Actuator, Amplifier, Campaign, Channels, Laying, Liquid, LowPass, Method, Photogate, Recorder,

@@ -2,6 +2,7 @@
 //! registry of contact laws, for editors.
 
 use crate::keys::{Fields, Key, Kind, Limits, Need, ROOT, Variants};
+use crate::laws;
 use crate::units;
 use crate::value::Units;
 use hertzchain_chain::laws::{LAWS, Parameter, Row, Source};
@@ -176,6 +177,12 @@ fn law_table(row: &Row, units: Units) -> Value {
             "type": types(parameter.unit, units), "pattern": QUANTITY, "description": about,
         });
         properties.insert(parameter.name.to_owned(), schema);
+    }
+    if row.info.parameters.iter().any(laws::is_own) {
+        let about = "contact that K or A belongs to; the section's others keep their ratios to it, as materials and \
+                     radii give them. All have the same without it";
+        let schema = json!({ "type": "integer", "minimum": 0, "description": about });
+        properties.insert(laws::CONTACT.to_owned(), schema);
     }
     let needed = row.info.parameters.iter().filter(|p| is_required(p));
     let required: Vec<&str> = std::iter::once("law")

@@ -177,3 +177,92 @@ fn sections_do_not_share_their_stiffness_with_others() {
     // (3/2) A K with K = 1: roundings of two products.
     close(number, 0.45, 1e-14);
 }
+
+/// Beads of two sizes before a plane.
+fn unlike(laws: &str) -> Result<Experiment, Mistakes> {
+    let text = format!(
+        "{STEEL}shear_viscosity = \"3e4 Pa s\"\n[striker]\nspeed = \"0.5 m/s\"\nmass = \"5 g\"\n[[beads]]\nrepeat = 2\n\
+         cell = [{{ radius = \"6 mm\", mass = \"5 g\", material = \"steel\" }}, \
+         {{ radius = \"3 mm\", mass = \"1 g\", material = \"steel\" }}]\n\
+         [[contacts]]\nlaws = [{laws}]\n[far_end]\nkind = \"plane\"\n"
+    );
+    Experiment::from_text("stiffness.toml", &text)
+}
+
+/// The first number of each contact's first and last law.
+fn coefficients(experiment: &Experiment) -> Vec<[f64; 2]> {
+    let (chain, _) = experiment.chain(None).unwrap();
+    let of = |contact: usize| {
+        let mut all = chain.sections.iter();
+        let section = all
+            .find(|section| section.contacts.contains(&contact))
+            .unwrap();
+        let pair = chain.pair(contact).unwrap();
+        [section.laws.first(), section.laws.last()]
+            .map(|law| law.unwrap().coefficients(&pair).unwrap()[0])
+    };
+    (0..=chain.beads.len()).map(of).collect()
+}
+
+#[test]
+fn a_number_with_its_contact_scales_the_others_and_one_without_holds_for_all() {
+    let laws = |hertz: &str, damping: &str| {
+        let text = format!(
+            "{{ law = \"elastic_hertz\"{hertz} }}, {{ law = \"damping_viscoelastic\"{damping} }}"
+        );
+        coefficients(&unlike(&text).unwrap())
+    };
+    let own = laws("", "");
+    let k = own[2][0];
+    let stiffer = laws(
+        &format!(", stiffness = \"{} N/m^1.5\", contact = 2", 2.0 * k),
+        "",
+    );
+    for (at, (stiffer, own)) in stiffer.iter().zip(&own).enumerate() {
+        // Roundings of a few products; the damping has the contact's K.
+        close(stiffer[0] / own[0], 2.0, 1e-14);
+        close(stiffer[1] / own[1], 2.0, 1e-14);
+        assert_eq!(stiffer[0] == 2.0 * k, (1..=3).contains(&at), "{at}");
+    }
+    let one = laws(&format!(", stiffness = \"{k} N/m^1.5\""), "");
+    assert!(one.iter().all(|of| of[0] == k));
+    let slower = laws("", ", relaxation_time = \"1 us\", contact = 1");
+    for (slower, own) in slower.iter().zip(&own) {
+        // A is of the material alone, and one material has one A.
+        close(slower[0], own[0], 0.0);
+        close(slower[1], 1.5 * 1e-6 * own[0], 1e-9 * own[0]);
+    }
+}
+
+#[test]
+fn setting_what_materials_give_keeps_ratios_and_what_the_file_gives_its_one_value() {
+    let bare = unlike("\"elastic_hertz\"").unwrap();
+    let path = "contacts[0].laws.elastic_hertz.stiffness";
+    let reference = bare.reference(path).unwrap();
+    assert_eq!((reference.contact, reference.contacts), (Some(1), 0..=4));
+    let own = coefficients(&bare);
+    let set = |experiment: &Experiment, value: f64| {
+        let changed = experiment.set(&[(path, value)]).unwrap();
+        (coefficients(&changed), changed)
+    };
+    let (same, again) = set(&bare, own[1][0]);
+    // The reference contact's own number gives the contacts' own, to the last digit.
+    assert_eq!(same[1], own[1]);
+    let (twice, _) = set(&again, 2.0 * own[1][0]);
+    for (twice, own) in twice.iter().zip(&own) {
+        close(twice[0] / own[0], 2.0, 1e-14);
+    }
+    let given = unlike("{ law = \"elastic_hertz\", stiffness = \"5e9 N/m^1.5\" }").unwrap();
+    assert_eq!(given.reference(path).unwrap().contact, None);
+    let (one, _) = set(&given, 6e9);
+    assert!(one.iter().all(|of| of[0] == 6e9));
+}
+
+#[test]
+fn a_contact_outside_the_chain_or_without_a_number_of_materials_is_refused() {
+    let refused = |laws: &str| format!("{:?}", unlike(laws).unwrap_err());
+    let beyond = "{ law = \"elastic_hertz\", stiffness = \"5e9 N/m^1.5\", contact = 9 }";
+    assert!(refused(beyond).contains("contact 9 is outside the chain"));
+    let cubic = "\"elastic_hertz\", { law = \"damping_cubic\", coefficient = 1, contact = 1 }";
+    assert!(refused(cubic).contains("has no parameter `contact`"));
+}

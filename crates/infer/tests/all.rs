@@ -15,6 +15,7 @@ mod nonlinear;
 mod peers;
 mod posterior;
 mod pulses;
+mod reference;
 mod robust;
 mod round_trip;
 mod shots;

@@ -3,7 +3,7 @@
 use crate::arguments::infer::{Design as Arguments, Push, WayKind};
 use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
-use crate::inference::user;
+use crate::inference::{references_json, user};
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
     Goodness, Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
@@ -203,6 +203,7 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
         })
     };
     json!({
+        "references": references_json(problem.model()),
         "follows_data": !designed.goodness.is_rejected(),
         "parameters": designed.names,
         "units": designed.units,

@@ -4,7 +4,7 @@ use crate::failure::{Failure, print_assumed, print_kept};
 use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
-use crate::words::misfit;
+use crate::words::{lines, misfit};
 use hertzchain_infer::{CurveProblem, Expected};
 use hertzchain_verbs::arguments::infer::Design as Arguments;
 use hertzchain_verbs::design::Designed;
@@ -68,9 +68,10 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
     let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
     format!(
-        "{}Now: {}\n{}\n{}\n{}\n{}\n{}",
+        "{}Now: {}\n{}{}\n{}\n{}\n{}\n{}",
         unfit(designed),
         now.join(", "),
+        lines(inference::references(problem.model())),
         beware(problem, designed),
         heading("One measurement more, best first"),
         format::table(&head, &best),

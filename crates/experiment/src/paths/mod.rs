@@ -10,6 +10,7 @@ mod slots;
 use crate::document::{Entry, Node, Number, Value};
 use crate::experiment::Experiment;
 use crate::finding::Mistakes;
+use crate::laws::CONTACT;
 use crate::nearest;
 use crate::reading::{PreloadReading, Reading};
 use slots::{Slot, Step};
@@ -142,6 +143,9 @@ impl Experiment {
     /// F = k δ^n does on n, setting n alone keeps the number of k, in N/m^n of the
     /// new n: the force at an overlap of 1 m stays.
     ///
+    /// A K or A that the file leaves to materials and radii is set at its [`Reference`](crate::Reference)
+    /// contact, and the section's other contacts keep their ratios to it.
+    ///
     /// ```
     /// let dry = hertzchain_experiment::preset("dry")?;
     /// let soft = dry.set(&[("young_modulus", 200e9), ("damping_cubic.coefficient", 50.0)])?;
@@ -246,6 +250,13 @@ impl Experiment {
         }
         for (slot, value) in found {
             assign(&mut tree, &slot.steps, value);
+            let reference = slot
+                .is_derived
+                .then(|| self.reference(&slot.path))
+                .flatten();
+            if let Some(contact) = reference.and_then(|found| found.contact) {
+                assign(&mut tree, &beside(&slot.steps, CONTACT), whole(contact));
+            }
         }
         Ok(self.with_tree(tree)?)
     }
@@ -265,6 +276,21 @@ impl Experiment {
             }
         }
     }
+}
+
+/// Steps to another key of the same table.
+fn beside(steps: &[Step], key: &str) -> Vec<Step> {
+    let (_, table) = steps.split_last().unwrap_or((&Step::Index(0), &[]));
+    let key = Step::Key(key.to_owned());
+    table.iter().cloned().chain([key]).collect()
+}
+
+fn whole(count: usize) -> Value {
+    Value::Number(Number {
+        value: count as f64,
+        half_digit: 0.0,
+        from_code: true,
+    })
 }
 
 /// The slot of a path or of an end of one: given numbers come first.

@@ -20,6 +20,8 @@ pub(super) struct Slot<'a> {
     /// The unit with the names of parameters in the places of their values; empty
     /// where it depends on none.
     form: &'static str,
+    /// Whether it is left to materials and radii, which give each contact its own.
+    pub(super) is_derived: bool,
 }
 
 impl Slot<'_> {
@@ -175,8 +177,11 @@ impl<'a> Walk<'a> {
             let unit = laws::unit(parameter, row, member, self.units);
             let name = parameter.name;
             self.push(unit.into(), member.get(name), false, &at.key(name));
-            if let (true, Some(slot)) = (parameter.unit.contains('{'), self.slots.last_mut()) {
-                slot.form = parameter.unit;
+            if let Some(slot) = self.slots.last_mut() {
+                slot.is_derived = laws::is_own(parameter) && slot.node.is_none();
+                if parameter.unit.contains('{') {
+                    slot.form = parameter.unit;
+                }
             }
         }
     }
@@ -184,6 +189,7 @@ impl<'a> Walk<'a> {
     fn push(&mut self, unit: Cow<'static, str>, node: Option<&'a Node>, count: bool, way: &Way) {
         self.slots.push(Slot {
             form: "",
+            is_derived: false,
             path: way.path.clone(),
             steps: way.steps.clone(),
             unit,

@@ -70,6 +70,7 @@ fn hertz(root: &View<'_>) -> SectionSpec {
     let law = find("elastic_hertz").map(|row| LawSpec {
         row,
         given: Vec::new(),
+        references: Vec::new(),
         span: root.span(),
     });
     SectionSpec {
@@ -88,8 +89,8 @@ fn hertz(root: &View<'_>) -> SectionSpec {
 fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<SectionSpec, Problem> {
     let from = table.count("from")?.unwrap_or(0);
     let to = table.count("to")?;
-    within(table, "from", from, beads)?;
-    within(table, "to", to.unwrap_or(beads), beads)?;
+    within(&table.span_of("from"), from, beads)?;
+    within(&table.span_of("to"), to.unwrap_or(beads), beads)?;
     if to.unwrap_or(beads) < from {
         let message = format!("this section ends before it begins at contact {from}");
         let label = format!("expected a contact from {from} to {beads}");
@@ -99,6 +100,12 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
     let laws = members.map(|member| laws::read(member, table.units));
     let laws: Vec<LawSpec> = laws.collect::<Result<_, _>>()?;
     laws::each_once(&laws)?;
+    for law in &laws {
+        let contacts = law.references.iter().map(|(_, contact)| *contact);
+        contacts
+            .map(|contact| within(&law.span, contact, beads))
+            .collect::<Result<(), _>>()?;
+    }
     Ok(SectionSpec {
         from,
         to: to.filter(|&contact| contact != beads),
@@ -112,13 +119,13 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
     })
 }
 
-fn within(table: &View<'_>, key: &str, contact: usize, beads: usize) -> Result<(), Problem> {
+fn within(span: &Range<usize>, contact: usize, beads: usize) -> Result<(), Problem> {
     if contact <= beads {
         return Ok(());
     }
     let message = format!("contact {contact} is outside the chain of {beads} beads");
     let label = format!("expected a contact from 0 to {beads}, the wall contact");
-    Err(Problem::new(&table.span_of(key), message, label))
+    Err(Problem::new(span, message, label))
 }
 
 /// Every contact belongs to one section.

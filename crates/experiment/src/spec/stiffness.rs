@@ -29,6 +29,12 @@ fn left_out(law: &LawSpec, by: impl Fn(Source) -> bool) -> bool {
     law.row.info.parameters.iter().any(declares) && given(law).is_none()
 }
 
+/// The contact that a law's stiffness belongs to.
+fn reference(law: &LawSpec) -> Option<usize> {
+    let mut own = law.references.iter().filter(|(name, _)| *name == STIFFNESS);
+    own.next().map(|(_, contact)| *contact)
+}
+
 fn given(law: &LawSpec) -> Option<f64> {
     let mut given = law.given.iter().filter(|(name, _)| *name == STIFFNESS);
     given.next().map(|(_, value)| *value)
@@ -50,10 +56,18 @@ fn shared_stiffness(laws: &mut [LawSpec]) -> Result<(), Problem> {
         return Ok(());
     }
     let sum: Option<f64> = found.into_iter().sum();
+    let hertz = laws.iter().filter(|law| law.name() == "elastic_hertz");
+    let references: Vec<Option<usize>> = hertz.map(reference).collect();
+    // Of a sum, parts that belong to other contacts have no value at one.
+    let clear = references.windows(2).all(|pair| pair[0] == pair[1]);
+    let sum = sum.filter(|_| clear);
+    let reference = references.first().copied().flatten();
     let sharing = |law: &&mut LawSpec| left_out(law, |source| source == Source::Hertz);
     for law in laws.iter_mut().filter(sharing) {
         let stiffness = sum.ok_or_else(|| unclear(law))?;
         law.given.push((STIFFNESS, stiffness));
+        law.references
+            .extend(reference.map(|contact| (STIFFNESS, contact)));
     }
     Ok(())
 }
@@ -64,6 +78,6 @@ fn unclear(law: &LawSpec) -> Problem {
     let label = "expected a `stiffness` here";
     Problem::new(&law.span, message, label).help(
         "of several \"elastic_hertz\" in this section one has a stiffness and one leaves it to the \
-         materials",
+         materials, or theirs belong to other contacts",
     )
 }

@@ -10,7 +10,7 @@ mod name;
 mod start;
 
 use crate::Parameter;
-use hertzchain_experiment::{Experiment, PathError};
+use hertzchain_experiment::{Experiment, PathError, Reference};
 pub use name::SHORT_NAMES;
 use name::Target;
 use std::collections::HashSet;
@@ -107,6 +107,7 @@ pub struct FreeNumber {
     /// Value at the start, or prefactor and exponent.
     start: (f64, f64),
     bounds: (f64, f64),
+    reference: Option<Reference>,
 }
 
 impl FreeNumber {
@@ -141,6 +142,10 @@ impl FreeNumber {
             name: name.to_owned(),
             form: if law { Form::PowerLaw } else { form },
             bounds: start::bounds(&found),
+            reference: found
+                .target
+                .path()
+                .and_then(|path| experiment.reference(path)),
             unit: found.unit,
             target: found.target,
             start,
@@ -191,6 +196,12 @@ impl FreeNumber {
     #[must_use]
     pub fn path(&self) -> Option<&str> {
         self.target.path()
+    }
+
+    /// The contacts that a K or A holds for, and which of them has the value itself.
+    #[must_use]
+    pub fn reference(&self) -> Option<&Reference> {
+        self.reference.as_ref()
     }
 
     /// The material and the key of a number of a material.

@@ -1,7 +1,7 @@
 //! Where a free number starts and what it may be.
 
 use super::name::{Found, Target};
-use hertzchain_chain::{Chain, Material, Pair, laws};
+use hertzchain_chain::laws;
 use hertzchain_experiment::Experiment;
 use std::f64::consts::FRAC_PI_2;
 
@@ -26,8 +26,8 @@ pub(super) fn of(experiment: &Experiment, found: &Found, asked: Option<f64>) -> 
     }
 }
 
-/// Stiffness and relaxation time of a section as they follow from materials, at
-/// the experiment's own speed; a bulk viscosity as the shear one.
+/// Stiffness and relaxation time of a section's reference contact as they follow from
+/// materials and radii, at the experiment's own speed; a bulk viscosity as the shear one.
 fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     let Target::Number(path) = &found.target else {
         return None;
@@ -35,23 +35,8 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     if let Some(material) = path.strip_suffix("bulk_viscosity") {
         return experiment.get(&format!("{material}shear_viscosity")).ok();
     }
-    let (chain, _) = experiment.chain(None).ok()?;
-    let index = path.strip_prefix("contacts[")?.split(']').next()?;
-    let pair = pair(&chain, index.parse().ok()?)?;
-    let law = path.rsplit('.').nth(1)?;
-    match path.rsplit('.').next()? {
-        "stiffness" if law.starts_with("elastic_hertz") => Some(pair.hertz_stiffness()),
-        "relaxation_time" => Some(pair.mean_relaxation_time_s(Material::relaxation_time_s)),
-        _ => None,
-    }
-    .filter(|value| value.is_finite() && *value > 0.0)
-}
-
-/// The bodies of a section's first contact between beads, which stands for all.
-fn pair(chain: &Chain, section: usize) -> Option<Pair> {
-    let contacts = &chain.sections.get(section)?.contacts;
-    let inside = (*contacts.start()).max(1).min(*contacts.end());
-    chain.pair(inside)
+    let reference = experiment.reference(path)?;
+    reference.own_value.filter(|value| *value > 0.0)
 }
 
 /// Steepest exponent of a force that the experiment file takes.

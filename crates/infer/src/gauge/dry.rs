@@ -23,11 +23,15 @@ pub(super) fn contact(chains: &Chains<'_>) -> Result<[f64; 2], FreeError> {
     Ok([value("K")?, value("A")?])
 }
 
-/// Reduced radius in m of the first wet contact; `None` without any.
+/// Reduced radius in m of the wet contact whose K is fitted; `None` without any.
 pub(super) fn wet_radius_m(experiment: &Experiment) -> Option<f64> {
     let section = experiment.sections().iter().find(|section| section.wet)?;
+    let stiffness = FreeNumber::find(experiment, "wet.K", None).ok();
+    let reference = stiffness
+        .as_ref()
+        .and_then(|number| number.reference()?.contact);
     let (chain, _) = experiment.chain(None).ok()?;
-    Some(chain.pair(section.from)?.radius_m)
+    Some(chain.pair(reference.unwrap_or(section.from))?.radius_m)
 }
 
 /// Square root of a covariance by columns (Cholesky): shifts of all parameters

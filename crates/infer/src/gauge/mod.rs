@@ -230,6 +230,12 @@ impl Gauge {
         self.radius_m
     }
 
+    /// The wet chain's model.
+    #[must_use]
+    pub fn wet_model(&self) -> &Model {
+        &self.wet
+    }
+
     /// The wet data.
     #[must_use]
     pub fn wet(&self) -> &Data {

@@ -208,6 +208,7 @@ pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
     let own = json!({
         "model": fitted.problem.model().experiment().name(),
         "kept": inference::kept(fitted.problem.model(), &arguments.modelled.set),
+        "references": inference::references_json(fitted.problem.model()),
         "residuals": fitted.problem.residual_count(),
         "fitted_to_single_records": fitted.problem.nuisance_count(),
         "records": records.map(|record| json!({

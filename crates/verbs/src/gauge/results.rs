@@ -1,6 +1,7 @@
 //! What the gauge says as JSON, in SI.
 
 use super::Gauged;
+use crate::inference::references_json;
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Gauge, LAWS, Pair, PowerForm, Scan, SharedLaw, WetRow, is_told};
 use serde_json::{Value, json};
@@ -17,6 +18,7 @@ pub fn json(gauged: &Gauged) -> Value {
             "value": gauge.dry_fit.point[at], "standard_error": gauge.dry_covariance.sd[at],
         })).collect::<Value>(),
         "dry_chi_square": gauge.dry_fit.chi_square(),
+        "references": references_json(gauge.wet_model()),
         "contacts": gauged.rows.iter().map(row).collect::<Value>(),
         "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
         "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),

@@ -2,9 +2,11 @@
 
 mod kept;
 mod known;
+mod reference;
 
 pub use kept::kept;
 pub use known::is_meant;
+pub use reference::{references, references_json};
 
 use crate::arguments::Input;
 use crate::arguments::infer::{Assignment, ErrorShots, Freed, Measured, Modelled, What};

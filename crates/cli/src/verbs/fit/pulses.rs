@@ -5,6 +5,7 @@ use crate::failure::{Failure, print_kept};
 use crate::folder::Folder;
 use crate::format::digits;
 use crate::print::{self, heading};
+use crate::words::lines;
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 use hertzchain_infer::Problem;
 use hertzchain_verbs::arguments::infer::Fit as Arguments;
@@ -36,12 +37,13 @@ fn text(fitted: &Pulsed) -> String {
     let noise = records.iter().flat_map(|record| &record.sigma_v);
     let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
     let mut text = format!(
-        "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n",
+        "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n{}",
         heading(fitted.problem.model().experiment().title()),
         records.len(),
         fitted.problem.residual_count(),
         digits(1e3 * noise_v, 2),
-        report::values(&fitted.inferred)
+        report::values(&fitted.inferred),
+        lines(inference::references(fitted.problem.model()))
     );
     text += &report::described(&fitted.inferred, &fitted.problem);
     text += &report::determined(&fitted.inferred, &advice);

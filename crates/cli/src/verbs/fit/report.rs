@@ -2,12 +2,12 @@
 
 use crate::format::{self, digits};
 use crate::print::heading;
-use crate::words::{chi_square_text, doubt, estimate, misfit, percent, rough};
+use crate::words::{chi_square_text, doubt, estimate, lines, misfit, percent, rough};
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Problem, Profile, Runs, Started,
 };
 use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
-use hertzchain_verbs::inference::widened;
+use hertzchain_verbs::inference::{references, widened};
 
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
@@ -21,12 +21,13 @@ pub fn text(fitted: &Fitted) -> String {
     };
     let title = fitted.problem.model().experiment().title();
     let mut text = format!(
-        "{}\n{}{case}: {} values at {} speeds\n\n{}\n",
+        "{}\n{}{case}: {} values at {} speeds\n\n{}\n{}",
         heading(title),
         data.file,
         data.value_count(),
         data.rows.len(),
-        values(&fitted.inferred)
+        values(&fitted.inferred),
+        lines(references(fitted.problem.model()))
     );
     text += &described(&fitted.inferred, &fitted.problem);
     text += &accuracy(fitted);

@@ -2,17 +2,29 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{chi_square_of, chi_square_text, estimate, misfit, percent};
+use crate::words::{chi_square_of, chi_square_text, estimate, lines, misfit, percent};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_told};
 use hertzchain_verbs::gauge::Gauged;
+use hertzchain_verbs::inference::references;
 
 /// Everything that is to be said.
 pub fn text(gauged: &Gauged) -> String {
     let doubts = doubts(gauged);
     let mut text = doubts.clone();
-    text += &format!("{}\n{}\n", heading("Dry contacts"), dry(gauged));
-    text += &format!("{}\n{}", heading("Wet contacts"), contacts(gauged));
+    let (dry_model, wet_model) = (gauged.gauge.dry().model(), gauged.gauge.wet_model());
+    text += &format!(
+        "{}\n{}{}\n",
+        heading("Dry contacts"),
+        dry(gauged),
+        lines(references(dry_model))
+    );
+    text += &format!(
+        "{}\n{}{}",
+        heading("Wet contacts"),
+        contacts(gauged),
+        lines(references(wet_model))
+    );
     if let Some(laws) = &gauged.laws {
         text += &law("K", "N/m^1.5", &laws.stiffness);
         text += &law("A", "s", &laws.relaxation);
