@@ -4,6 +4,7 @@ mod arguments;
 mod failure;
 mod folder;
 mod format;
+mod notes;
 mod pictures;
 mod print;
 mod verbs;

@@ -89,7 +89,8 @@ pub fn doubt(ending: &Ending) -> Option<String> {
     match ending {
         Ending::Minimum | Ending::Floor { .. } | Ending::Open { .. } => None,
         Ending::Stuck { expected_fall } => Some(format!(
-            "the fit is stuck where chi-square/2 should still fall by {expected_fall:.1e}: start elsewhere (--start, --starts)"
+            "the fit is stuck where chi-square/2 should still fall by {expected_fall:.1e}: curves may jump by their own \
+             errors (ask for more by --accuracy), or start elsewhere (--start, --starts)"
         )),
         Ending::Iterations { expected_fall } => Some(format!(
             "the fit ran out of iterations where chi-square/2 should still fall by {expected_fall:.1e}: start nearer"

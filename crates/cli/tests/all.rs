@@ -13,6 +13,7 @@ mod exponents;
 mod fit;
 mod fit_doubts;
 mod fit_mistakes;
+mod fit_models;
 mod fit_options;
 mod gauge;
 mod legends;

@@ -45,7 +45,18 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     let sweep = ["sweep", &softer, "--speeds", "log:0.1:1.2:6", "--out", out];
     assert!(run(&sweep).status.success());
     let told = |dry: &str| {
-        let gauge = ["gauge", &pump, "--dry", dry, "--use", "incident"];
+        let gauge = [
+            "gauge",
+            &pump,
+            "--dry",
+            dry,
+            "--use",
+            "incident",
+            "-p",
+            "pump",
+            "--dry-preset",
+            "dry",
+        ];
         String::from_utf8(run(&with_errors(&gauge)).stdout).unwrap()
     };
     let text = told(&format!("{out}/sweep.csv"));

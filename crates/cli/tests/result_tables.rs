@@ -125,7 +125,13 @@ fn tables_of_a_fit_agree_with_its_json() {
         "",
     );
     holds(&out, "singular-values.csv", "B", &found["directions"], "/1");
-    holds(&out, "starts.csv", "eta to", &found["starts"], "/to/0");
+    holds(
+        &out,
+        "starts.csv",
+        "eta to (Pa s)",
+        &found["starts"],
+        "/to/0",
+    );
     holds(&out, "starts.csv", "cost", &found["starts"], "/cost");
     for (column, pointer) in [
         ("model", "/model"),
@@ -210,7 +216,7 @@ fn tables_of_a_posterior_agree_with_its_json_and_with_each_other() {
         holds(&out, "posterior.csv", column, all, pointer);
     }
     let (titles, samples) = table(&out, "samples.csv");
-    assert_eq!(titles, ["eta", "B"]);
+    assert_eq!(titles, ["eta (Pa s)", "B (kg s/m^2)"]);
     for at in 0..2 {
         let values = samples.iter().map(|line| line[at].parse::<f64>().unwrap());
         let mean = values.sum::<f64>() / samples.len() as f64;
@@ -304,7 +310,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         holds(
             &designed,
             name,
-            "B_error",
+            "B_error (kg s/m^2)",
             &found[key],
             "/standard_errors/1",
         );
@@ -334,7 +340,7 @@ fn a_stated_form_tells_both_laws_from_incident_times() {
     holds(
         &out,
         "form-contacts.csv",
-        "stiffness",
+        "stiffness (N/m^1.5)",
         &form["contacts"],
         "/stiffness/value",
     );

@@ -1,7 +1,9 @@
 //! How well a fit describes its data.
 
-use crate::{Fit, Parameter};
+use crate::identify::directions_at;
+use crate::{Fit, Problem};
 use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use std::ops::Range;
 
 /// How well a fit describes its data.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,39 +15,102 @@ pub struct Goodness {
     pub birge_ratio: Option<f64>,
     /// Runs of equal sign in the order of the data; `None` where there is no chi-square.
     pub runs: Option<Runs>,
-    /// Residual farthest from 0: its number and value.
-    pub farthest: Option<(usize, f64)>,
+    /// The measured number with the largest residual.
+    pub largest: Option<Largest>,
+}
+
+/// A measured number whose residual is the largest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Largest {
+    /// Number of its residual.
+    pub residual: usize,
+    /// What was measured.
+    pub label: String,
+    /// Its distance in standard errors of that distance.
+    pub sigmas: f64,
 }
 
 impl Goodness {
-    /// Of a fit. A parameter held by a bound does not count as fitted.
+    /// Of a fit of a problem.
     #[must_use]
-    pub fn new(parameters: &[Parameter], fit: &Fit) -> Self {
-        Self::beside(0, parameters, fit)
+    pub fn new(problem: &dyn Problem, fit: &Fit) -> Self {
+        Self::beside(0, problem, fit)
     }
 
     /// Of a fit in whose residuals so many more numbers were at their best, such as
-    /// an offset of each record.
+    /// an offset of each record. As many degrees of freedom are left as data and priors have
+    /// numbers more than the combinations of parameters that they determine.
     #[must_use]
-    pub fn beside(nuisances: usize, parameters: &[Parameter], fit: &Fit) -> Self {
-        let priors = parameters.iter().zip(&fit.point);
+    pub fn beside(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
+        let priors = problem.parameters().iter().zip(&fit.point);
         let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
         let rows: Vec<Estimate> = (fit.residuals.iter().copied().chain(priors))
             .map(|value| Estimate { value, sigma: 1.0 })
             .collect();
-        let fitted = nuisances + parameters.len() - fit.binding.len();
+        let fitted = nuisances + fit.rank;
         let chi_square = chi_square(&rows, &vec![0.0; rows.len()], fitted);
         let ratio = |found: ChiSquare| (found.value / found.freedom as f64).sqrt();
-        let numbered = fit.residuals.iter().copied().enumerate();
         Self {
             birge_ratio: chi_square.map(ratio),
             chi_square,
             // As many numbers as parameters are met, but for rounding: its signs mean nothing.
             runs: chi_square.and_then(|_| runs(&fit.residuals)),
-            farthest: numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+            largest: largest_residual(problem, fit, 0..fit.residuals.len()),
         }
     }
 }
+
+/// The measured number, of those with these residuals, that has the largest distance from what
+/// the model makes of all others.
+///
+/// Residuals of numbers that share errors are combinations of them. So each number y is left
+/// out in turn: with u = ∂r/∂y and H the projector on what the fitted combinations can
+/// change, uᵀ r/√(uᵀ (1 − H) u) is its distance from what is left, in standard errors
+/// [Baarda1968]. Numbers that others do not check have none.
+#[must_use]
+pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> Option<Largest> {
+    let responses = problem.responses(&fit.point).ok()?;
+    let directions = directions_at(problem.parameters(), fit);
+    let distance = |at: usize| {
+        let own = [(at, 1.0)];
+        let response = responses.as_ref().map_or(&own[..], |all| &all[at]);
+        let along = |direction: &[f64]| -> f64 {
+            response
+                .iter()
+                .map(|(row, change)| change * direction[*row])
+                .sum()
+        };
+        let whole: f64 = response.iter().map(|(_, change)| change * change).sum();
+        let free = whole - directions.iter().map(|one| along(one).powi(2)).sum::<f64>();
+        (free > UNCHECKED * whole).then(|| (at, along(&fit.residuals) / free.sqrt()))
+    };
+    let all: Vec<(usize, f64)> = of.filter_map(distance).collect();
+    let largest = all.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let (residual, sigmas) = *largest?;
+    let shares = |other: usize| {
+        responses.as_ref().is_some_and(|all| {
+            let mut rows = all[residual].iter().map(|(row, _)| row);
+            rows.any(|row| all[other].iter().any(|(own, _)| own == row))
+        })
+    };
+    let as_far = |(other, size): &&(usize, f64)| {
+        *other != residual && sigmas.powi(2) - size.powi(2) < EITHER && shares(*other)
+    };
+    let others = all.iter().filter(as_far);
+    let others = others.map(|(other, _)| format!(" or {}", problem.residual_label(*other)));
+    Some(Largest {
+        residual,
+        label: problem.residual_label(residual) + &others.collect::<String>(),
+        sigmas,
+    })
+}
+
+/// Difference of squared distances below which either of two numbers that share errors may be
+/// the one that is off: odds of less than seven.
+const EITHER: f64 = 4.0;
+
+/// Share of a number's own information below which no other checks it.
+const UNCHECKED: f64 = 1e-6;
 
 impl Goodness {
     /// Whether chance can't be why the data are so far from the model.
@@ -58,7 +123,7 @@ impl Goodness {
 
 /// Probability of a chi-square by chance below which it is not by chance: of a thousand
 /// fits of right models one is called wrong.
-const LEAST_BY_CHANCE: f64 = 1e-3;
+pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
 
 /// Runs of equal sign in a row of residuals: too few mean that the curve's
 /// shape is wrong, though each point may be near it.

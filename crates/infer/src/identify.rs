@@ -2,7 +2,7 @@
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{Svd, combine, norm, svd};
-use crate::{Fit, Jacobian, Parameter};
+use crate::{Binding, Fit, Jacobian, Parameter};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its
 /// size, and what they mean: its scale, or its value at the best fit where that is
@@ -99,6 +99,29 @@ pub(crate) fn sized(parameters: &[Parameter], point: &[f64]) -> Vec<Parameter> {
         ..of.clone()
     };
     pairs.map(size).collect()
+}
+
+/// Orthonormal changes of the residuals, priors' behind the data's, by those combinations of
+/// the parameters that data and priors determine; a parameter at a bound is none.
+pub(crate) fn directions_at(parameters: &[Parameter], fit: &Fit) -> Vec<Vec<f64>> {
+    directions(&sized(parameters, &fit.point), &fit.jacobian, &fit.binding)
+}
+
+/// The same, of parameters in their sizes.
+pub(crate) fn directions(
+    sized: &[Parameter],
+    jacobian: &Jacobian,
+    binding: &[Binding],
+) -> Vec<Vec<f64>> {
+    let mut scaled = Scaled::with_priors(sized, jacobian);
+    for held in binding {
+        scaled.columns[held.parameter].fill(0.0);
+        scaled.errors[held.parameter] = 0.0;
+    }
+    let (found, floor) = scaled.taken_apart();
+    let known = found.values.iter().zip(found.left);
+    let known = known.filter(|(value, _)| !is_weak(**value, floor));
+    known.map(|(_, left)| left).collect()
 }
 
 /// Component of a unit direction that moves a parameter.

@@ -40,11 +40,11 @@ pub use data::{
 };
 pub use design::{Aim, Candidate, Design, DesignError, Expected, design};
 pub use free::{Form, FreeError, FreeNumber, FreeNumbers, SHORT_NAMES, same_number};
-pub use goodness::{Goodness, Runs, runs};
+pub use goodness::{Goodness, Largest, Runs, largest_residual, runs};
 pub use identify::{Confusion, Identifiability, UNDETERMINED};
 pub use least_squares::{Binding, Ending, Fit, FitError, Fitting, Jacobian, Loss, Started, fit};
-pub use parameter::{Parameter, ParameterError, Prior};
-pub use problem::{ModelError, Problem, Residuals};
+pub use parameter::{Parameter, ParameterError, Prior, titled};
+pub use problem::{ModelError, Problem, Residuals, Response};
 pub use profile::{End, Interval, Profile, ProfileError, Profiling, RISE_OF_95_PERCENT, profile};
 pub use pulses::{PulseError, PulseProblem, Pulses, RecordError, Respond};
 pub use sampler::{

@@ -166,6 +166,15 @@ impl Prior {
     }
 }
 
+/// A name, with a unit in parentheses if there is one.
+#[must_use]
+pub fn titled(name: &str, unit: &str) -> String {
+    match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
+    }
+}
+
 impl Parameter {
     /// A parameter without bounds or prior, its scale the start's magnitude (1
     /// if it starts at 0).
@@ -180,6 +189,12 @@ impl Parameter {
             scale: if start == 0.0 { 1.0 } else { start.abs() },
             prior: Prior::Flat,
         }
+    }
+
+    /// Its name, with its unit in parentheses if it has one.
+    #[must_use]
+    pub fn title(&self) -> String {
+        titled(&self.name, &self.unit)
     }
 
     /// The same parameter, bounded.

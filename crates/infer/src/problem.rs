@@ -19,11 +19,24 @@ pub trait Problem: Sync {
     /// A point's residuals must not depend on its neighbours.
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>>;
 
+    /// What each measured number, larger by some amount, changes in the residuals at a point:
+    /// residuals and changes, one list a residual. `None` where each residual is a measured
+    /// number of its own.
+    ///
+    /// # Errors
+    /// A model that fails at the point.
+    fn responses(&self, _point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
+        Ok(None)
+    }
+
     /// What a residual belongs to, as messages name it: "row 3, reflected ToF".
     fn residual_label(&self, index: usize) -> String {
         format!("residual {}", index + 1)
     }
 }
+
+/// Residuals, by number, that a measured number enters, with what it changes each by.
+pub type Response = Vec<(usize, f64)>;
 
 /// Residuals at one point.
 #[derive(Clone, Debug, PartialEq, Default)]

@@ -9,6 +9,7 @@ mod data;
 mod free;
 mod gauge;
 mod gauge_form;
+mod goodness;
 mod linear;
 mod mistakes;
 mod nonlinear;

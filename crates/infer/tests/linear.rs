@@ -93,7 +93,7 @@ fn a_prior_counts_as_a_further_measurement() {
     // As above: 4e-5 standard errors; rounding.
     assert!((found.point[1] - expected).abs() < 5e-5 * width);
     assert!((covariance.sd[1] / width - 1.0).abs() < 1e-9);
-    let goodness = Goodness::new(&data.parameters, &found);
+    let goodness = Goodness::new(&data, &found);
     assert_eq!(goodness.chi_square.unwrap().freedom, 11);
 }
 

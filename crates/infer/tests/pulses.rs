@@ -84,7 +84,7 @@ fn pulls(records: Vec<Pulses>, free: &[&str], exact: &[f64]) {
         assert!(pull.abs() < 3.0, "{}: {pull}", free[at]);
         assert!(covariance.sd[at] < 0.05 * exact, "{:?}", covariance.sd);
     }
-    let goodness = Goodness::beside(problem.nuisance_count(), problem.parameters(), &best);
+    let goodness = Goodness::beside(problem.nuisance_count(), &problem, &best);
     let chi_square = goodness.chi_square.unwrap();
     // Noise is white and normal, so that only chance moves chi-square.
     assert!(

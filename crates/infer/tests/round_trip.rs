@@ -27,7 +27,7 @@ fn the_dry_pair_comes_back_within_its_errors_from_a_start_far_off() {
         assert!(pull.abs() < 3.0, "{at}: {pull}");
         assert!(covariance.sd[at] / exact < 0.01, "{:?}", covariance.sd);
     }
-    let goodness = Goodness::new(problem.parameters(), &best);
+    let goodness = Goodness::new(&problem, &best);
     assert!(goodness.chi_square.unwrap().probability > 1e-3);
     // Differences by two steps agree, so the derivatives are those of the model.
     assert!(best.jacobian.worst_disagreement() < 0.01);
@@ -58,7 +58,7 @@ fn repeated(sets: u64, measured: impl Fn(&Truth, u64) -> Data) -> ([Vec<f64>; 2]
         for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
             pulls[at].push((best.point[at] - exact) / covariance.sd[at]);
         }
-        let goodness = Goodness::new(repeated.parameters(), &best);
+        let goodness = Goodness::new(&repeated, &best);
         probabilities.push(goodness.chi_square.unwrap().probability);
     }
     (pulls, probabilities)
@@ -145,7 +145,7 @@ fn leaving_out_the_cubic_term_is_rejected_at_the_papers_noise() {
     // Even with the stiffness free too, which takes up what it can.
     let poorer = problem(&model(&without, &["eta", "Y"]), data);
     let best = fit(&poorer, &Fitting::default()).unwrap();
-    let goodness = Goodness::new(poorer.parameters(), &best);
+    let goodness = Goodness::new(&poorer, &best);
     assert!(goodness.chi_square.unwrap().probability < 1e-6);
     assert!(Criteria::new(&best).aicc - Criteria::new(&full).aicc > 100.0);
 }

@@ -1,28 +1,22 @@
 //! A linear system between samples, exactly, for inputs that are straight
 //! lines from sample to sample.
 
-/// Most states of a system.
-pub const STATES: usize = 3;
-/// States, the input and its change over a step.
-const SIZE: usize = STATES + 2;
-
-type Square = [[f64; SIZE]; SIZE];
-
 /// ẋ = A x + B u over one step: x(h) = Φ x(0) + γ u(0) + δ (u(h) − u(0)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct Hold<const STATES: usize> {
     transition: [[f64; STATES]; STATES],
     input: [f64; STATES],
     change: [f64; STATES],
 }
 
-impl Hold {
+impl<const STATES: usize> Hold<STATES> {
     /// Of A in 1/s and B in 1/s, over a step in s.
     #[must_use]
     pub fn new(a: &[[f64; STATES]; STATES], b: &[f64; STATES], step_s: f64) -> Self {
         // exp of the system with u and its change as states of their own:
         // u̇ = change/step, so that over a step of length 1 it is the change.
-        let mut square: Square = [[0.0; SIZE]; SIZE];
+        let size = STATES + 2;
+        let mut square = vec![vec![0.0; size]; size];
         for row in 0..STATES {
             for column in 0..STATES {
                 square[row][column] = a[row][column] * step_s;
@@ -51,6 +45,8 @@ impl Hold {
     }
 }
 
+type Square = Vec<Vec<f64>>;
+
 /// Terms of the series for a matrix of norm up to 1/2: (1/2)^18/18! < 1e-21.
 const TERMS: u32 = 18;
 
@@ -62,7 +58,7 @@ fn exponential(matrix: &Square) -> Square {
         .fold(0.0, f64::max);
     let halvings = (norm.max(0.5).log2() + 1.0).ceil().clamp(0.0, 1000.0) as i32;
     let part = scaled(matrix, 0.5f64.powi(halvings));
-    let mut sum = identity();
+    let mut sum = identity(matrix.len());
     for term in (1..=TERMS).rev() {
         sum = product(&scaled(&part, f64::from(term).recip()), &sum);
         for (at, row) in sum.iter_mut().enumerate() {
@@ -72,18 +68,22 @@ fn exponential(matrix: &Square) -> Square {
     (0..halvings).fold(sum, |root, _| product(&root, &root))
 }
 
-fn identity() -> Square {
-    std::array::from_fn(|row| std::array::from_fn(|column| f64::from(u8::from(row == column))))
+fn identity(size: usize) -> Square {
+    let row = |at: usize| (0..size).map(|k| f64::from(u8::from(k == at))).collect();
+    (0..size).map(row).collect()
 }
 
 fn scaled(matrix: &Square, factor: f64) -> Square {
-    matrix.map(|row| row.map(|x| factor * x))
+    let row = |row: &Vec<f64>| row.iter().map(|x| factor * x).collect();
+    matrix.iter().map(row).collect()
 }
 
 fn product(left: &Square, right: &Square) -> Square {
+    let size = left.len();
     let entry = |row: usize, column: usize| -> f64 {
-        let terms = (0..SIZE).map(|k| left[row][k] * right[k][column]);
+        let terms = (0..size).map(|k| left[row][k] * right[k][column]);
         terms.sum()
     };
-    std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column)))
+    let row = |row: usize| (0..size).map(|column| entry(row, column)).collect();
+    (0..size).map(row).collect()
 }

@@ -51,7 +51,7 @@ pub use several::{parted, piece};
 pub use shard::{Shard, ShardError};
 pub use shot::{Rebound, Shot, shoot, shoot_checked};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
-pub use stop::{Stop, count_done, stopped};
+pub use stop::{Stop, count_done, note_progress, stopped};
 pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep, sweep_each};
 pub use tuned::{PILOTS, Tuned};
 

@@ -2,8 +2,8 @@
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 thread_local! {
     static OWN: RefCell<Option<Stop>> = const { RefCell::new(None) };
@@ -21,6 +21,7 @@ struct Shared {
     asked: AtomicBool,
     done: AtomicU64,
     steps: AtomicU64,
+    note: Mutex<String>,
 }
 
 impl Stop {
@@ -52,6 +53,13 @@ impl Stop {
         self.0.done.load(Ordering::Relaxed)
     }
 
+    /// How far long work is, in words; empty where nothing was noted.
+    #[must_use]
+    pub fn note(&self) -> String {
+        let note = self.0.note.lock().unwrap_or_else(PoisonError::into_inner);
+        note.clone()
+    }
+
     /// Threads that look at this wish, all cores' if 0 are asked for.
     ///
     /// # Errors
@@ -80,6 +88,13 @@ pub fn stopped() -> bool {
 /// off; for nobody where nobody can.
 pub fn count_done(more: usize) {
     told(|stop| stop.count(more as u64));
+}
+
+/// Notes how far long work is, where the calling thread can be asked to break off.
+pub fn note_progress(note: &dyn std::fmt::Display) {
+    told(|stop| {
+        *stop.0.note.lock().unwrap_or_else(PoisonError::into_inner) = note.to_string();
+    });
 }
 
 /// Counts steps of a shot in the same way.

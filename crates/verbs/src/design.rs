@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::inference::{references_json, user};
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
-    Goodness, Identifiability, Kind, Problem, design, fit, ways, wrong_speed,
+    Goodness, Identifiability, Kind, Problem, design, fit, titled, ways, wrong_speed,
 };
 use hertzchain_study::parse_speeds;
 use serde_json::{Value, json};
@@ -136,7 +136,7 @@ pub fn designed(
     };
     let open = identified.confused.into_iter();
     Ok(Designed {
-        goodness: Goodness::new(problem.parameters(), &fit),
+        goodness: Goodness::new(problem, &fit),
         advice,
         candidates,
         design: found,
@@ -228,7 +228,8 @@ pub fn tables(designed: &Designed) -> Vec<(&'static str, String)> {
 
 /// One line a candidate, best first.
 fn ranked(designed: &Designed, ranked: &[Expected]) -> String {
-    let names = designed.names.iter().map(|name| format!("{name}_error"));
+    let names = designed.names.iter().zip(&designed.units);
+    let names = names.map(|(name, unit)| titled(&format!("{name}_error"), unit));
     let titles = std::iter::once("measure".to_owned()).chain(names);
     let told = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
     let table = Csv::new(titles.chain(told));

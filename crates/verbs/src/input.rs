@@ -13,14 +13,34 @@ use std::path::Path;
 /// The preset that is used when no experiment is named.
 const USUAL: &str = "dry";
 
-/// Opens the file or the preset.
+/// Opens the file or the preset; the paper's dry chain where neither is named.
 pub fn open(input: &Input) -> Result<Experiment, Failure> {
+    open_or(input, USUAL)
+}
+
+/// The same with another preset where neither is named.
+pub fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure> {
     match (&input.file, &input.preset) {
         (Some(file), _) => open_file(file),
         (None, name) => {
-            preset(name.as_deref().unwrap_or(USUAL)).map_err(|e| Failure::User(e.to_string()))
+            preset(name.as_deref().unwrap_or(usual)).map_err(|e| Failure::User(e.to_string()))
         }
     }
+}
+
+/// That an experiment which was not named is the paper's dry chain: the first line of what
+/// comes of it.
+#[must_use]
+pub fn assumed(input: &Input) -> Option<String> {
+    let is_named = input.file.is_some() || input.preset.is_some();
+    (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
+}
+
+/// That something which was not named is a chain of the paper.
+pub(crate) fn assumed_preset(what: &str, chain: &str, preset: &str, options: &str) -> String {
+    format!(
+        "No {what} is named: the paper's {chain} is assumed (preset {preset}; name one by {options})"
+    )
 }
 
 fn open_file(file: &Path) -> Result<Experiment, Failure> {

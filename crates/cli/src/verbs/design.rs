@@ -5,7 +5,7 @@ use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
 use crate::words::{lines, misfit};
-use hertzchain_infer::{CurveProblem, Expected};
+use hertzchain_infer::{CurveProblem, Expected, titled};
 use hertzchain_verbs::arguments::infer::Design as Arguments;
 use hertzchain_verbs::design::Designed;
 use hertzchain_verbs::{design, inference};
@@ -28,9 +28,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
     let mut all = design::json(&problem, &designed);
     all["options"] = arguments.words().into();
+    let assumed = inference::assumed_model(&arguments.modelled);
+    all["assumed_model"] = assumed.clone().into();
+    let assumed = lines(assumed.into_iter().collect());
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&text(&problem, &designed))?,
+        false => print::print(&(assumed + &text(&problem, &designed)))?,
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
@@ -46,10 +49,16 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let now = names
         .iter()
         .zip(&found.before)
-        .map(|(name, sd)| format!("{name} ± {}", sd_text(*sd)));
+        .zip(&designed.units)
+        .map(|((name, sd), unit)| {
+            format!("{name} ± {} {unit}", sd_text(*sd))
+                .trim_end()
+                .to_owned()
+        });
     let now: Vec<String> = now.collect();
     let mut head = vec!["measure next".to_owned()];
-    head.extend(names.iter().map(|name| format!("{name} ±")));
+    let units = names.iter().zip(&designed.units);
+    head.extend(units.map(|(name, unit)| titled(&format!("{name} ±"), unit)));
     head.push("information (nats)".to_owned());
     let priced = candidates.iter().any(|candidate| candidate.cost != 1.0);
     if priced {

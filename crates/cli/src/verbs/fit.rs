@@ -7,7 +7,9 @@ mod uncertainty;
 
 use crate::failure::{Failure, print_assumed, print_kept};
 use crate::folder::Folder;
+use crate::notes::with_notes;
 use crate::print;
+use crate::words::lines;
 use hertzchain_infer::{CurveProblem, Problem, Surrogate};
 use hertzchain_verbs::arguments::infer::{Fit as Arguments, Method};
 use hertzchain_verbs::fit::{self, Fitted, Inferred, More};
@@ -27,14 +29,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = inference::problem(model, data, &arguments.freed)?;
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let pool = inference::pool(arguments.modelled.threads)?;
-    let fitted = pool.install(|| fit::fitted(problem, arguments))?;
-    let all = fit::json(&fitted, arguments);
-    match arguments.json {
-        true => print::print_json(&all)?,
-        false => print::print(&report::text(&fitted))?,
-    }
+    let threads = arguments.modelled.threads;
+    let fitted = with_notes(threads, || fit::fitted(problem, arguments))??;
+    let mut all = fit::json(&fitted, arguments);
+    show(arguments, &mut all, || report::text(&fitted, arguments))?;
     folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+}
+
+/// Prints a result, and before all else that a model which was not named was assumed.
+fn show(
+    arguments: &Arguments,
+    all: &mut serde_json::Value,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    let assumed = inference::assumed_model(&arguments.modelled);
+    all["assumed_model"] = assumed.clone().into();
+    match arguments.json {
+        true => print::print_json(all),
+        false => print::print(&(lines(assumed.into_iter().collect()) + &text())),
+    }
 }
 
 /// Warns of a posterior that takes its time.

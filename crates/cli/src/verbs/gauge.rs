@@ -6,6 +6,7 @@ mod report;
 use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
+use crate::words::lines;
 use hertzchain_infer::gauge::Chains;
 use hertzchain_verbs::arguments::infer::Gauge as Arguments;
 use hertzchain_verbs::gauge::{self, Gauged};
@@ -27,12 +28,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_assumed(data, &arguments.measured);
     }
     let oils = gauge::all_oils(arguments.oils.as_deref())?;
-    let wet_model = inference::opened(arguments.model.as_deref(), &arguments.preset, &wet.case)?;
-    let dry_model = inference::opened(
-        arguments.dry_model.as_deref(),
-        &arguments.dry_preset,
-        &dry.case,
-    )?;
+    let [wet_model, dry_model] = gauge::models(arguments, [&wet.case, &dry.case])?;
+    let assumed = gauge::assumed_models(
+        arguments.model.is_some() || arguments.preset.is_some(),
+        arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
+    );
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.threads)?;
     let chains = Chains {
@@ -45,9 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
     let mut all = gauge::json(&gauged);
     all["options"] = arguments.words().into();
+    all["assumed_model"] = assumed.clone().into();
+    let assumed = lines(assumed.into_iter().collect());
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&report::text(&gauged))?,
+        false => print::print(&(assumed + &report::text(&gauged)))?,
     }
     folder.map_or(Ok(()), |folder| write(folder, &gauged, &all))
 }

@@ -7,6 +7,7 @@ use crate::arguments::Shot as Arguments;
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::print;
+use crate::words::lines;
 use hertzchain_study::{Plan, shoot, shoot_checked};
 use hertzchain_verbs::table::named;
 use hertzchain_verbs::{input, json};
@@ -31,10 +32,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
     failure::print_speed_warnings(given, &warnings);
     if arguments.json {
-        let result = json::shot_of(&experiment, speed, &plan, &shot);
+        let mut result = json::shot_of(&experiment, speed, &plan, &shot);
+        if let Some(assumed) = input::assumed(&arguments.input) {
+            result["assumed_model"] = assumed.into();
+        }
         print::print_json(&named(result, experiment.units()))?;
     } else {
-        print::print(&report::text(&experiment, &plan, &shot))?;
+        let assumed = lines(input::assumed(&arguments.input).into_iter().collect());
+        print::print(&(assumed + &report::text(&experiment, &plan, &shot)))?;
     }
     folder.map_or(Ok(()), |folder| {
         traces::write(folder, arguments, &experiment, &plan, &shot)

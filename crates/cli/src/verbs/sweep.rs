@@ -131,8 +131,14 @@ fn show(
     (swept, part): (&Sweep, &Part),
 ) -> Result<(), Failure> {
     if arguments.json {
-        let results = json::sweep(experiment, plan, swept);
+        let mut results = json::sweep(experiment, plan, swept);
+        if let Some(assumed) = input::assumed(&arguments.input) {
+            results["assumed_model"] = assumed.into();
+        }
         return print::print_json(&table::named(results, experiment.units()));
+    }
+    if let Some(assumed) = input::assumed(&arguments.input) {
+        print::print(&assumed)?;
     }
     print_warnings(experiment, swept);
     if part.rows.flights().is_empty() && !told::nothing(part) {

@@ -2,6 +2,7 @@
 
 use crate::arguments::Check;
 use crate::failure::{self, Failure};
+use crate::words::lines;
 use crate::{format, print};
 use hertzchain_study::describe_theory;
 use hertzchain_verbs::{input, json};
@@ -16,11 +17,17 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     let (chain, warnings) = input::at_speed(given, experiment.chain(speed))?;
     let groups = describe_theory(&experiment, &chain)?;
     if arguments.json {
+        // A list of groups has no place for it.
+        if let Some(assumed) = input::assumed(&arguments.input) {
+            eprintln!("warning: {assumed}");
+        }
         return print::print_json(&json::groups(&groups));
     }
     failure::print_speed_warnings(given, &warnings);
-    match groups.is_empty() {
-        true => print::print("No closed theory fits this chain: no striker, no preload."),
-        false => print::print(&format::groups(&groups, experiment.units())),
-    }
+    let assumed = lines(input::assumed(&arguments.input).into_iter().collect());
+    let text = match groups.is_empty() {
+        true => "No closed theory fits this chain: no striker, no preload.".to_owned(),
+        false => format::groups(&groups, experiment.units()),
+    };
+    print::print(&(assumed + &text))
 }

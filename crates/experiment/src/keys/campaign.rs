@@ -3,7 +3,7 @@
 
 use super::tables::{LIQUID, SECTION, not_negative, number_of, part, positive, text};
 use super::{Fields, Key, Kind, Limits, Need, ranges};
-use crate::spec::{CHANNELS, ORDERS, TRIGGERS};
+use crate::spec::{CHANNELS, KINDS, ORDERS, TRIGGERS};
 
 const SPREAD: Limits = Limits::new(0.0, 0.1, true, "from 0 to 0.1");
 
@@ -112,11 +112,8 @@ static AMPLIFIER: Fields = Fields {
             "Hz",
             "frequency above which the response falls; default 180 kHz",
         ),
-        choice(
-            "order",
-            ORDERS,
-            "order of the low-pass, the second a Butterworth; default second",
-        ),
+        choice("order", ORDERS, "order of the low-pass; default second"),
+        choice("kind", KINDS, "kind of the low-pass; default butterworth"),
         positive(
             "high_pass",
             "Hz",

@@ -231,6 +231,40 @@ impl Experiment {
         Ok(self.with_tree(tree)?.with_reading(&own)?)
     }
 
+    /// This experiment with a low-pass of another corner in Hz, order or kind in its amplifier,
+    /// by the names of the file.
+    ///
+    /// # Errors
+    /// A corner that is not positive, or a name that is none.
+    pub fn with_low_pass(
+        &self,
+        corner_hz: Option<f64>,
+        order: Option<&str>,
+        kind: Option<&str>,
+    ) -> Result<Self, PathError> {
+        let text = |name: Option<&str>| name.map(|name| Value::Text(name.to_owned()));
+        let corner = corner_hz.map(|value| {
+            Value::Number(Number {
+                value,
+                half_digit: 0.0,
+                from_code: true,
+            })
+        });
+        let steps = ["campaign", "amplifier"].map(|key| Step::Key(key.to_owned()));
+        let mut tree = self.tree().clone();
+        for (key, value) in [
+            ("low_pass", corner),
+            ("order", text(order)),
+            ("kind", text(kind)),
+        ] {
+            if let Some(value) = value {
+                let key = Step::Key(key.to_owned());
+                assign(&mut tree, &[&steps[..], &[key]].concat(), value);
+            }
+        }
+        Ok(self.with_tree(tree)?)
+    }
+
     fn slots(&self) -> Vec<Slot<'_>> {
         slots::all(self.tree(), self.units())
     }
@@ -255,7 +289,7 @@ impl Experiment {
                 .then(|| self.reference(&slot.path))
                 .flatten();
             if let Some(contact) = reference.and_then(|found| found.contact) {
-                assign(&mut tree, &beside(&slot.steps, CONTACT), whole(contact));
+                assign(&mut tree, &next_to(&slot.steps, CONTACT), whole(contact));
             }
         }
         Ok(self.with_tree(tree)?)
@@ -279,7 +313,7 @@ impl Experiment {
 }
 
 /// Steps to another key of the same table.
-fn beside(steps: &[Step], key: &str) -> Vec<Step> {
+fn next_to(steps: &[Step], key: &str) -> Vec<Step> {
     let (_, table) = steps.split_last().unwrap_or((&Step::Index(0), &[]));
     let key = Step::Key(key.to_owned());
     table.iter().cloned().chain([key]).collect()

@@ -100,12 +100,11 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
     let laws = members.map(|member| laws::read(member, table.units));
     let laws: Vec<LawSpec> = laws.collect::<Result<_, _>>()?;
     laws::each_once(&laws)?;
-    for law in &laws {
-        let contacts = law.references.iter().map(|(_, contact)| *contact);
-        contacts
-            .map(|contact| within(&law.span, contact, beads))
-            .collect::<Result<(), _>>()?;
-    }
+    let mut references = laws.iter().flat_map(|law| {
+        let own = law.references.iter();
+        own.map(|(_, contact)| (&law.span, *contact))
+    });
+    references.try_for_each(|(span, contact)| within(span, contact, beads))?;
     Ok(SectionSpec {
         from,
         to: to.filter(|&contact| contact != beads),

@@ -1,7 +1,9 @@
 //! The parts of a rig in numbers.
 
 use crate::finding::Problem;
+use crate::value::short;
 use crate::view::View;
+use std::f64::consts::SQRT_2;
 
 /// How a chain is laid before a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,23 +52,128 @@ pub struct Amplifier {
     pub low_pass_hz: f64,
     /// Order of the low-pass.
     pub order: LowPass,
+    /// Kind of the low-pass; of first order all are one.
+    pub kind: LowPassKind,
     /// Corner of the high-pass in Hz.
     pub high_pass_hz: f64,
     /// Standard deviation of each sample's noise in V.
     pub noise_v: f64,
 }
 
-/// Low-pass of an amplifier.
+/// Order of an amplifier's low-pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LowPass {
     /// One pole.
     First,
-    /// Two poles, Butterworth.
+    /// Two poles.
     Second,
+    /// Three.
+    Third,
+    /// Four.
+    Fourth,
 }
 
-/// Names of low-passes in a file.
-pub const ORDERS: &[&str] = &["first", "second"];
+/// Names of orders in a file.
+pub const ORDERS: &[&str] = &["first", "second", "third", "fourth"];
+
+/// Kind of an amplifier's low-pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LowPassKind {
+    /// Flattest amplitude.
+    Butterworth,
+    /// Flattest delay.
+    Bessel,
+}
+
+/// Names of kinds in a file.
+pub const KINDS: &[&str] = &["butterworth", "bessel"];
+
+/// One factor of a low-pass, its frequency over that of the corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factor {
+    /// ω/(s + ω).
+    One {
+        /// ω over the corner's.
+        frequency: f64,
+    },
+    /// ω²/(s² + d ω s + ω²).
+    Two {
+        /// ω over the corner's.
+        frequency: f64,
+        /// d, twice the damping ratio.
+        damping: f64,
+    },
+}
+
+const fn one(frequency: f64) -> Factor {
+    Factor::One { frequency }
+}
+
+const fn two(frequency: f64, damping: f64) -> Factor {
+    Factor::Two { frequency, damping }
+}
+
+impl Amplifier {
+    /// Factors of the low-pass, whose product falls to 1/√2 at the corner.
+    #[must_use]
+    pub const fn factors(&self) -> &'static [Factor] {
+        match (self.order, self.kind) {
+            (LowPass::First, _) => const { &[one(1.0)] },
+            // Damping 2 cos(π/8) and 2 cos(3π/8).
+            (LowPass::Second, LowPassKind::Butterworth) => const { &[two(1.0, SQRT_2)] },
+            (LowPass::Third, LowPassKind::Butterworth) => const { &[one(1.0), two(1.0, 1.0)] },
+            (LowPass::Fourth, LowPassKind::Butterworth) => {
+                const {
+                    &[
+                        two(1.0, 1.847_759_065_022_573_5),
+                        two(1.0, 0.765_366_864_730_179_7),
+                    ]
+                }
+            }
+            // Roots of the reverse Bessel polynomials, over the frequency of half power.
+            (LowPass::Second, LowPassKind::Bessel) => {
+                const { &[two(1.272_019_649_514_068_8, 1.732_050_807_568_877_4)] }
+            }
+            (LowPass::Third, LowPassKind::Bessel) => {
+                const {
+                    &[
+                        one(1.322_675_799_910_444_4),
+                        two(1.447_617_133_146_987_4, 1.447_080_359_890_413_2),
+                    ]
+                }
+            }
+            (LowPass::Fourth, LowPassKind::Bessel) => {
+                const {
+                    &[
+                        two(1.430_171_559_993_991, 1.915_948_923_718_216),
+                        two(1.603_357_516_216_973, 1.241_405_930_098_995_7),
+                    ]
+                }
+            }
+        }
+    }
+
+    /// What the amplifier's filters are, in words.
+    #[must_use]
+    pub fn filters(&self) -> String {
+        let kind = match (self.order, self.kind) {
+            (LowPass::First, _) => "",
+            (_, LowPassKind::Butterworth) => "Butterworth ",
+            (_, LowPassKind::Bessel) => "Bessel ",
+        };
+        format!(
+            "{kind}low-pass of {} order at {} kHz, high-pass of first order at {} Hz",
+            ORDERS[self.order as usize],
+            rounded(1e-3 * self.low_pass_hz),
+            rounded(self.high_pass_hz)
+        )
+    }
+}
+
+/// A number of four digits.
+fn rounded(value: f64) -> String {
+    short(format!("{value:.3e}").parse().unwrap_or(value))
+}
 
 /// What turns voltages into records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,7 +285,13 @@ impl Amplifier {
             low_pass_hz: quantity(table, "low_pass", 180e3)?,
             order: match table.and_then(|table| table.text("order")) {
                 Some("first") => LowPass::First,
+                Some("third") => LowPass::Third,
+                Some("fourth") => LowPass::Fourth,
                 _ => LowPass::Second,
+            },
+            kind: match table.and_then(|table| table.text("kind")) {
+                Some("bessel") => LowPassKind::Bessel,
+                _ => LowPassKind::Butterworth,
             },
             high_pass_hz: quantity(table, "high_pass", 0.5)?,
             noise_v: quantity(table, "noise", 1.5e-3)?,

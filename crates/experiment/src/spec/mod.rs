@@ -14,8 +14,8 @@ mod stiffness;
 pub use campaign::Campaign;
 pub use contacts::SectionSpec;
 pub use instruments::{
-    Actuator, Amplifier, CHANNELS, Channels, Laying, LowPass, ORDERS, Photogate, Recorder,
-    TRIGGERS, Trigger,
+    Actuator, Amplifier, CHANNELS, Channels, Factor, KINDS, Laying, LowPass, LowPassKind, ORDERS,
+    Photogate, Recorder, TRIGGERS, Trigger,
 };
 pub use rig::{Rig, RigPart, RigPartKind};
 pub use setting::{Liquid, METHODS, Method, Solver};

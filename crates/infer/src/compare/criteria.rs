@@ -2,16 +2,21 @@
 
 use super::CrossValidation;
 use super::cross_validation::mean_and_error;
+use crate::goodness::LEAST_BY_CHANCE;
 use crate::{Fit, Loss};
+use hertzchain_signal::{ChiSquare, Estimate, chi_square};
 
 /// Criteria of one model: small is good, and only differences between models of
 /// the same data mean something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criteria {
-    /// Fitted parameters.
+    /// Fitted combinations of parameters.
     pub parameters: usize,
     /// Measured numbers.
     pub data: usize,
+    /// Chi-square of the data, its degrees of freedom and its probability by chance; `None` if
+    /// no freedom is left.
+    pub chi_square: Option<ChiSquare>,
     /// −2 ln likelihood of the data at the optimum, up to a constant of the data.
     pub deviance: f64,
     /// Deviance + 2 parameters [Akaike1974].
@@ -24,10 +29,11 @@ pub struct Criteria {
 }
 
 impl Criteria {
-    /// Of a fit by least squares; parameters held by a bound do not count.
+    /// Of a fit by least squares; combinations of parameters that nothing determines, and
+    /// parameters held by a bound, do not count.
     #[must_use]
     pub fn new(fit: &Fit) -> Self {
-        let (data, parameters) = (fit.residuals.len(), fit.point.len() - fit.binding.len());
+        let (data, parameters) = (fit.residuals.len(), fit.rank);
         let (n, k) = (data as f64, parameters as f64);
         let deviance = fit.chi_square() + 2.0 * fit.ln_sigmas;
         let aic = deviance + 2.0 * k;
@@ -37,14 +43,26 @@ impl Criteria {
         } else {
             f64::INFINITY
         };
+        let rows = fit.residuals.iter().map(|value| Estimate {
+            value: *value,
+            sigma: 1.0,
+        });
         Self {
             parameters,
             data,
+            chi_square: chi_square(&rows.collect::<Vec<_>>(), &vec![0.0; data], parameters),
             deviance,
             aic,
             aicc: aic + small,
             bic: deviance + k * n.ln(),
         }
+    }
+
+    /// Whether chance can't be why the data are so far from the model.
+    #[must_use]
+    pub fn is_rejected(&self) -> bool {
+        let found = self.chi_square;
+        found.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
 }
 
@@ -70,6 +88,9 @@ pub struct Comparison {
     pub aicc_above_best: Vec<f64>,
     /// Akaike weights exp(−Δ/2)/Σ, in the order given.
     pub weights: Vec<f64>,
+    /// The model that the data favour; `None` where they do not follow even the best, or do not
+    /// decide.
+    pub favoured: Option<usize>,
     /// Which model is supported and by how much.
     pub sentence: String,
 }
@@ -132,7 +153,10 @@ pub fn compare(models: &[Compared<'_>]) -> Result<Comparison, CompareError> {
     let aicc_above_best: Vec<f64> = criteria.iter().map(|c| c.aicc - best).collect();
     let shares: Vec<f64> = aicc_above_best.iter().map(|d| (-0.5 * d).exp()).collect();
     let sum: f64 = shares.iter().sum();
+    let decided = criteria[order[1]].aicc - best >= UNDECIDED;
+    let favoured = decided && !criteria[order[0]].is_rejected();
     Ok(Comparison {
+        favoured: favoured.then_some(order[0]),
         sentence: sentence(models, &criteria, &order),
         weights: shares.iter().map(|share| share / sum).collect(),
         order,
@@ -179,6 +203,16 @@ const MOST_ODDS: f64 = 1e9;
 fn sentence(models: &[Compared<'_>], criteria: &[Criteria], order: &[usize]) -> String {
     let (best, second) = (order[0], order[1]);
     let (first, next) = (models[best].name, models[second].name);
+    if let Some(found) = criteria[best]
+        .chi_square
+        .filter(|_| criteria[best].is_rejected())
+    {
+        return format!(
+            "None of these models follows the data, and none is favoured: {first}, the nearest, has chi-square {:.4} with \
+             {} degrees of freedom (p = {:.1e}). Look for what all of them leave out, or at the data's errors.",
+            found.value, found.freedom, found.probability
+        );
+    }
     let above = criteria[second].aicc - criteria[best].aicc;
     let bic = criteria[second].bic - criteria[best].bic;
     let odds = (0.5 * above).exp();

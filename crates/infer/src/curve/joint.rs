@@ -2,7 +2,7 @@
 
 use super::problem::CurveProblem;
 use crate::Parameter;
-use crate::problem::{ModelError, Problem, Residuals};
+use crate::problem::{ModelError, Problem, Residuals, Response};
 
 /// Where a parameter of one curve's model comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,18 @@ impl Problem for Joint {
             }
         }
         all
+    }
+
+    fn responses(&self, point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
+        let mut all: Vec<Response> = Vec::new();
+        for part in &self.parts {
+            let (first, count) = (all.len(), part.problem.residual_count());
+            let own = part.problem.responses(&part.own(point))?;
+            let own = own.unwrap_or_else(|| (0..count).map(|at| vec![(at, 1.0)]).collect());
+            let moved = |one: Response| one.into_iter().map(|(at, by)| (first + at, by)).collect();
+            all.extend(own.into_iter().map(moved));
+        }
+        Ok(Some(all))
     }
 
     fn residual_label(&self, index: usize) -> String {

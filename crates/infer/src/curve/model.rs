@@ -3,7 +3,7 @@
 use crate::Parameter;
 use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
-use hertzchain_experiment::{Experiment, Mistakes, PathError};
+use hertzchain_experiment::{Amplifier, Experiment, Mistakes, PathError};
 use hertzchain_study::{
     Inputs, InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
 };
@@ -53,6 +53,8 @@ pub(crate) struct Shooting {
     pub(crate) wall_gain: f64,
     /// That of the bead's sensor and its amplifier in V/N.
     pub(crate) sensor_gain_v_n: f64,
+    /// The amplifier behind both.
+    pub(crate) amplifier: Amplifier,
 }
 
 impl Model {
@@ -181,8 +183,6 @@ impl Model {
         if stopped() {
             return Err(ModelError(StudyError::Stopped.to_string()));
         }
-        let amplifier = &self.experiment.campaign().amplifier;
-        let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
         let mut latest: Option<(Settings, Experiment)> = None;
         let mut plan = |&(row, speed_m_s): &(usize, f64)| -> Result<Shooting, ModelError> {
             let settings = self.numbers.settings(point, speeds.rows, (row, speed_m_s));
@@ -194,7 +194,10 @@ impl Model {
             };
             let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
             let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, told(&mistakes)))?;
+            let amplifier = experiment.campaign().amplifier;
+            let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
             let shooting = Shooting {
+                amplifier,
                 plan: plan.for_flights().with_accuracy(self.accuracy),
                 wall_gain: settings.wall_gain,
                 sensor_gain_v_n: settings.sensor_gain_v_n.unwrap_or(usual_v_n),

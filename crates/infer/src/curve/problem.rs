@@ -5,7 +5,7 @@ use super::model::{Model, Predicted, Speeds};
 use super::stencil::Stencil;
 use super::whiten::{Errors, whiten};
 use crate::data::{Data, DataRow, Observable};
-use crate::problem::{ModelError, Problem, Residuals};
+use crate::problem::{ModelError, Problem, Residuals, Response};
 use crate::{Parameter, ParameterError};
 use hertzchain_study::{Fingerprint, Inputs};
 
@@ -224,6 +224,37 @@ impl CurveProblem {
         measured: &DataRow,
         curve: &[Predicted],
     ) -> Result<Vec<(f64, f64)>, ModelError> {
+        let (misses, errors) = self.misses(row, measured, curve)?;
+        Ok(whiten(&misses, &errors))
+    }
+
+    /// What each number of a row, larger by one unit, changes the row's residuals by.
+    fn row_responses(
+        &self,
+        row: usize,
+        measured: &DataRow,
+        curve: &[Predicted],
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        let (misses, errors) = self.misses(row, measured, curve)?;
+        let unit = |at: usize| {
+            let one: Vec<f64> = (0..misses.len())
+                .map(|k| f64::from(u8::from(k == at)))
+                .collect();
+            whiten(&one, &errors)
+                .into_iter()
+                .map(|(change, _)| change)
+                .collect()
+        };
+        Ok((0..misses.len()).map(unit).collect())
+    }
+
+    /// What a row's numbers miss the model by, and their errors.
+    fn misses(
+        &self,
+        row: usize,
+        measured: &DataRow,
+        curve: &[Predicted],
+    ) -> Result<(Vec<f64>, Errors), ModelError> {
         let stencil = &self.stencils[row];
         let own = stencil.own();
         let mut misses = Vec::new();
@@ -247,7 +278,7 @@ impl CurveProblem {
             let moved = slope * predicted * relative;
             errors.push(value.sigma, measured.freedom(of), moved);
         }
-        Ok(whiten(&misses, &errors.widened()))
+        Ok((misses, errors.widened()))
     }
 }
 
@@ -292,6 +323,24 @@ impl Problem for CurveProblem {
             .into_iter()
             .map(|curve| self.residuals_of(&curve?))
             .collect()
+    }
+
+    fn responses(&self, point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
+        let mut curves = self.all_curves(&[point.to_vec()]);
+        let curve = curves.pop().unwrap_or_else(|| Err(ModelError::default()))?;
+        let mut all = Vec::new();
+        for (row, measured) in self.data.rows.iter().enumerate() {
+            let first = all.len();
+            let own = self.row_responses(row, measured, &curve)?;
+            all.extend(own.into_iter().map(|changes| -> Response {
+                changes
+                    .into_iter()
+                    .enumerate()
+                    .map(|(k, change)| (first + k, change))
+                    .collect()
+            }));
+        }
+        Ok(Some(all))
     }
 
     fn residual_label(&self, index: usize) -> String {

@@ -4,7 +4,7 @@ use super::{FreeError, Settings};
 use hertzchain_experiment::{Experiment, Place};
 
 /// Short names: what each stands for, and the end of its path.
-pub const SHORT_NAMES: [(&str, &str, &str); 11] = [
+pub const SHORT_NAMES: [(&str, &str, &str); 12] = [
     ("Y", "Young modulus", "young_modulus"),
     ("nu", "Poisson ratio", "poisson_ratio"),
     ("eta", "viscosity", "shear_viscosity"),
@@ -32,7 +32,11 @@ pub const SHORT_NAMES: [(&str, &str, &str); 11] = [
         "sensitivity of the bead's sensor with its amplifier",
         "",
     ),
+    ("low_pass", "corner of the amplifier's low-pass", LOW_PASS),
 ];
+
+/// The corner of the amplifier's low-pass.
+pub(super) const LOW_PASS: &str = "campaign.amplifier.low_pass";
 
 /// Numbers of the instruments, not of the chain.
 const WALL_GAIN: &str = "wall_gain";

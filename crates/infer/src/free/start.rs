@@ -1,6 +1,6 @@
 //! Where a free number starts and what it may be.
 
-use super::name::{Found, Target};
+use super::name::{Found, LOW_PASS, Target};
 use hertzchain_chain::laws;
 use hertzchain_experiment::Experiment;
 use std::f64::consts::FRAC_PI_2;
@@ -32,6 +32,9 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     let Target::Number(path) = &found.target else {
         return None;
     };
+    if path == LOW_PASS {
+        return Some(experiment.campaign().amplifier.low_pass_hz);
+    }
     if let Some(material) = path.strip_suffix("bulk_viscosity") {
         return experiment.get(&format!("{material}shear_viscosity")).ok();
     }
@@ -71,9 +74,8 @@ pub(super) fn bounds(found: &Found) -> (f64, f64) {
         "exponent" => (-MOST_EXPONENT, MOST_EXPONENT),
         // The experiment file takes no other: the wall is below.
         "incline" => (0.0, FRAC_PI_2),
-        "prefactor" | "young_modulus" | "stiffness" | "mass" | "radius" | "density" => {
-            (f64::MIN_POSITIVE, f64::INFINITY)
-        }
+        "prefactor" | "young_modulus" | "stiffness" | "mass" | "radius" | "density"
+        | "low_pass" => (f64::MIN_POSITIVE, f64::INFINITY),
         _ => (0.0, f64::INFINITY),
     }
 }

@@ -266,7 +266,7 @@ impl Gauge {
             values: in_logs(&fit.point[first..]),
             covariance: of_logs(&covariance, &fit.point, first),
             largest_ln_sd: f64::INFINITY,
-            chi_square: Goodness::new(parameters, &fit).chi_square,
+            chi_square: Goodness::new(joint, &fit).chi_square,
             others,
             undetermined: open.map(|confusion| confusion.words).collect(),
             own: own.collect(),

@@ -161,7 +161,7 @@ impl Gauge {
     /// How well the dry curve follows its model.
     #[must_use]
     pub fn dry_goodness(&self) -> Goodness {
-        Goodness::new(Problem::parameters(&self.dry), &self.dry_fit)
+        Goodness::new(&self.dry, &self.dry_fit)
     }
 
     /// What speaks against believing the verdict, and what to do: a dry curve that is

@@ -4,7 +4,7 @@ use super::oils::Oil;
 use super::{CONTACT, Gauge, GaugeError};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::free::{FreeNumber, FreeNumbers};
-use crate::{Covariance, Fitting, Parameter, Problem, fit};
+use crate::{Covariance, Fitting, Parameter, Problem, fit, largest_residual};
 use hertzchain_signal::{ChiSquare, Estimate, chi_square};
 
 /// How far the wet data are from what an oil would give.
@@ -178,14 +178,23 @@ impl Gauge {
             value: *value,
             standard_error: *standard_error,
         });
-        matched(&oil.name, wet, wet_residuals, own.collect())
+        let rows = self.dry.residual_count()..fitted.residuals.len();
+        let largest = largest_residual(&joint, &fitted, rows.clone());
+        let farthest = match largest {
+            Some(found) => (
+                wet.residual_label(found.residual - rows.start),
+                found.sigmas,
+            ),
+            None => return Err("no wet number is checked by others".to_owned()),
+        };
+        matched(&oil.name, wet_residuals, farthest, own.collect())
     }
 }
 
 fn matched(
     name: &str,
-    wet: &CurveProblem,
     residuals: &[f64],
+    farthest: (String, f64),
     own: Vec<OwnNumber>,
 ) -> Result<Match, String> {
     if residuals.len() <= own.len() {
@@ -202,14 +211,11 @@ fn matched(
     let rows: Vec<Estimate> = rows.collect();
     let chi_square =
         chi_square(&rows, &vec![0.0; rows.len()], own.len()).ok_or("its distance is not finite")?;
-    let numbered = residuals.iter().enumerate();
-    let farthest = numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    let (at, size) = farthest.ok_or("the wet data are empty")?;
     Ok(Match {
         oil: name.to_owned(),
         distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
         chi_square,
-        farthest: (wet.residual_label(at), *size),
+        farthest,
         own,
     })
 }

@@ -7,6 +7,7 @@ use super::jacobian::{Jacobian, jacobian};
 use super::merit::Merit;
 use super::starts::starts;
 use super::{FitError, Loss};
+use crate::identify::{directions, sized};
 use crate::linear::norm;
 use crate::{ModelError, Parameter, Prior, Problem, Residuals};
 
@@ -83,6 +84,8 @@ pub struct Fit {
     pub ln_sigmas: f64,
     /// Derivatives at the optimum.
     pub jacobian: Jacobian,
+    /// How many combinations of the parameters data and priors determine.
+    pub rank: usize,
     /// Parameters that ended at a bound against which the data push.
     pub binding: Vec<Binding>,
     /// Why the best start's descent ended.
@@ -279,7 +282,9 @@ fn at_optimum(merit: &Merit<'_>, best: &Reached) -> Result<Fit, FitError> {
     changes_something(problem.parameters(), &best.point, &jacobian)?;
     let linear = merit.linear(at, &slopes);
     let binding = binding(problem.parameters(), &best.point, &linear.gradient);
+    let sized = sized(problem.parameters(), &best.point);
     Ok(Fit {
+        rank: directions(&sized, &jacobian, &binding).len(),
         point: best.point.clone(),
         cost: at.cost,
         residuals: at.rows[..problem.residual_count()].to_vec(),

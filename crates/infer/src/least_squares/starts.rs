@@ -18,8 +18,12 @@ pub(crate) fn starts(parameters: &[Parameter], count: usize, seed: u64) -> Vec<V
 /// Two bounds of one sign farther apart than this are spread over by logarithm.
 const WIDE_RATIO: f64 = 10.0;
 
-/// From the prior if there is one, else between the bounds if both exist, else
-/// a normal number as wide as the scale; never beyond a bound.
+/// Factor to either side of a positive number that has no two bounds.
+const AROUND: f64 = 10.0;
+
+/// From the prior if there is one, else between the bounds if both exist, else by the
+/// logarithm around a positive start, else a normal number as wide as the scale; never
+/// beyond a bound.
 fn spread(parameter: &Parameter, chance: &mut Chance) -> f64 {
     let (lower, upper) = (parameter.lower, parameter.upper);
     let value = match parameter.prior {
@@ -30,6 +34,9 @@ fn spread(parameter: &Parameter, chance: &mut Chance) -> f64 {
         }
         Prior::Flat if lower.is_finite() && upper.is_finite() => {
             lower + (upper - lower) * chance.uniform()
+        }
+        Prior::Flat if lower >= 0.0 && parameter.start > 0.0 => {
+            parameter.start * AROUND.powf(2.0 * chance.uniform() - 1.0)
         }
         Prior::Flat => parameter.start + parameter.scale * chance.normal(),
     };

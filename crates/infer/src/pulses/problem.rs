@@ -6,22 +6,24 @@ use crate::curve::{Model, Shooting, Speeds};
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
 use hertzchain_chain::Sensor;
+use hertzchain_experiment::Amplifier;
 use hertzchain_study::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
 
-/// What stands between the sensors' forces and the recorder, with a gain of one
-/// in the middle of its band: samples of a signal and their interval in s to
-/// samples of the filtered one.
+/// What an amplifier's filters make of a signal, with a gain of one in the middle of their
+/// band: samples of a signal and their interval in s to samples of the filtered one.
 #[derive(Clone)]
-pub struct Respond(Arc<Response>);
+pub struct Respond(Arc<Filter>);
 
-type Response = dyn Fn(&[f64], f64) -> Vec<f64> + Send + Sync;
+type Filter = dyn Fn(&Amplifier, &[f64], f64) -> Vec<f64> + Send + Sync;
 
 impl Respond {
     /// From a function.
-    pub fn new(filter: impl Fn(&[f64], f64) -> Vec<f64> + Send + Sync + 'static) -> Self {
+    pub fn new(
+        filter: impl Fn(&Amplifier, &[f64], f64) -> Vec<f64> + Send + Sync + 'static,
+    ) -> Self {
         Self(Arc::new(filter))
     }
 }
@@ -29,7 +31,7 @@ impl Respond {
 impl Default for Respond {
     /// Nothing stands between.
     fn default() -> Self {
-        Self::new(|signal, _| signal.to_vec())
+        Self::new(|_, signal, _| signal.to_vec())
     }
 }
 
@@ -79,8 +81,11 @@ pub struct PulseProblem {
 /// Share of the model's first passing time by which it may become later.
 const LATER: f64 = 0.5;
 
-/// Samples of the model in an incident time of flight, at the least.
-const LEAST_SAMPLES: f64 = 500.0;
+/// Samples of the model in an incident time of flight, at the least, and the longest time
+/// between them in s. Filters are exact for straight lines between samples, so that an error
+/// goes as the square of that time: 2 µs made a sensitivity wrong by 2.5e-4 of itself.
+const LEAST_SAMPLES: f64 = 2500.0;
+const LONGEST_INTERVAL_S: f64 = 0.25e-6;
 
 /// Relative change of the speed by which its effect is told.
 const ASIDE: f64 = 1e-3;
@@ -321,7 +326,7 @@ impl PulseProblem {
         };
         let filtered = channels
             .iter()
-            .map(|channel| (self.respond.0)(channel, interval_s));
+            .map(|channel| (self.respond.0)(&shooting.amplifier, channel, interval_s));
         let filtered = filtered.collect();
         Ok((shot, filtered))
     }
@@ -358,7 +363,10 @@ fn first_shot(record: &Pulses, shooting: &Shooting) -> Result<FirstShot, ModelEr
     Ok(FirstShot {
         sensor_gain_v_n: shooting.sensor_gain_v_n,
         passing_n: passing.value,
-        grid: (length_s, least_s.min(record.interval_s)),
+        grid: (
+            length_s,
+            least_s.min(record.interval_s).min(LONGEST_INTERVAL_S),
+        ),
     })
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
@@ -13,7 +14,7 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from .curves import Sweep
-from .errors import OptionError
+from .errors import ExperimentWarning, OptionError
 from .experiment import preset
 from .recording import Measured
 
@@ -90,6 +91,16 @@ def _cell(value: Any) -> str:
 
 def modelled(model: Experiment | str | None) -> Experiment:
     return model if isinstance(model, Experiment) else preset(model or "dry")
+
+
+def assumed(**models: tuple[object, str]) -> str | None:
+    """That models which are not named are the paper's, as a warning and in a sentence."""
+    absent = [f"{name}={usual!r}" for name, (given, usual) in models.items() if given is None]
+    if not absent:
+        return None
+    warning = f"no model is named: the paper's chain is assumed ({', '.join(absent)})"
+    warnings.warn(warning, ExperimentWarning, stacklevel=3)
+    return warning
 
 
 CHAIN = "chain.json"

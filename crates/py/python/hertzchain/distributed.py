@@ -32,7 +32,7 @@ from . import _dask
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._posing import FitOptions, kept, modelled, table, words
+from ._posing import FitOptions, assumed, kept, modelled, table, words
 from ._table import Tabled, lines, warned
 from .curves import Ensemble, Odd
 from .errors import OptionError
@@ -390,4 +390,5 @@ def fit(
         compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
         workers = _dask.threads(client) or UNKNOWN
     with options.progress(progress, None, "curve") as update:
-        return fitted(_native.fit_spread(likelihood, size, workers, compute, update))
+        found = _native.fit_spread(likelihood, size, workers, compute, update)
+        return fitted({**found, "assumed_model": assumed(model=(model, "dry"))})

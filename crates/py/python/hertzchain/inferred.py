@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -208,6 +208,11 @@ class Designed(Tabled):
     hopeless : list of str
         What nothing that could be measured determines, and what is tightened instead: then
         `parameters` are combinations.
+    references : list of dict
+        Of each free K or A the contact whose value it is, the contacts of its section, and
+        the range of their ratios to it.
+    assumed_model : str or None
+        That the paper's chain was assumed, where no model was named.
 
     References
     ----------
@@ -222,6 +227,8 @@ class Designed(Tabled):
     series: list[dict[str, Any]]
     undetermined: list[str]
     hopeless: list[str]
+    references: list[dict[str, Any]] = field(default_factory=list)
+    assumed_model: str | None = None
 
     _index = "measure"
 

@@ -12,7 +12,7 @@ import numpy as np
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._posing import Data, Method, What, kept, modelled, recordings, table, words
+from ._posing import Data, Method, What, assumed, kept, modelled, recordings, table, words
 from .errors import ExperimentWarning
 from .inferred import Designed, Fitted, Gauged, Parameter
 
@@ -45,6 +45,8 @@ def fit(
     shots: str | os.PathLike[str] | None = None,
     rate: str | float | None = None,
     channel: str | int | Iterable[str | int] = (),
+    low_pass: str | float | None = None,
+    filter: str | None = None,
     most_shots: int = 40,
     seed: int = 0,
     threads: int | None = None,
@@ -61,7 +63,8 @@ def fit(
         Or recordings of any format that `measure` reads, files or folders of them: then
         whole pulses are fitted, sample by sample.
     model : Experiment or str, optional
-        The model, or the name of a preset; ``"dry"`` when absent.
+        The model, or the name of a preset. Where it is absent the paper's dry chain is assumed
+        (preset ``"dry"``), with a warning.
     free : str or iterable of str
         Free numbers: short names (Y, nu, eta, K, A, B, of a material or section as
         in ``"wet.K"``) or paths; ``:power`` for a power law of speed, ``:each``
@@ -96,6 +99,10 @@ def fit(
         Of recordings: table of speeds and cases, as for `measure`.
     rate, channel
         Of recordings that do not say: sampling rate in Hz; the sensor bead's channel and the wall's.
+    low_pass, filter
+        Of recordings: corner of the amplifier's low-pass in Hz or with a unit, and its order and
+        kind (``"first"``, ``"butterworth2"`` to ``"butterworth4"``, ``"bessel2"`` to ``"bessel4"``),
+        in place of the model's.
     most_shots : int
         Most recordings that are fitted, spread evenly over those that are good.
     case, robust, starts, seed, threads
@@ -107,7 +114,7 @@ def fit(
     Warns
     -----
     ExperimentWarning
-        Speeds without errors, which are taken as exactly known.
+        Speeds without errors, which are taken as exactly known; a model that is not named.
 
     Returns
     -------
@@ -145,15 +152,17 @@ def fit(
     with options.progress(progress, None, "curve") as update:
         if files is None:
             name, text = table(data)
-            return fitted(_native.fit((name, text), modelled(model), [*told, "--", name], update))
-        told += options.words(most_shots=most_shots)
-        return fitted(_native.fit_pulses(modelled(model), [*told, "--", *files], update))
+            found = _native.fit((name, text), modelled(model), [*told, "--", name], update)
+            return fitted({**found, "assumed_model": assumed(model=(model, "dry"))})
+        told += options.words(low_pass=low_pass, filter=filter, most_shots=most_shots)
+        found = _native.fit_pulses(modelled(model), [*told, "--", *files], update)
+        return fitted({**found, "assumed_model": assumed(model=(model, "dry"))})
 
 
 def fitted(found: dict[str, Any]) -> Fitted:
     """A fit from what the library tells of it."""
-    if (assumed := found.get("assumed")) is not None:
-        warnings.warn(assumed, ExperimentWarning, stacklevel=3)
+    if (taken := found.get("assumed")) is not None:
+        warnings.warn(taken, ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     columns = {key: [row[key] for row in rows] for key in (rows[0] if rows else {})}
     return Fitted(
@@ -239,7 +248,8 @@ ratio_error, error_shots, accuracy, threads, progress
     told += options.listed("sensors", None if sensors is None else map(str, sensors))
     told += options.listed("costs", [f"{way}={options.text(value)}" for way, value in (costs or {}).items()] or None)
     with options.progress(progress, None, "curve") as update:
-        return Designed(**_native.design((name, text), modelled(model), [*told, "--", name], update))
+        found = _native.design((name, text), modelled(model), [*told, "--", name], update)
+    return Designed(**found, assumed_model=assumed(model=(model, "dry")))
 
 
 def gauge(
@@ -248,8 +258,8 @@ def gauge(
     *,
     wet_case: str | None = None,
     dry_case: str | None = None,
-    model: Experiment | str = "pump",
-    dry_model: Experiment | str = "dry",
+    model: Experiment | str | None = None,
+    dry_model: Experiment | str | None = None,
     dry_free: str | Iterable[str] = ("aisi316.eta", "dry.B"),
     own: str | Iterable[str] = (),
     form: Literal["each", "power"] = "each",
@@ -269,8 +279,9 @@ def gauge(
     ----------
     wet, dry : path, mapping of columns, DataFrame, Measured or Sweep
         Times of flight of the wet and of the dry chain, as for `fit`.
-    model, dry_model : Experiment or str
-        The chains; the wet one has a section with ``wet = true``.
+    model, dry_model : Experiment or str, optional
+        The chains; the wet one has a section with ``wet = true``. Where one is absent the
+        paper's is assumed (presets ``"pump"`` and ``"dry"``), with a warning.
     dry_free : iterable of str
         Free numbers of the dry contacts.
     own : iterable of str
@@ -283,6 +294,11 @@ def gauge(
         Table (CSV) of further oils.
     wet_case, dry_case, use, speed_error, tof_error, ratio_error, error_shots, accuracy, threads, progress
         As for `fit`; cases of each table of its own.
+
+    Warns
+    -----
+    ExperimentWarning
+        Models that are not named, for which the paper's are taken.
 
     Returns
     -------
@@ -314,5 +330,6 @@ def gauge(
     ]  # fmt: skip
     more = None if oils is None else table(oils)
     with options.progress(progress, None, "curve") as update:
-        found = _native.gauge(tables, (modelled(model), modelled(dry_model)), more, told, update)
+        found = _native.gauge(tables, (modelled(model or "pump"), modelled(dry_model or "dry")), more, told, update)
+    found["assumed_model"] = assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))
     return Gauged(found["verdict"], found["oils"], found["contacts"], found["dry"], found)

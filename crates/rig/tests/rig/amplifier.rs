@@ -1,6 +1,6 @@
 //! The charge amplifier against closed forms.
 
-use hertzchain_experiment::{Amplifier as Numbers, LowPass};
+use hertzchain_experiment::{Amplifier as Numbers, LowPass, LowPassKind};
 use hertzchain_rig::Amplifier;
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -13,6 +13,7 @@ fn numbers(order: LowPass) -> Numbers {
         gain_v_c: 1e9,
         low_pass_hz: 30e3,
         order,
+        kind: LowPassKind::Butterworth,
         high_pass_hz: 200.0,
         noise_v: 0.0,
     }
@@ -95,4 +96,54 @@ fn a_ramp_gives_the_same_voltages_on_a_grid_five_times_as_coarse() {
 fn no_force_gives_no_voltage() {
     let mut amplifier = Amplifier::new(&numbers(LowPass::Second), INTERVAL_S);
     assert!((0..100).all(|_| amplifier.next(0.0, 0.0) == 0.0));
+}
+
+/// The amplitude of a sine after all else has died away, over that of the input.
+fn gain(numbers: &Numbers, frequency_hz: f64) -> f64 {
+    let interval_s = 0.005 / numbers.low_pass_hz;
+    let mut amplifier = Amplifier::new(numbers, interval_s);
+    let mut sums = [0.0; 3];
+    for at in 0..40_000 {
+        let (sin, cos) = (TAU * frequency_hz * at as f64 * interval_s).sin_cos();
+        let out = amplifier.next(sin, 0.0);
+        if at >= 20_000 {
+            for (sum, term) in sums.iter_mut().zip([out * sin, out * cos, sin * sin]) {
+                *sum += term;
+            }
+        }
+    }
+    sums[0].hypot(sums[1]) / sums[2] / (numbers.gain_v_c * numbers.sensitivity_c_n)
+}
+
+#[test]
+fn low_passes_of_all_orders_and_kinds_have_half_the_power_at_the_corner() {
+    let orders = [
+        LowPass::First,
+        LowPass::Second,
+        LowPass::Third,
+        LowPass::Fourth,
+    ];
+    for (order, poles) in orders.into_iter().zip(1..) {
+        for kind in [LowPassKind::Butterworth, LowPassKind::Bessel] {
+            let numbers = Numbers {
+                kind,
+                high_pass_hz: 1e-3,
+                ..numbers(order)
+            };
+            let at_corner = gain(&numbers, numbers.low_pass_hz);
+            // Straight lines between samples, and a high-pass far below.
+            assert!(
+                (at_corner * SQRT_2 - 1.0).abs() < 1e-4,
+                "{order:?} {kind:?}: {at_corner}"
+            );
+            if kind == LowPassKind::Butterworth {
+                let expected = (1.0 + 2_f64.powi(2 * poles)).sqrt().recip();
+                let octave = gain(&numbers, 2.0 * numbers.low_pass_hz);
+                assert!(
+                    (octave / expected - 1.0).abs() < 1e-3,
+                    "{order:?}: {octave}"
+                );
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! What the recorder stores of forces that are known.
 
-use hertzchain_experiment::{Amplifier, LowPass, Recorder, Trigger, preset};
+use hertzchain_experiment::{Amplifier, LowPass, LowPassKind, Recorder, Trigger, preset};
 use hertzchain_rig::{Chance, Purpose, Record, Window};
 
 fn amplifier() -> Amplifier {
@@ -10,6 +10,7 @@ fn amplifier() -> Amplifier {
         gain_v_c: 1e9,
         low_pass_hz: 450e3,
         order: LowPass::Second,
+        kind: LowPassKind::Butterworth,
         high_pass_hz: 1e-3,
         noise_v: 0.0,
     }

@@ -79,7 +79,8 @@ pub struct Modelled {
     /// Experiment file of the model
     #[arg(long, short, value_name = "FILE", conflicts_with = "preset")]
     pub model: Option<PathBuf>,
-    /// A model that comes with the program; `hertzchain presets` lists them
+    /// A model that comes with the program; `hertzchain presets` lists them. The paper's
+    /// dry chain, `dry`, where no model is named, which the first line says
     #[arg(long, short, value_name = "NAME")]
     pub preset: Option<String>,
     /// Set a number that stays fixed, such as incline=0.5deg
@@ -181,6 +182,13 @@ pub struct Recorded {
     /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
     #[arg(long, value_name = "NAME")]
     pub channel: Vec<String>,
+    /// Corner of the amplifier's low-pass, such as 180kHz, in place of the model's; a plain number is in
+    /// Hz. --free low_pass fits it
+    #[arg(long, value_name = "FREQUENCY", value_parser = super::measure::rate, allow_hyphen_values = true)]
+    pub low_pass: Option<f64>,
+    /// Order and kind of the amplifier's low-pass, in place of the model's
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub filter: Option<Filter>,
     /// Most shots that are fitted, spread evenly over those that are good
     #[arg(long, value_name = "COUNT", default_value = "40", value_parser = count, allow_hyphen_values = true)]
     pub most_shots: usize,
@@ -191,6 +199,42 @@ impl Recorded {
     #[must_use]
     pub fn describes_files(&self) -> bool {
         self.shots.is_some() || self.rate.is_some() || !self.channel.is_empty()
+    }
+}
+
+/// Low-passes by order and kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Filter {
+    /// One pole
+    First,
+    /// Butterworth of second order
+    Butterworth2,
+    /// Butterworth of third order
+    Butterworth3,
+    /// Butterworth of fourth order
+    Butterworth4,
+    /// Bessel of second order
+    Bessel2,
+    /// Bessel of third order
+    Bessel3,
+    /// Bessel of fourth order
+    Bessel4,
+}
+
+impl Filter {
+    /// Order and kind as an experiment file names them.
+    #[must_use]
+    pub const fn names(self) -> (&'static str, Option<&'static str>) {
+        let (butterworth, bessel) = (Some("butterworth"), Some("bessel"));
+        match self {
+            Self::First => ("first", None),
+            Self::Butterworth2 => ("second", butterworth),
+            Self::Butterworth3 => ("third", butterworth),
+            Self::Butterworth4 => ("fourth", butterworth),
+            Self::Bessel2 => ("second", bessel),
+            Self::Bessel3 => ("third", bessel),
+            Self::Bessel4 => ("fourth", bessel),
+        }
     }
 }
 
@@ -336,14 +380,16 @@ pub struct Gauge {
     /// Experiment file of the wet chain, a section of it with `wet = true`
     #[arg(long, short, value_name = "FILE")]
     pub model: Option<PathBuf>,
-    /// Wet chain that comes with the program; its oil's own numbers play no part
-    #[arg(long, short, value_name = "NAME", default_value = "pump")]
+    /// Wet chain that comes with the program; its oil's own numbers play no part. The paper's, `pump`,
+    /// where no model is named, which the first line says
+    #[arg(long, short, value_name = "NAME")]
     pub preset: Option<String>,
     /// Experiment file of the dry chain
     #[arg(long, value_name = "FILE")]
     pub dry_model: Option<PathBuf>,
-    /// Dry chain that comes with the program
-    #[arg(long, value_name = "NAME", default_value = "dry")]
+    /// Dry chain that comes with the program; the paper's, `dry`, where no model is named, which the
+    /// first line says
+    #[arg(long, value_name = "NAME")]
     pub dry_preset: Option<String>,
     /// Free numbers of the dry contacts, by names that both models know
     #[arg(

@@ -90,11 +90,15 @@ impl Words {
             shots,
             rate,
             channel,
+            low_pass,
+            filter,
             most_shots,
         } = recorded;
         self.maybe("shots", shots.as_ref().map(|path| path.display()))
             .maybe("rate", *rate)
             .each("channel", channel)
+            .maybe("low-pass", *low_pass)
+            .maybe("filter", filter.as_ref().map(name))
             .one("most-shots", most_shots)
     }
 }

@@ -13,6 +13,8 @@ pub fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     refuse("--shots", recorded.shots.is_some(), why)?;
     refuse("--rate", recorded.rate.is_some(), why)?;
     refuse("--channel", !recorded.channel.is_empty(), why)?;
+    refuse("--low-pass", recorded.low_pass.is_some(), why)?;
+    refuse("--filter", recorded.filter.is_some(), why)?;
     let why = "can't be combined with --against: models are compared by likelihoods, and a robust loss is none; \
                compare without --robust, or leave outliers out of the table";
     refuse(

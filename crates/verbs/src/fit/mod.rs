@@ -32,6 +32,9 @@ const OUTLIER: f64 = 1.345;
 /// Share of a normal distribution within one standard error of its mean.
 pub(crate) const SHARE_OF_A_STANDARD_ERROR: f64 = 0.682_689_5;
 
+/// Difference of costs above which two minima are different.
+const SAME_COST: f64 = 0.01;
+
 /// What any fit tells.
 pub struct Inferred {
     /// The free parameters.
@@ -99,6 +102,31 @@ impl Inferred {
 }
 
 impl Fitted {
+    /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
+    /// each.
+    #[must_use]
+    pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
+        let (fit, model) = (&self.inferred.fit, self.problem.model());
+        let finer = (model.accuracy < arguments.modelled.accuracy).then(|| {
+            format!(
+                "Curves were computed to {:.0e} in place of {:.0e}, to which the fit found no minimum",
+                model.accuracy, arguments.modelled.accuracy
+            )
+        });
+        let first = fit.starts.first().map_or(fit.cost, |start| start.cost);
+        let more = (fit.starts.len() > arguments.starts).then(|| {
+            let found = match first > fit.cost + SAME_COST {
+                true => "one of them came to a better one, above",
+                false => "none came to a better one",
+            };
+            format!(
+                "The data reject the minimum that the first start came to, so {} others were tried; {found}",
+                fit.starts.len() - arguments.starts
+            )
+        });
+        finer.into_iter().chain(more).collect()
+    }
+
     /// That several pairs of K and A may give the data, where both are free and two times of
     /// flight a pair are all that was measured, and how to look for them; nothing if the fit
     /// had several starts.
@@ -131,6 +159,43 @@ impl Fitted {
     }
 }
 
+/// Starts of a fit of tables whose first came to a minimum that the data reject, and most free
+/// parameters for which they are tried.
+const UNASKED: usize = 8;
+const FEW: usize = 8;
+
+/// The best fit, as asked; where chance can't be why the data are so far from it, the best of
+/// several starts: a minimum may be another than the data's.
+fn best_of_starts(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
+    let first = best(problem, arguments)?;
+    let one = arguments.starts == 1 && !arguments.robust && first.point.len() <= FEW;
+    if !one || !Goodness::new(problem, &first).is_rejected() {
+        return Ok(first);
+    }
+    let how = Fitting {
+        starts: UNASKED,
+        seed: arguments.seed,
+        ..Fitting::default()
+    };
+    let found = fit(problem, &how);
+    wanted()?;
+    Ok(found.unwrap_or(first))
+}
+
+/// Times that a fit without a minimum is repeated with curves ten times as accurate.
+const MOST_FINER: u32 = 2;
+
+/// The same problem with more accurate curves, where a fit of curves found no minimum: their
+/// errors jump where the solver takes another number of steps, and hide what is small.
+fn finer(problem: &CurveProblem, fit: &Fit, times: u32) -> Option<CurveProblem> {
+    let more = !fit.ending.converged() && times < MOST_FINER;
+    more.then(|| {
+        problem
+            .clone()
+            .with_accuracy(0.1 * problem.model().accuracy)
+    })
+}
+
 /// The best fit, as asked.
 fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
     let how = Fitting {
@@ -154,8 +219,18 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
 /// What is in the way of a fit.
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
-    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
-    let fit = best(&kept, arguments)?;
+    attempted(problem, 0, arguments)
+}
+
+/// The same, after so many attempts with less accurate curves.
+fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<Fitted, Failure> {
+    let own = (None, times);
+    let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
+    let fit = best_of_starts(&kept, arguments)?;
+    if let Some(finer) = finer(&problem, &fit, times) {
+        kept.sound()?;
+        return attempted(finer, times + 1, arguments);
+    }
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more((&problem, &kept), (&fit, &covariance), arguments)?;
     let found = judged((&problem, &kept), (fit, covariance, more), arguments)?;
@@ -176,7 +251,7 @@ pub fn fitted_elsewhere(
 ) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
     let kept = Remembered::new(computed, || problem.fingerprint(), arguments)?;
-    let fit = best(&kept, arguments)?;
+    let fit = best_of_starts(&kept, arguments)?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(
         (computed, &kept),
@@ -201,7 +276,7 @@ fn judged(
     let rivals = rivals::rivals((problem, kept), &fit, arguments)?;
     let inferred = Inferred {
         parameters: problem.parameters().to_vec(),
-        goodness: Goodness::new(problem.parameters(), &fit),
+        goodness: Goodness::new(problem, &fit),
         identifiability,
         more,
         limits,

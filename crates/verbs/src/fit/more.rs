@@ -9,7 +9,7 @@ use hertzchain_infer::{
     Sampling, Surrogate, Unconverged, profile,
 };
 use hertzchain_study::reproduce::write_atomically;
-use hertzchain_study::{StudyError, stopped};
+use hertzchain_study::{StudyError, note_progress, stopped};
 use std::fs;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
@@ -55,6 +55,7 @@ pub fn more(
     if arguments.method != Method::Posterior || arguments.direct {
         return more_of((problem, kept), found, Curves::Computed(None), arguments);
     }
+    note_progress(&"posterior: computing the curves that others are interpolated between");
     let why = match Surrogate::new(problem, found.0, found.1) {
         Ok(surrogate) if surrogate.is_right() => {
             let speeds_m_s = surrogate.computed_speeds_m_s();
@@ -150,6 +151,7 @@ pub const CHAIN: &str = "chain.json";
 struct Saving<'a> {
     folder: Option<&'a Path>,
     saved: Instant,
+    most_steps: u64,
 }
 
 /// Time between saved states: what a broken run loses.
@@ -160,11 +162,19 @@ impl<'a> Saving<'a> {
         Self {
             folder: arguments.out.as_deref(),
             saved: Instant::now(),
+            most_steps: arguments.steps,
         }
     }
 
     fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
         wanted()?;
+        note_progress(&format_args!(
+            "posterior: {} of at most {} steps of {} walkers, {:.0} % of proposals accepted",
+            chain.steps(),
+            self.most_steps,
+            chain.walkers(),
+            100.0 * chain.acceptance()
+        ));
         let Some(folder) = self.folder else {
             return Ok(());
         };

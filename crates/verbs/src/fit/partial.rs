@@ -31,6 +31,9 @@ const PART: &str = "part-";
 /// What the name of another model's folder begins with, within that of the fit.
 const RIVAL: &str = "against-";
 
+/// The same of a fit that was repeated with more accurate curves.
+const FINER: &str = "finer-";
+
 /// Bytes of a number.
 const NUMBER: usize = 8;
 
@@ -68,17 +71,26 @@ impl<'a> Remembered<'a> {
         Self::within((problem, folder), fingerprint, arguments.resume)
     }
 
-    /// The same of another model, by its number among those that a fit is held against.
+    /// The same of another model, by its number among those that a fit is held against, or of
+    /// the fit's own; computed more accurately so many times.
     ///
     /// # Errors
     /// As [`Remembered::new`].
-    pub fn of_rival(
-        (problem, number): (&'a dyn Problem, usize),
+    pub fn of_attempt(
+        problem: &'a dyn Problem,
+        (rival, finer): (Option<usize>, u32),
         fingerprint: impl FnOnce() -> Fingerprint,
         arguments: &Arguments,
     ) -> Result<Self, Failure> {
-        let out = arguments.out.as_ref();
-        let folder = out.map(|out| out.join(PARTIAL).join(format!("{RIVAL}{number}")));
+        let folder = arguments.out.as_ref().map(|out| {
+            let out = out.join(PARTIAL);
+            match (rival, finer) {
+                (None, 0) => out,
+                (None, finer) => out.join(format!("{FINER}{finer}")),
+                (Some(number), 0) => out.join(format!("{RIVAL}{number}")),
+                (Some(number), finer) => out.join(format!("{RIVAL}{number}-{FINER}{finer}")),
+            }
+        });
         Self::within((problem, folder), fingerprint, arguments.resume)
     }
 
@@ -246,8 +258,8 @@ fn named(folder: &Path, begin: &str) -> Vec<PathBuf> {
 
 /// Removes parts, other models' among them, and their folder if nothing else is in it.
 fn forget(folder: &Path) {
-    for rival in named(folder, RIVAL) {
-        forget(&rival);
+    for other in [RIVAL, FINER].iter().flat_map(|begin| named(folder, begin)) {
+        forget(&other);
     }
     for part in parts(folder) {
         // What stays is refused by its fingerprint, or right.
@@ -392,7 +404,8 @@ mod tests {
             let (own, rival) = (Square::new(), Square::new());
             let given = arguments(&out, resume);
             let kept = Remembered::new(&own, || of(b"square"), &given).unwrap();
-            let beside = Remembered::of_rival((&rival, 0), || of(b"rival"), &given).unwrap();
+            let beside =
+                Remembered::of_attempt(&rival, (Some(0), 0), || of(b"rival"), &given).unwrap();
             for of in [&kept, &beside] {
                 assert_eq!(
                     of.residuals(&points)[0].as_ref().unwrap().standardised,

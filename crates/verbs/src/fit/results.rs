@@ -24,6 +24,7 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         "fingerprint": fitted.problem.fingerprint().to_string(),
         "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
         "several_pairs": fitted.several_pairs(),
+        "unasked": fitted.unasked(arguments),
         "prospects": fitted.advice.as_ref().map(prospects),
         "comparison": fitted.rivals.as_ref().map(comparison),
     });
@@ -85,6 +86,9 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
             "value": c.value, "freedom": c.freedom, "probability": c.probability,
         })),
         "follows_data": !goodness.is_rejected(),
+        "largest_residual": goodness.largest.as_ref().map(|found| json!({
+            "what": found.label, "standard_errors": found.sigmas,
+        })),
         "runs": goodness.runs.map(|r| json!({
             "count": r.count, "expected": r.expected,
             "probability_fewer": r.probability_fewer, "probability_more": r.probability_more,
@@ -210,6 +214,8 @@ fn posterior(fitted: &Inferred) -> Value {
 fn comparison(rivals: &Rivals) -> Value {
     json!({
         "models": rivals.comparison.as_ref().map(|found| compared(rivals, found)),
+        "favoured": (rivals.comparison.as_ref())
+            .and_then(|found| found.favoured).map(|at| rivals.all[at].name.clone()),
         "sentence": rivals.comparison.as_ref().map(|found| found.sentence.clone()),
         "without_minimum": rivals.lost.iter().map(|lost| json!({
             "model": lost.name, "chi_square": lost.chi_square, "why": lost.why,
@@ -227,6 +233,8 @@ fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
             "settings_left_out": rival.without,
             "kept": rival.kept,
             "chi_square": rival.fit.chi_square(),
+            "freedom": criteria.chi_square.map(|found| found.freedom),
+            "probability": criteria.chi_square.map(|found| found.probability),
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),
             "bic": criteria.bic,

@@ -2,13 +2,14 @@
 
 use super::Arguments;
 use super::partial::Remembered;
+use super::{best_of_starts, finer};
 use crate::arguments::infer::{Against, Assignment, Freed};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, kept, user, wanted};
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_infer::{
-    Compared, Comparison, CrossValidation, CurveProblem, Fit, Fitting, Folding, Problem, compare,
-    cross_validate, fit, same_number,
+    Compared, Comparison, CrossValidation, CurveProblem, Fit, Folding, Problem, compare,
+    cross_validate, same_number,
 };
 
 /// A model that was fitted to the same data.
@@ -98,16 +99,25 @@ fn other(
         other => other,
     };
     let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
-    let how = Fitting {
-        starts: arguments.starts,
-        seed: arguments.seed,
-        ..Fitting::default()
-    };
+    attempted((name.clone(), number), posed, without, 0, arguments).map_err(of_rival)
+}
+
+/// The fit of another model, after so many attempts with less accurate curves.
+fn attempted(
+    (name, number): (String, usize),
+    posed: CurveProblem,
+    without: Vec<String>,
+    times: u32,
+    arguments: &Arguments,
+) -> Result<Result<Rival, Lost>, Failure> {
     let told = kept(posed.model(), &arguments.modelled.set);
-    let kept = Remembered::of_rival((&posed, number), || posed.fingerprint(), arguments)?;
-    let fit = fit(&kept, &how);
-    wanted()?;
-    let fit = fit.map_err(|error| of_rival(user(error)))?;
+    let own = (Some(number), times);
+    let kept = Remembered::of_attempt(&posed, own, || posed.fingerprint(), arguments)?;
+    let fit = best_of_starts(&kept, arguments)?;
+    if let Some(finer) = finer(&posed, &fit, times) {
+        kept.sound()?;
+        return attempted((name, number), finer, without, times + 1, arguments);
+    }
     if !fit.ending.converged() {
         return Ok(Err(Lost {
             chi_square: fit.chi_square(),

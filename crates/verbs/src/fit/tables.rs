@@ -5,7 +5,7 @@ use super::rivals::Rivals;
 use super::{Fitted, Inferred};
 use crate::csv::{Cell, Csv, square};
 use hertzchain_infer::{
-    Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile,
+    Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile, titled,
 };
 
 /// A file's name and what stands in it.
@@ -24,25 +24,28 @@ pub fn tables(fitted: &Fitted) -> Vec<Table> {
 /// Tables that any fit has.
 #[must_use]
 pub fn of_any(fitted: &Inferred) -> Vec<Table> {
-    let names: Vec<&str> = fitted.parameters.iter().map(|p| p.name.as_str()).collect();
+    let parameters = &fitted.parameters;
+    let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
+    let titles: Vec<String> = parameters.iter().map(Parameter::title).collect();
+    let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
     let covariance = &fitted.covariance;
     let entry = |i: usize, j: usize| Some(covariance.matrix[i][j]);
     let correlation = |i: usize, j: usize| covariance.correlation(i, j);
     let mut all = vec![
         ("summary.csv", summary(fitted)),
-        ("parameters.csv", parameters(fitted)),
-        ("covariance.csv", square(&names, entry).text()),
+        ("parameters.csv", self::parameters(fitted)),
+        ("covariance.csv", square(&titles, entry).text()),
         ("correlation.csv", square(&names, correlation).text()),
         ("singular-values.csv", singular_values(fitted, &names)),
-        ("starts.csv", starts(fitted, &names)),
+        ("starts.csv", starts(fitted)),
     ];
     match &fitted.more {
         More::Nothing => {}
         More::Profiles(found) => {
-            all.push(("profiles.csv", profiles(&names, found)));
-            all.push(("intervals.csv", intervals(&names, found)));
+            all.push(("profiles.csv", profiles(parameters, found)));
+            all.push(("intervals.csv", intervals(parameters, found)));
         }
-        More::Sampled(sampled) => all.extend(sampled_tables(sampled)),
+        More::Sampled(sampled) => all.extend(sampled_tables(parameters, sampled)),
     }
     all
 }
@@ -128,10 +131,13 @@ fn singular_values(fitted: &Inferred, names: &[&str]) -> String {
 }
 
 /// One line a start: where it came to.
-fn starts(fitted: &Inferred, names: &[&str]) -> String {
+fn starts(fitted: &Inferred) -> String {
     let titles = ["cost".to_owned(), "iterations".to_owned()].into_iter();
-    let from = names.iter().map(|name| format!("{name} from"));
-    let to = names.iter().map(|name| format!("{name} to"));
+    let named = |word: &'static str| {
+        let title = move |p: &Parameter| titled(&format!("{} {word}", p.name), &p.unit);
+        fitted.parameters.iter().map(title)
+    };
+    let (from, to) = (named("from"), named("to"));
     let table = Csv::new(titles.chain(from).chain(to));
     let line = |start: &hertzchain_infer::Started| {
         let cells = [Cell::from(start.cost), start.iterations.into()].into_iter();
@@ -144,34 +150,37 @@ fn starts(fitted: &Inferred, names: &[&str]) -> String {
 }
 
 /// One line a value of a profile.
-fn profiles(names: &[&str], profiles: &[Profile]) -> String {
+fn profiles(parameters: &[Parameter], profiles: &[Profile]) -> String {
     let lines = profiles.iter().flat_map(|profile| {
         let points = profile.values.iter().zip(&profile.rise);
-        points.map(move |(value, rise)| (names[profile.parameter], *value, *rise))
+        points.map(move |(value, rise)| (&parameters[profile.parameter], *value, *rise))
     });
-    let line = |(name, value, rise): (&str, f64, f64)| -> [Cell; 3] {
-        [name.into(), value.into(), rise.into()]
+    let line = |(of, value, rise): (&Parameter, f64, f64)| -> [Cell; 4] {
+        [
+            of.name.clone().into(),
+            of.unit.clone().into(),
+            value.into(),
+            rise.into(),
+        ]
     };
-    Csv::new(["name", "value", "chi_square_rise"])
+    Csv::new(["name", "unit", "value", "chi_square_rise"])
         .with_all(lines, line)
         .text()
 }
 
 /// One line an interval of a profile; an end that the data do not give says what
 /// stopped the search there.
-fn intervals(names: &[&str], profiles: &[Profile]) -> String {
+fn intervals(parameters: &[Parameter], profiles: &[Profile]) -> String {
     let lines = profiles.iter().flat_map(|profile| {
-        let name = names[profile.parameter];
-        profile
-            .intervals
-            .iter()
-            .map(move |interval| (name, interval))
+        let of = &parameters[profile.parameter];
+        profile.intervals.iter().map(move |interval| (of, interval))
     });
-    let line = |(name, interval): (&str, &Interval)| -> [Cell; 6] {
+    let line = |(of, interval): (&Parameter, &Interval)| -> [Cell; 7] {
         let (lower, lower_is) = end(interval.lower);
         let (upper, upper_is) = end(interval.upper);
         [
-            name.into(),
+            of.name.clone().into(),
+            of.unit.clone().into(),
             interval.level.into(),
             lower.into(),
             lower_is.into(),
@@ -179,7 +188,7 @@ fn intervals(names: &[&str], profiles: &[Profile]) -> String {
             upper_is.into(),
         ]
     };
-    let titles = "name,chi_square_rise,lower,lower_is,upper,upper_is";
+    let titles = "name,unit,chi_square_rise,lower,lower_is,upper,upper_is";
     Csv::new(titles.split(',')).with_all(lines, line).text()
 }
 
@@ -193,11 +202,10 @@ fn end(end: End) -> (f64, &'static str) {
 }
 
 /// Summary and samples of a posterior; nothing of a chain that has not converged.
-fn sampled_tables(sampled: &Sampled) -> Vec<Table> {
+fn sampled_tables(parameters: &[Parameter], sampled: &Sampled) -> Vec<Table> {
     let Ok(posterior) = &sampled.posterior else {
         return Vec::new();
     };
-    let names = sampled.chain.names();
     let count = posterior.samples.first().map_or(0, Vec::len);
     let line = |at: usize| {
         posterior
@@ -206,20 +214,21 @@ fn sampled_tables(sampled: &Sampled) -> Vec<Table> {
             .map(move |of| Cell::from(of[at]))
             .collect::<Vec<_>>()
     };
-    let samples = Csv::new(names.iter().map(String::as_str)).with_all(0..count, line);
+    let samples = Csv::new(parameters.iter().map(Parameter::title)).with_all(0..count, line);
     vec![
-        ("posterior.csv", posterior_table(names, posterior)),
+        ("posterior.csv", posterior_table(parameters, posterior)),
         ("samples.csv", samples.text()),
     ]
 }
 
-fn posterior_table(names: &[String], posterior: &Posterior) -> String {
-    let titles = "name,mean,sd,median,lower_68,upper_68,lower_95,upper_95,autocorrelation_time,r_hat,effective_samples";
-    let line = |(at, found): (usize, &Diagnosis)| -> [Cell; 11] {
+fn posterior_table(parameters: &[Parameter], posterior: &Posterior) -> String {
+    let titles = "name,unit,mean,sd,median,lower_68,upper_68,lower_95,upper_95,autocorrelation_time,r_hat,effective_samples";
+    let line = |(at, found): (usize, &Diagnosis)| -> [Cell; 12] {
         let [lower, upper] = posterior.interval(at, super::SHARE_OF_A_STANDARD_ERROR);
         let [least, most] = posterior.interval(at, 0.95);
         [
-            names[at].clone().into(),
+            parameters[at].name.clone().into(),
+            parameters[at].unit.clone().into(),
             posterior.mean[at].into(),
             posterior.sd(at).into(),
             posterior.quantile(at, 0.5).into(),
@@ -240,33 +249,37 @@ fn posterior_table(names: &[String], posterior: &Posterior) -> String {
 
 /// One line a model, as it was given; those without a minimum have a chi-square alone.
 fn comparison(rivals: &Rivals) -> String {
-    let titles =
-        "model,free,chi_square,aic,aicc,bic,weight,prediction_error,prediction_error_error";
+    let titles = "model,free,chi_square,freedom,probability,aic,aicc,bic,weight,prediction_error,prediction_error_error";
     let found = rivals.comparison.as_ref();
     let numbered = rivals.all.iter().enumerate();
-    let judged = |at: usize, found: &Comparison| -> [Cell; 5] {
+    let judged = |at: usize, found: &Comparison| -> [Cell; 7] {
         let criteria = &found.criteria[at];
         [
             criteria.parameters.into(),
+            criteria.chi_square.map(|found| found.freedom).into(),
+            criteria.chi_square.map(|found| found.probability).into(),
             criteria.aic.into(),
             criteria.aicc.into(),
             criteria.bic.into(),
             found.weights[at].into(),
         ]
     };
-    let line = |(at, rival): (usize, &super::Rival)| -> [Cell; 9] {
-        let none = || [const { Cell::Empty }; 5];
-        let [free, aic, aicc, bic, weight] = found.map_or_else(none, |found| judged(at, found));
+    let line = |(at, rival): (usize, &super::Rival)| -> [Cell; 11] {
+        let none = || [const { Cell::Empty }; 7];
+        let [free, freedom, p, aic, aicc, bic, weight] =
+            found.map_or_else(none, |found| judged(at, found));
         let (name, chi_square) = (rival.name.clone().into(), rival.fit.chi_square().into());
         let foretells = rival.foretells.as_ref();
         let (mean, error) = (
             foretells.map(|f| f.mean).into(),
             foretells.map(|f| f.error).into(),
         );
-        [name, free, chi_square, aic, aicc, bic, weight, mean, error]
+        [
+            name, free, chi_square, freedom, p, aic, aicc, bic, weight, mean, error,
+        ]
     };
-    let lost = |lost: &super::Lost| -> [Cell; 9] {
-        let mut cells = [const { Cell::Empty }; 9];
+    let lost = |lost: &super::Lost| -> [Cell; 11] {
+        let mut cells = [const { Cell::Empty }; 11];
         cells[0] = lost.name.clone().into();
         cells[2] = lost.chi_square.into();
         cells

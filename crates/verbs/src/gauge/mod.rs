@@ -6,9 +6,11 @@ mod tables;
 pub use results::json;
 pub use tables::tables;
 
-use crate::arguments::infer::{Measured, WetForm};
+use crate::arguments::infer::{Gauge as Arguments, Measured, WetForm};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
+use crate::input::assumed_preset;
+use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{
     Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
@@ -83,6 +85,34 @@ impl Gauged {
     pub fn to_add(&self) -> Option<&'static str> {
         self.gauge.to_add().filter(|_| self.form.is_none())
     }
+}
+
+/// Presets of the paper where no model is named.
+const USUAL: [&str; 2] = ["pump", "dry"];
+
+/// The wet chain and the dry one, each in the case of its data.
+///
+/// # Errors
+/// A model that can't be read or has no such case.
+pub fn models(arguments: &Arguments, cases: [&str; 2]) -> Result<[Experiment; 2], Failure> {
+    let (wet, dry) = (arguments.model.as_deref(), arguments.dry_model.as_deref());
+    Ok([
+        inference::opened_or((wet, &arguments.preset), USUAL[0], cases[0])?,
+        inference::opened_or((dry, &arguments.dry_preset), USUAL[1], cases[1])?,
+    ])
+}
+
+/// That models which were not named are those of the paper.
+#[must_use]
+pub fn assumed_models(wet_is_named: bool, dry_is_named: bool) -> Option<String> {
+    let wet = "--model FILE or --preset NAME";
+    let dry = "--dry-model FILE or --dry-preset NAME";
+    let wet = (!wet_is_named)
+        .then(|| assumed_preset("model of the wet chain", "row of 40 beads", USUAL[0], wet));
+    let dry = (!dry_is_named)
+        .then(|| assumed_preset("model of the dry chain", "row of 40 beads", USUAL[1], dry));
+    let all: Vec<String> = wet.into_iter().chain(dry).collect();
+    (!all.is_empty()).then(|| all.join(". "))
 }
 
 /// The curve of a file, of this case or of the one that holds for all.

@@ -64,7 +64,7 @@ fn dry(gauged: &Gauged) -> String {
 /// One line a pair of K and A that a speed allows, the one taken first if any is; one line a
 /// speed that tells a combination, or nothing.
 fn contacts(gauged: &Gauged) -> String {
-    let titles = "line,speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error,ln_covariance,\
+    let titles = "line,speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error,ln_covariance,\
                   combination_exponent,combination_reference_s,taken,missing,branch,scan_complete";
     let lines = gauged.rows.iter().flat_map(|row| match &row.told {
         Err(why) => vec![missing(row, why)],
@@ -177,13 +177,17 @@ fn failed(gauged: &Gauged) -> String {
         .text()
 }
 
+/// What both laws are of, and the unit of their prefactors.
+const CALLED: [(&str, &str); 2] = [("stiffness", "N/m^1.5"), ("relaxation_time", "s")];
+
 /// One line a power law through values of single speeds.
 fn laws(gauged: &Gauged) -> String {
     let titles =
-        "law,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
-    let line = |(name, law): (&str, &SharedLaw)| -> [Cell; 6] {
+        "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
+    let line = |((name, unit), law): ((&str, &str), &SharedLaw)| -> [Cell; 7] {
         [
             name.into(),
+            unit.into(),
             law.law.prefactor.into(),
             law.ln_prefactor_sd.into(),
             law.law.exponent.into(),
@@ -191,21 +195,20 @@ fn laws(gauged: &Gauged) -> String {
             law.reduced_chi_square.into(),
         ]
     };
-    let both = gauged.laws.iter().flat_map(|laws| {
-        [
-            ("stiffness", &laws.stiffness),
-            ("relaxation_time_s", &laws.relaxation),
-        ]
-    });
+    let both = gauged
+        .laws
+        .iter()
+        .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
     Csv::new(titles.split(',')).with_all(both, line).text()
 }
 
 /// One line a power law of the whole curve.
 fn form_laws(form: &PowerForm) -> String {
     let sd = form.sd();
-    let line = |(name, at): (&str, usize)| -> [Cell; 6] {
+    let line = |((name, unit), at): ((&str, &str), usize)| -> [Cell; 7] {
         [
             name.into(),
+            unit.into(),
             form.values[at].exp().into(),
             sd[at].into(),
             form.values[at + 1].into(),
@@ -213,14 +216,14 @@ fn form_laws(form: &PowerForm) -> String {
             form.covariance[at][at + 1].into(),
         ]
     };
-    let titles = "law,prefactor,prefactor_relative_error,exponent,exponent_error,covariance_of_ln_prefactor_and_exponent";
-    let both = [("stiffness", 0), ("relaxation_time_s", 2)];
+    let titles = "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,covariance_of_ln_prefactor_and_exponent";
+    let both = [(CALLED[0], 0), (CALLED[1], 2)];
     Csv::new(titles.split(',')).with_all(both, line).text()
 }
 
 /// One line a speed: what both laws give there.
 fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
-    let titles = "speed_m_s,stiffness,stiffness_error,relaxation_time_s,relaxation_time_s_error";
+    let titles = "speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error";
     let line = |speed: f64| {
         let at = form.at(speed);
         let [k, a] = at.ln.map(f64::exp);

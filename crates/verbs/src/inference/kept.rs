@@ -14,6 +14,10 @@ pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let free = paths(experiment, free);
     let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
     let mut told: Vec<String> = beside(model, sets);
+    let unlike = set
+        .iter()
+        .filter_map(|path| super::reference::of_unlike(experiment, path));
+    told.extend(unlike);
     for steering in free.iter().chain(&set) {
         let followers = experiment.followers(steering).unwrap_or_default();
         let is_free = free.contains(steering);

@@ -237,11 +237,31 @@ pub fn opened(
     preset: &Option<String>,
     case: &str,
 ) -> Result<Experiment, Failure> {
-    let experiment = input::open(&Input {
+    opened_or((file, preset), USUAL, case)
+}
+
+/// The preset where no model is named.
+const USUAL: &str = "dry";
+
+/// That a model which was not named is the paper's dry chain: the first line of what comes of it.
+#[must_use]
+pub fn assumed_model(modelled: &Modelled) -> Option<String> {
+    let is_named = modelled.model.is_some() || modelled.preset.is_some();
+    let options = "--model FILE or --preset NAME";
+    (!is_named).then(|| input::assumed_preset("model", "dry chain", USUAL, options))
+}
+
+/// The same with a preset where neither is named.
+pub fn opened_or(
+    (file, preset): (Option<&Path>, &Option<String>),
+    usual: &str,
+    case: &str,
+) -> Result<Experiment, Failure> {
+    let input = Input {
         file: file.map(Path::to_owned),
         preset: preset.clone(),
-    })?;
-    in_case(experiment, case)
+    };
+    in_case(input::open_or(&input, usual)?, case)
 }
 
 /// An experiment as a model, in the case of this name if it has one.

@@ -1,7 +1,7 @@
 //! Which contacts the K or A of a fit belongs to.
 
 use crate::quantity::digits;
-use hertzchain_experiment::Reference;
+use hertzchain_experiment::{Experiment, Reference};
 use hertzchain_infer::Model;
 use serde_json::{Value, json};
 
@@ -19,6 +19,13 @@ pub fn references(model: &Model) -> Vec<String> {
     all(model)
         .map(|(name, reference)| sentence(name, reference, experiment.beads()))
         .collect()
+}
+
+/// Which contact a number that was set belongs to, where its section's contacts differ.
+pub(super) fn of_unlike(experiment: &Experiment, path: &str) -> Option<String> {
+    let reference = experiment.reference(path)?;
+    let unlike = reference.contact.is_some() && !is_one(reference.ratios);
+    unlike.then(|| sentence(path, &reference, experiment.beads()))
 }
 
 /// For programs.
@@ -50,7 +57,7 @@ fn sentence(name: &str, reference: &Reference, beads: usize) -> String {
         inner => format!("beads {inner} and {}", inner + 1),
     };
     let [least, most] = reference.ratios;
-    let others = match most - least < SAME * most {
+    let others = match is_one([least, most]) {
         true => format!("{section} have the same"),
         false => format!(
             "{section} keep their ratios to it, {} to {}, as materials and radii give them",
@@ -59,6 +66,10 @@ fn sentence(name: &str, reference: &Reference, beads: usize) -> String {
         ),
     };
     format!("{name} is that of contact {contact} ({bodies}); {others}")
+}
+
+fn is_one([least, most]: [f64; 2]) -> bool {
+    most - least < SAME * most
 }
 
 /// Relative difference of values that are one: rounding.

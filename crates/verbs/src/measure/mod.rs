@@ -198,17 +198,31 @@ fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandw
         corner_hz,
         order: order(picking.bandwidth_order),
     });
-    let of_rig = || {
-        let amplifier = &rig?.campaign().amplifier;
-        Some(Bandwidth {
-            corner_hz: amplifier.low_pass_hz,
-            order: match amplifier.order {
-                experiment::LowPass::First => 1,
-                experiment::LowPass::Second => 2,
-            },
-        })
+    let found = match given {
+        Some(given) => Some(given),
+        None => rig.map(of_rig).transpose()?,
     };
-    Ok(given.or_else(of_rig).filter(|found| found.corner_hz > 0.0))
+    Ok(found.filter(|found| found.corner_hz > 0.0))
+}
+
+/// The low-pass of a rig's amplifier.
+fn of_rig(rig: &Experiment) -> Result<Bandwidth, Failure> {
+    let amplifier = &rig.campaign().amplifier;
+    let order = match (amplifier.order, amplifier.kind) {
+        (experiment::LowPass::First, _) => 1,
+        (experiment::LowPass::Second, experiment::LowPassKind::Butterworth) => 2,
+        _ => {
+            return Err(Failure::User(format!(
+                "the rig's amplifier has a {}: only low-passes of first order and Butterworth's of second are taken \
+                 out of maxima; --bandwidth 0 leaves times as they are",
+                amplifier.filters()
+            )));
+        }
+    };
+    Ok(Bandwidth {
+        corner_hz: amplifier.low_pass_hz,
+        order,
+    })
 }
 
 fn polarity(way: Option<Way>) -> Polarity {

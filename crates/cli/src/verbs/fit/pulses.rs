@@ -1,10 +1,11 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{report, write_inferred};
+use super::{report, show, write_inferred};
 use crate::failure::{Failure, print_kept};
 use crate::folder::Folder;
 use crate::format::digits;
-use crate::print::{self, heading};
+use crate::notes::with_notes;
+use crate::print::heading;
 use crate::words::lines;
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 use hertzchain_infer::Problem;
@@ -20,14 +21,11 @@ use serde_json::Value;
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let pool = inference::pool(arguments.modelled.threads)?;
-    let fitted = pool.install(|| fitted(recorded, arguments))?;
+    let threads = arguments.modelled.threads;
+    let fitted = with_notes(threads, || fitted(recorded, arguments))??;
     print_kept(fitted.problem.model(), &arguments.modelled.set);
-    let all = json(&fitted, arguments);
-    match arguments.json {
-        true => print::print_json(&all)?,
-        false => print::print(&text(&fitted))?,
-    }
+    let mut all = json(&fitted, arguments);
+    show(arguments, &mut all, || text(&fitted))?;
     folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
 }
 
@@ -45,7 +43,11 @@ fn text(fitted: &Pulsed) -> String {
         report::values(&fitted.inferred),
         lines(inference::references(fitted.problem.model()))
     );
-    text += &report::described(&fitted.inferred, &fitted.problem);
+    text += &format!(
+        "The model's signals pass the amplifier's filters: {}\n",
+        fitted.filters()
+    );
+    text += &report::described(&fitted.inferred);
     text += &report::determined(&fitted.inferred, &advice);
     text += &report::more(&fitted.inferred);
     text += &report::beware(&fitted.inferred);

@@ -4,8 +4,9 @@ use crate::format::{self, digits};
 use crate::print::heading;
 use crate::words::{chi_square_text, doubt, estimate, lines, misfit, percent, rough};
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Problem, Profile, Runs, Started,
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
 };
+use hertzchain_verbs::arguments::infer::Fit as Arguments;
 use hertzchain_verbs::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 use hertzchain_verbs::inference::{references, widened};
 
@@ -13,7 +14,7 @@ use hertzchain_verbs::inference::{references, widened};
 const MOST_SHARE: f64 = 0.1;
 
 /// Everything that is to be said.
-pub fn text(fitted: &Fitted) -> String {
+pub fn text(fitted: &Fitted, arguments: &Arguments) -> String {
     let data = fitted.problem.data();
     let case = match data.case.as_str() {
         "" => String::new(),
@@ -29,8 +30,11 @@ pub fn text(fitted: &Fitted) -> String {
         values(&fitted.inferred),
         lines(references(fitted.problem.model()))
     );
-    text += &described(&fitted.inferred, &fitted.problem);
+    text += &described(&fitted.inferred);
     text += &accuracy(fitted);
+    for unasked in fitted.unasked(arguments) {
+        text += &format!("{unasked}\n");
+    }
     text += &widened(data).map_or(String::new(), |told| format!("{told}\n"));
     let advice = fitted.advice.as_ref();
     text += &determined(&fitted.inferred, &|| {
@@ -56,11 +60,8 @@ fn unit(fitted: &Fitted) -> String {
 }
 
 /// Correlations and how well the data are described.
-pub fn described(fitted: &Inferred, problem: &dyn Problem) -> String {
-    correlations(fitted)
-        + &goodness(&fitted.goodness, problem)
-        + &robust(fitted)
-        + &derivatives(fitted)
+pub fn described(fitted: &Inferred) -> String {
+    correlations(fitted) + &goodness(&fitted.goodness) + &robust(fitted) + &derivatives(fitted)
 }
 
 /// Which loss was robust, and what it makes of the errors.
@@ -191,17 +192,17 @@ fn correlations(fitted: &Inferred) -> String {
 }
 
 /// Chi-square, runs and the worst residual.
-fn goodness(goodness: &Goodness, problem: &dyn Problem) -> String {
+fn goodness(goodness: &Goodness) -> String {
     if goodness.chi_square.is_none() {
         return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
     }
     let mut text = chi_square_text(goodness);
     text += &goodness.runs.map_or(String::new(), runs_text);
-    if let Some((at, residual)) = goodness.farthest {
-        let label = problem.residual_label(at);
+    if let Some(found) = &goodness.largest {
         text += &format!(
-            "Farthest: {label}, by {} standard errors\n",
-            digits(residual, 2)
+            "Largest residual: {} σ ({})\n",
+            digits(found.sigmas, 2),
+            found.label
         );
     }
     text
@@ -298,14 +299,12 @@ fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
         End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
     };
     let row = |profile: &Profile| {
-        let name = &fitted.parameters[profile.parameter].name;
+        let name = fitted.parameters[profile.parameter].title();
         let ends = profile
             .intervals
             .iter()
             .map(|interval| format!("{} to {}", end(interval.lower), end(interval.upper)));
-        std::iter::once(name.clone())
-            .chain(ends)
-            .collect::<Vec<_>>()
+        std::iter::once(name).chain(ends).collect::<Vec<_>>()
     };
     let rows: Vec<Vec<String>> = profiles.iter().map(row).collect();
     let head = ["by profile", "68 %", "95 %"].map(str::to_owned);
@@ -353,7 +352,7 @@ fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
     let row = |(at, parameter): (usize, &Parameter)| {
         let found = &posterior.diagnoses[at];
         vec![
-            parameter.name.clone(),
+            parameter.title(),
             digits(posterior.quantile(at, 0.5), 6),
             interval(at, 0.682_689_5),
             interval(at, 0.95),
@@ -398,6 +397,8 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
             rival.name.clone(),
             criteria.parameters.to_string(),
             digits(rival.fit.chi_square(), 5),
+            (criteria.chi_square).map_or("–".to_owned(), |found| found.freedom.to_string()),
+            (criteria.chi_square).map_or("–".to_owned(), |found| percent(found.probability)),
             digits(comparison.aicc_above_best[at], 4),
             digits(criteria.bic, 6),
             (rival.foretells.as_ref()).map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
@@ -408,6 +409,8 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
         "model",
         "free",
         "chi-square",
+        "degrees of freedom",
+        "p",
         "AICc above best",
         "BIC",
         "cross-validated score",

@@ -1,0 +1,42 @@
+//! How well a fit describes its data, and which number does not.
+
+use crate::common::{Truth, model, problem, speeds_m_s};
+use hertzchain_experiment::preset;
+use hertzchain_infer::{Fitting, Goodness, fit};
+
+#[test]
+fn the_largest_residual_names_the_number_that_is_off() {
+    let dry = preset("dry").unwrap();
+    let truth = Truth::of(&dry, &speeds_m_s(8));
+    let model = model(&dry, &["eta", "B"]);
+    for seed in 0..6 {
+        for (of, name) in [(0, "incident ToF"), (1, "reflected ToF")] {
+            let mut data = truth.measured(seed);
+            // The row's speed, known to 0.7 mm/s, moves both of its times by four of their errors,
+            // so that the one that is off shows by √(1/2) of these and by its own sum.
+            let row = &mut data.rows[3];
+            let time = row.values[of].as_mut().unwrap();
+            time.value += 30.0 * time.sigma;
+            let line = row.line;
+            let problem = problem(&model, data);
+            let best = fit(&problem, &Fitting::default()).unwrap();
+            let found = Goodness::new(&problem, &best).largest.unwrap();
+            assert!(
+                found.label.starts_with(&format!("line {line},")) && found.label.contains(name),
+                "{seed}: {found:?}, not {name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn degrees_of_freedom_count_combinations_that_the_data_determine() {
+    let dry = preset("dry").unwrap();
+    let model = model(&dry, &["Y", "nu", "eta", "B"]);
+    let data = Truth::of(&dry, &speeds_m_s(6)).measured(1);
+    let problem = problem(&model, data);
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    assert_eq!(best.rank, 3);
+    let found = Goodness::new(&problem, &best).chi_square.unwrap();
+    assert_eq!(found.freedom, 12 - 3);
+}
