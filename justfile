@@ -33,7 +33,7 @@ reference:
 
 # Random harsh chains by the program and by an independent integration: just test-random 1000
 test-random *options:
-    cargo build --release --locked -p hertzchain-cli -p hertzchain-random
+    cargo build --release --locked -p hertzchain -p hertzchain-random
     target/release/hertzchain-random {{options}}
 
 # The same shots by general integrators and LAMMPS, side by side (needs Python; about ten minutes)

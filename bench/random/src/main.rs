@@ -25,7 +25,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 const USAGE: &str = "usage: hertzchain-random [COUNT] [--seed N] [--from N] [--jobs N] \
-     [--program FILE] [--keep FOLDER] [--only shot|sweep]";
+     [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] [--sample]";
 
 /// What is to be done.
 struct Options {
@@ -36,6 +36,8 @@ struct Options {
     program: PathBuf,
     keep: PathBuf,
     only: Option<String>,
+    /// Print reference numbers for the test of a fixed sample instead.
+    sample: bool,
 }
 
 impl Options {
@@ -49,6 +51,7 @@ impl Options {
             program: "target/release/hertzchain".into(),
             keep: "target/random".into(),
             only: None,
+            sample: false,
         };
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| USAGE.to_owned());
@@ -60,6 +63,7 @@ impl Options {
                 "--program" => options.program = value()?.into(),
                 "--keep" => options.keep = value()?.into(),
                 "--only" => options.only = Some(value()?),
+                "--sample" => options.sample = true,
                 count => options.count = number(count.to_owned())?,
             }
         }
@@ -81,7 +85,7 @@ fn asks(only: Option<&str>) -> Vec<Ask> {
     for accuracy in ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"] {
         asks.push(Ask::new("sweep", &["-a", accuracy]));
     }
-    asks.retain(|ask| only.is_none_or(|only| ask.verb == only));
+    asks.retain(|ask| only.is_none_or(|only| ask.name() == only));
     asks
 }
 
@@ -103,7 +107,7 @@ fn outcomes(options: &Options, row: &Row, file: &Path) -> Vec<Outcome> {
     };
     let mut said: Vec<_> = asks(options.only.as_deref()).into_iter().map(ask).collect();
     if let Some((_, Ok(answer))) = said.first()
-        && options.only.as_deref() != Some("sweep")
+        && options.only.is_none()
     {
         said.extend(durations(answer).into_iter().map(ask));
     }
@@ -226,6 +230,36 @@ fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
     Ok(tallies.into_inner().unwrap_or_default())
 }
 
+/// Longest row of the fixed sample, so that its test is quick.
+const SAMPLED: usize = 30;
+
+/// Reference numbers of the rows on which the program and the reference agree.
+fn sample(options: &Options) -> std::io::Result<()> {
+    std::fs::create_dir_all(&options.keep)?;
+    let file = options.keep.join("sample.toml");
+    println!("seed,row,incident_s,reflected_s");
+    for at in options.from..options.from + options.count {
+        let row = draw::row(options.seed, at);
+        if row.beads.len() > SAMPLED {
+            continue;
+        }
+        std::fs::write(&file, row.toml())?;
+        let how = Ask::new("shot", &["-a", "1e-9"]);
+        let Ok(answer) = ask(&options.program, &file, row.speed_m_s, &how) else {
+            continue;
+        };
+        let Ok(peaks) = &answer.peaks else { continue };
+        let Ok(reference) = Reference::new(&row, 1.02 * search_ends_s(peaks)) else {
+            continue;
+        };
+        let agrees = compare(&answer, &reference).finding.is_none();
+        if let (true, Some([incident_s, reflected_s])) = (agrees, reference.flights(peaks)) {
+            println!("{},{at},{incident_s:.12e},{reflected_s:.12e}", options.seed);
+        }
+    }
+    Ok(())
+}
+
 fn main() -> ExitCode {
     let options = match Options::parsed(std::env::args().skip(1)) {
         Ok(options) => options,
@@ -234,6 +268,15 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    if options.sample {
+        return match sample(&options) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("error: {}: {error}", options.keep.display());
+                ExitCode::FAILURE
+            }
+        };
+    }
     let tallies = match run(&options) {
         Ok(tallies) => tallies,
         Err(error) => {

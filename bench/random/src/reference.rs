@@ -2,6 +2,7 @@
 
 use crate::motion::{Maximum, Motion, Scales, Stuck};
 use crate::physics::{Contact, Equations};
+use crate::program::Peaks;
 use crate::row::Row;
 
 /// Tolerances of a step: of the reference, and of the run that shows how right it is.
@@ -71,6 +72,20 @@ impl Reference {
             prominent,
             looser: loose.maxima,
         })
+    }
+
+    /// Incident and reflected time of flight in s between the maxima nearest to peaks; NaN for the
+    /// latter where none was picked.
+    pub fn flights(&self, peaks: &Peaks) -> Option<[f64; 2]> {
+        let incident_s = nearest(&self.maxima[0], peaks.incident.time_s)?.time_s;
+        let wall_s = nearest(&self.maxima[1], peaks.wall.time_s)?.time_s;
+        let back = peaks
+            .reflected
+            .and_then(|peak| nearest(&self.maxima[0], peak.time_s));
+        Some([
+            wall_s - incident_s,
+            back.map_or(f64::NAN, |back| back.time_s - wall_s),
+        ])
     }
 
     /// How uncertain the time of a maximum of the sensor (0) or wall (1) is, in s.

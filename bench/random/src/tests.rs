@@ -1,7 +1,10 @@
 //! The integration against numbers known otherwise.
 
+use crate::draw;
 use crate::reference::{Reference, largest};
 use crate::row::{Ball, Far, Law, Material, Row};
+use hertzchain_experiment::Experiment;
+use hertzchain_study::{InstructionSet, Plan, Shot, shoot_all, shoot_estimated};
 
 /// The paper's row of 40 steel balls.
 fn paper(speed_m_s: f64, laws: &[Law]) -> Row {
@@ -64,6 +67,49 @@ fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
                 (1e6 * found_s - right_us).abs() < 2e-6,
                 "{found:?} {right_us}"
             );
+        }
+    }
+}
+
+/// Rows on which program and reference agreed when it was made, with the reference's times:
+/// `hertzchain-random 60 --sample > bench/random/sample.csv`.
+const SAMPLE: &str = include_str!("../sample.csv");
+
+/// Relative error of a shot's times of flight beside the reference's.
+fn error(shot: &Shot, right_s: [f64; 2]) -> f64 {
+    let flight = shot.flight.unwrap();
+    let off = |found_s: f64, right_s: f64| (found_s / right_s - 1.0).abs();
+    assert_eq!(flight.reflected_s.is_none(), right_s[1].is_nan());
+    let back = flight
+        .reflected_s
+        .map_or(0.0, |found_s| off(found_s, right_s[1]));
+    off(flight.incident_s, right_s[0]).max(back)
+}
+
+/// As wrong as stated, and the reference's own error.
+fn assert_as_stated(shot: &Shot, right_s: [f64; 2], what: &str) {
+    let (error, stated) = (error(shot, right_s), shot.accuracy_reached.unwrap());
+    assert!(
+        error <= stated + 1e-9,
+        "{what}: error {error:e}, stated {stated:e}"
+    );
+}
+
+#[test]
+fn shots_and_sweeps_of_a_fixed_sample_are_as_wrong_as_they_state_at_most() {
+    for line in SAMPLE.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let right_s = [cells[2].parse().unwrap(), cells[3].parse().unwrap()];
+        let row = draw::row(cells[0].parse().unwrap(), cells[1].parse().unwrap());
+        let experiment = Experiment::from_text("row.toml", &row.toml()).unwrap();
+        let plan = Plan::from_experiment(&experiment, None).unwrap().0;
+        let shot = shoot_estimated(&plan.clone().with_budget()).unwrap();
+        assert_as_stated(&shot, right_s, &format!("shot of row {line}"));
+        for accuracy in [1e-3, 1e-5] {
+            let plans = [plan.clone().for_flights().with_accuracy(accuracy)];
+            let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+            let what = format!("sweep of row {line} at {accuracy:e}");
+            assert_as_stated(shots[0].as_ref().unwrap(), right_s, &what);
         }
     }
 }

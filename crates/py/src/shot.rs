@@ -7,7 +7,7 @@ use crate::json;
 use crate::law::{Force, Replacing};
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::Trace;
-use hertzchain_study::{Plan, Shot, shoot, shoot_checked};
+use hertzchain_study::{Plan, Shot, shoot_checked, shoot_estimated};
 use hertzchain_verbs::arguments::{How, parsed};
 use hertzchain_verbs::failure::Failure;
 use hertzchain_verbs::given::Given;
@@ -91,7 +91,7 @@ pub fn shot<'py>(
     let computed = job.run(py, |_| {
         let shot = match how.check {
             true => shoot_checked(&plan),
-            false => shoot(&plan),
+            false => shoot_estimated(&plan),
         };
         shot.map_err(|error| Failure::of_shot(inner, &how, error))
     });

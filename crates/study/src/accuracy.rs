@@ -1,5 +1,6 @@
 //! From the accuracy that is asked to a solver that delivers it.
 
+use crate::duration::has_wall;
 use crate::plan::{Plan, Solver};
 use hertzchain_chain::System;
 use hertzchain_chain::ensemble::Precision;
@@ -23,6 +24,19 @@ const LONG_CHAIN: f64 = 200.0;
 /// a tenth of 1e-6 are off by 5e-6.
 const FAR: f64 = 100.0;
 
+/// Errors of peak times go with the time of a contact, not with the time of flight:
+/// a flight over fewer beads than these asks for tighter steps.
+const NEAR: f64 = 10.0;
+
+/// The length of the flight in beads over [`NEAR`], at most 1.
+fn nearness(plan: &Plan) -> f64 {
+    if !has_wall(&plan.chain.far) {
+        return 1.0;
+    }
+    let beads = plan.chain.beads.len().saturating_sub(plan.sensor_bead) as f64;
+    ((beads + 0.5) / NEAR).min(1.0)
+}
+
 /// First step of a fixed-step method, in contact times.
 const FIRST_STEP: f64 = 1.0 / 20.0;
 
@@ -34,23 +48,47 @@ pub(crate) fn tolerance(plan: &Plan) -> (f64, bool) {
     } else {
         OF_TIMES * (beads / FAR).max(1.0)
     };
-    let wanted = plan.accuracy / share;
+    let wanted = plan.accuracy * nearness(plan) / share;
     (wanted.max(TIGHTEST), wanted < TIGHTEST)
 }
 
-/// A result is at most this many times as wrong as a finer run changes it:
-/// half the step at the lowest order, 1, leaves as much as it takes away.
-const OF_CHANGE: f64 = 2.0;
+/// A result is at most this many times as wrong as a finer run changes it, and
+/// as one that is ten times finer still: half the step at the lowest order, 1,
+/// leaves as much as it takes away.
+const OF_CHANGES: [f64; 2] = [2.0, 1.25];
 
-/// Two runs may agree by chance; no result is trusted to less than this many
+/// Runs may agree by chance; no result is trusted to less than this many
 /// tolerances of a step. Measured over the paper's chains and speeds: with both
 /// no error is larger than what is told, `docs/numerics.md`.
 const OF_TOLERANCE: f64 = 5.0;
 
-/// The accuracy reached, from the change that a finer run makes and the
-/// tolerance per step, 0 for fixed steps.
-pub(crate) fn reached(change: f64, tolerance: f64) -> f64 {
-    (OF_CHANGE * change).max(OF_TOLERANCE * tolerance)
+/// The accuracy reached, from the changes that finer runs make and the tolerance
+/// per step, 0 for fixed steps.
+pub(crate) fn reached(changes: [f64; 2], tolerance: f64) -> f64 {
+    let bounds = changes
+        .iter()
+        .zip(OF_CHANGES)
+        .map(|(change, of)| of * change);
+    bounds.fold(OF_TOLERANCE * tolerance, f64::max)
+}
+
+/// Tolerances of the runs that estimate the error of a shot, over its own.
+pub(crate) const LOOSER: [f64; 2] = [10.0, 40.0];
+
+/// Error of a run over that of one with a tenth of its tolerance, at least: errors
+/// mostly go with the tolerance, and with its third root in short rows with laws
+/// whose force begins with an infinite slope.
+const LEAST_GAIN: f64 = 2.0;
+
+/// The error of a run, from the changes to runs that are this many times looser
+/// and from its own tolerance per step.
+pub(crate) fn estimated(changes: &[(f64, f64)], tolerance: f64) -> f64 {
+    let share = |(looseness, change): &(f64, f64)| {
+        let gain = LEAST_GAIN.powf(looseness.log10());
+        change / (gain - 1.0)
+    };
+    let changes = changes.iter().map(share);
+    changes.fold(OF_TOLERANCE * tolerance, f64::max)
 }
 
 /// Tolerance per step with which errors that do not sum along a chain leave
@@ -77,7 +115,7 @@ const EQUAL_STEPS_FOR: f64 = 60.0;
 /// must be found; `None` below what it can do.
 pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
     let length = plan.chain.beads.len() as f64 / EQUAL_STEPS_FOR;
-    let accuracy = plan.accuracy / length.max(1.0);
+    let accuracy = plan.accuracy * nearness(plan) / length.max(1.0);
     let [(loosest, longest, _), ..] = EQUAL_STEPS;
     if accuracy >= loosest {
         return Some((longest, false));

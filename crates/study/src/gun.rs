@@ -6,10 +6,10 @@ use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::following::Following;
 use crate::plan::{Plan, Solver, Watch};
-use crate::shot::{Rebound, Shot, ambiguous, reported};
+use crate::shot::{Rebound, Shot, ambiguous, hidden, reported};
 use crate::stop::{count_steps, stopped};
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
-use hertzchain_chain::wave::{Flow, Limits, Method, Observer, Outcome, Piece, run};
+use hertzchain_chain::wave::{Control, Flow, Limits, Method, Observer, Outcome, Piece, run};
 use hertzchain_chain::{Start, System};
 
 /// Ends a shot that is no longer wanted or takes too many steps, which it counts.
@@ -40,6 +40,21 @@ impl BreakingOff {
     }
 }
 
+/// Loosest tolerance of a run: steps of any chain are then still error-controlled.
+const LOOSEST: f64 = 1e-2;
+
+/// Tightest tolerance of a run that others are compared with.
+const LEAST_CHECK: f64 = 1e-14;
+
+/// Least accuracy reached that an estimate states, over the one asked: looser runs
+/// agree by chance with one shot in some hundreds that is wrong by less.
+const UNCHECKED: f64 = 0.5;
+
+/// A bound on the error of a shot, or what a maximum that may be hidden would make of it.
+fn standing(shot: &Shot, reached: f64) -> f64 {
+    shot.hidden.map_or(reached, |hidden| reached.max(hidden))
+}
+
 /// Most times that a shot is computed so that its energy budget closes.
 const MOST_TRIES: u32 = 4;
 
@@ -48,6 +63,17 @@ const MOST_TRIES: u32 = 4;
 fn residual(shot: &Shot) -> f64 {
     let budget = shot.budget.as_ref();
     budget.map_or(0.0, |budget| budget.relative_residual().abs())
+}
+
+/// How the error of a shot is controlled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Check {
+    /// Computed once, by its tolerance alone.
+    Unchecked,
+    /// Compared with looser runs, computed more tightly where they differ.
+    Estimated,
+    /// Compared with a run at a tenth of the tolerance.
+    Again,
 }
 
 /// A plan whose chain is set up.
@@ -69,9 +95,9 @@ impl<'a> Gun<'a> {
         Ok(Self { plan, system, end })
     }
 
-    /// The shot, computed twice if checked.
-    pub(crate) fn shoot(&self, checked: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.computed(checked)?;
+    /// The shot, with the accuracy reached unless it is unchecked.
+    pub(crate) fn shoot(&self, check: Check) -> Result<Shot, StudyError> {
+        let mut shot = self.computed(check)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
         let passage = shot.passage.as_ref().ok();
         let ambiguous = passage.map(|passage| ambiguous(passage, self.plan.accuracy));
@@ -85,15 +111,15 @@ impl<'a> Gun<'a> {
         Ok(shot)
     }
 
-    fn computed(&self, checked: bool) -> Result<Shot, StudyError> {
+    fn computed(&self, check: Check) -> Result<Shot, StudyError> {
         match (self.plan.solver, accuracy::given_step(self.plan.solver)) {
-            (Solver::Adaptive, _) => self.adaptive(checked),
-            (solver, Some(step_s)) => self.fixed(solver, step_s, checked),
+            (Solver::Adaptive, _) => self.adaptive(check),
+            (solver, Some(step_s)) => self.fixed(solver, step_s, check == Check::Again),
             (solver, None) => self.halving(solver),
         }
     }
 
-    fn adaptive(&self, checked: bool) -> Result<Shot, StudyError> {
+    fn adaptive(&self, check: Check) -> Result<Shot, StudyError> {
         let (tolerance, beyond) = accuracy::tolerance(self.plan);
         let (mut shot, tolerance) = self.balanced(tolerance)?;
         if beyond {
@@ -102,10 +128,68 @@ impl<'a> Gun<'a> {
                 self.plan.accuracy
             ));
         }
-        if checked {
-            self.refine(&mut shot, tolerance)?;
+        match check {
+            Check::Unchecked => {}
+            // Without a budget the tolerance is looser, and looser runs say less.
+            Check::Estimated if self.plan.budget => self.estimate(&mut shot, tolerance)?,
+            Check::Estimated | Check::Again => self.refine(&mut shot, tolerance)?,
         }
         Ok(shot)
+    }
+
+    /// Estimates a shot's error from runs for times of flight alone at looser
+    /// tolerances. Where the estimate is above the accuracy asked, a tighter shot
+    /// takes its place, and what changed estimates the error of that one.
+    fn estimate(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
+        let mut reached = self.estimated(shot, tolerance);
+        for _ in 0..MOST_TRIES {
+            if reached <= self.plan.accuracy || 0.1 * tolerance < TIGHTEST {
+                break;
+            }
+            tolerance *= 0.1;
+            let tighter = self.tightened(tolerance, self.plan.watch.is_some())?;
+            let changes = [(10.0, tighter.change(shot))];
+            reached = standing(&tighter, accuracy::estimated(&changes, tolerance));
+            let notes = std::mem::take(&mut shot.notes);
+            *shot = Shot { notes, ..tighter };
+        }
+        self.judge(shot, reached.max(UNCHECKED * self.plan.accuracy));
+        Ok(())
+    }
+
+    /// The error of a shot, by looser runs.
+    fn estimated(&self, shot: &Shot, tolerance: f64) -> f64 {
+        let wall = duration::has_wall(&self.plan.chain.far);
+        let plan = Plan {
+            budget: false,
+            watch: None,
+            rebound: self.plan.rebound && !wall,
+            ..self.plan.clone()
+        };
+        let looser = Gun {
+            plan: &plan,
+            system: self.system.clone(),
+            end: duration::end(&plan, &self.system),
+        };
+        let changes = accuracy::LOOSER.map(|looseness| {
+            let run = looser.tightened((looseness * tolerance).min(LOOSEST), false);
+            let change = run.map_or(f64::INFINITY, |run| shot.change(&run));
+            (looseness, change)
+        });
+        standing(shot, accuracy::estimated(&changes, tolerance))
+    }
+
+    /// A run at a tolerance other than the plan's own.
+    fn tightened(&self, tolerance: f64, sampled: bool) -> Result<Shot, StudyError> {
+        let slow = self.accuracy_at(tolerance) * accuracy::of_times(self.plan) / self.plan.accuracy;
+        let mut shot = self.run(&*accuracy::adaptive(tolerance), sampled, slow)?;
+        shot.tolerance = Some(tolerance);
+        Ok(shot)
+    }
+
+    /// The accuracy that a tolerance is for.
+    fn accuracy_at(&self, tolerance: f64) -> f64 {
+        self.plan.accuracy * tolerance / accuracy::tolerance(self.plan).0
     }
 
     /// The shot, computed more tightly as long as its energy budget does not
@@ -125,25 +209,34 @@ impl<'a> Gun<'a> {
         }
     }
 
-    /// Computes a shot again at a tenth of the tolerance; where that shows that
-    /// the accuracy was not reached, the finer shot takes its place.
+    /// Computes a shot again at a tenth and a hundredth of the tolerance; where that
+    /// shows that the accuracy was not reached, a finer shot takes its place. Two finer
+    /// runs, because one agrees by chance with one shot in a hundred that is wrong.
     fn refine(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
-        let mut again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
-        let bound = |shot: &Shot, again: &Shot, tolerance: f64| {
-            accuracy::reached(shot.change(again), tolerance)
+        let finer = |tolerance: f64| match tolerance < LEAST_CHECK {
+            true => Ok(None),
+            false => self.tightened(tolerance, false).map(Some),
         };
-        while bound(shot, &again, tolerance) > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST {
-            tolerance *= 0.1;
-            let notes = std::mem::take(&mut shot.notes);
-            *shot = match self.plan.watch {
-                Some(_) => self.once(&*accuracy::adaptive(tolerance), true)?,
-                None => again,
+        let (mut near, mut far) = (finer(0.1 * tolerance)?, finer(0.01 * tolerance)?);
+        loop {
+            let change = |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| shot.change(it));
+            let reached = accuracy::reached([change(&near), change(&far)], tolerance);
+            let reached = standing(shot, reached);
+            let Some(next) =
+                near.filter(|_| reached > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST)
+            else {
+                self.judge(shot, reached);
+                return Ok(());
             };
-            (shot.tolerance, shot.notes) = (Some(tolerance), notes);
-            again = self.once(&*accuracy::adaptive(0.1 * tolerance), false)?;
+            tolerance *= 0.1;
+            let next = match self.plan.watch {
+                Some(_) => self.tightened(tolerance, true)?,
+                None => next,
+            };
+            let notes = std::mem::take(&mut shot.notes);
+            *shot = Shot { notes, ..next };
+            (near, far) = (far, finer(0.01 * tolerance)?);
         }
-        self.judge(shot, bound(shot, &again, tolerance));
-        Ok(())
     }
 
     /// A fixed step as given, whatever accuracy that is.
@@ -151,7 +244,7 @@ impl<'a> Gun<'a> {
         let mut shot = self.at_step(solver, step_s, self.plan.watch.is_some())?;
         if checked {
             let again = self.at_step(solver, 0.5 * step_s, false)?;
-            let reached = accuracy::reached(shot.change(&again), 0.0);
+            let reached = accuracy::reached([shot.change(&again), 0.0], 0.0);
             self.judge(&mut shot, reached);
         }
         Ok(shot)
@@ -253,6 +346,16 @@ impl<'a> Gun<'a> {
 
     /// One run with one method.
     fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
+        self.run(method, sampled, accuracy::of_times(self.plan))
+    }
+
+    /// The same with a tolerance for bodies of long chains that move slowly.
+    fn run(
+        &self,
+        method: &dyn Method,
+        sampled: bool,
+        slow_tolerance: f64,
+    ) -> Result<Shot, StudyError> {
         let mut following = Following::new(self.plan, &self.end);
         let mut separation = Separation::default();
         let mut apart = Apart;
@@ -269,7 +372,7 @@ impl<'a> Gun<'a> {
         observers.extend(tracer.as_mut().map(|tracer| tracer as &mut dyn Observer));
         let limits = Limits {
             budget: self.plan.budget,
-            slow_tolerance: Some(accuracy::of_times(self.plan)),
+            slow_tolerance: Some(slow_tolerance),
             ..Limits::until(self.end.longest_s)
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;
@@ -336,6 +439,12 @@ impl<'a> Gun<'a> {
         let seen = passage.as_ref().ok();
         let picked = |pick| Flight::picked(pick, passages, seen?);
         let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
+        let accuracy = match method.control() {
+            Control::Adaptive { tolerance } => self.accuracy_at(tolerance),
+            Control::Fixed { .. } => self.plan.accuracy,
+        };
+        let least_s = self.system.scales().time_s;
+        let masked = seen.and_then(|seen| hidden(passages, seen, (accuracy, least_s)));
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
         // A shot that came to the end of the rule by another way than the striker's.
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();
@@ -364,6 +473,7 @@ impl<'a> Gun<'a> {
             solver: method.name().to_owned(),
             tolerance: None,
             step_s: None,
+            hidden: masked,
             notes: Vec::from_iter(following.decided_s().map(|_| DECIDED.to_owned())),
         }
     }

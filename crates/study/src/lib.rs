@@ -49,7 +49,7 @@ pub use rows::{COLUMNS, Column, Failed, Law, Odd, Rows};
 pub use run::{How, Part, Run, RunError};
 pub use several::{parted, piece};
 pub use shard::{Shard, ShardError};
-pub use shot::{Rebound, Shot, shoot, shoot_checked};
+pub use shot::{Rebound, Shot, shoot, shoot_checked, shoot_estimated};
 pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
 pub use stop::{Stop, count_done, note_progress, stopped};
 pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep, sweep_each};

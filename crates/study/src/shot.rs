@@ -2,9 +2,11 @@
 
 use crate::error::StudyError;
 use crate::flight::{Flight, relative};
-use crate::gun::Gun;
+use crate::gun::{Check, Gun};
 use crate::plan::Plan;
-use hertzchain_chain::observe::{Competing, Maximum, Passage, PassageError, Pulse, Trace};
+use hertzchain_chain::observe::{
+    Competing, Maximum, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, Stretch, Trace,
+};
 use hertzchain_chain::wave::{Budget, Work};
 
 /// The striker's velocity after the impact, negative away from the chain.
@@ -52,11 +54,10 @@ pub struct Shot {
     /// Relative accuracy asked of times of flight.
     pub accuracy_asked: f64,
     /// A bound on the relative error of the times of flight (of the sensor's largest
-    /// peak time or the final velocities, where there are none): twice the change
-    /// when computed again ten times as tightly, or at half the fixed step, and at
-    /// least five tolerances of a step; `None` unless checked. In an ensemble, always,
-    /// from the changes to steps 1.3 and 1.69 times as long; `work` does not count
-    /// those shots.
+    /// peak time or the final velocities, where there are none), from runs that are
+    /// looser or tighter, or from half the fixed step: [`shoot_estimated`],
+    /// [`shoot_checked`]; `None` from [`shoot`]. In an ensemble, always, from the
+    /// changes to steps 1.3 and 1.69 times as long. `work` does not count those shots.
     pub accuracy_reached: Option<f64>,
     /// How it was computed.
     pub solver: String,
@@ -64,6 +65,9 @@ pub struct Shot {
     pub tolerance: Option<f64>,
     /// Step of a fixed-step solver in s.
     pub step_s: Option<f64>,
+    /// Relative error of a time of flight if a maximum is hidden where a signal
+    /// that is above the peak picked hardly falls.
+    pub(crate) hidden: Option<f64>,
     /// What a reader of the numbers must know.
     pub notes: Vec<String>,
 }
@@ -108,7 +112,7 @@ fn velocity_change(one: &[f64], two: &[f64]) -> f64 {
     pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / most
 }
 
-/// Runs a shot.
+/// Runs a shot, once.
 ///
 /// Fixed-step solvers without a step start from a twentieth of the contact
 /// time and halve it until times of flight change by less than the accuracy.
@@ -116,16 +120,29 @@ fn velocity_change(one: &[f64], two: &[f64]) -> f64 {
 /// # Errors
 /// See [`StudyError`].
 pub fn shoot(plan: &Plan) -> Result<Shot, StudyError> {
-    Gun::load(plan)?.shoot(false)
+    Gun::load(plan)?.shoot(Check::Unchecked)
 }
 
-/// Runs a shot and once more at a tenth of the tolerance (or at half the
+/// Runs a shot with an estimate of its error.
+///
+/// With an energy budget, which asks for tight steps, two runs for times of flight
+/// alone at looser tolerances estimate it; else one at a tenth of the tolerance, as
+/// [`shoot_checked`]. A shot whose estimate is above the accuracy asked is computed
+/// more tightly.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn shoot_estimated(plan: &Plan) -> Result<Shot, StudyError> {
+    Gun::load(plan)?.shoot(Check::Estimated)
+}
+
+/// Runs a shot and again at a tenth and a hundredth of the tolerance (or at half the
 /// fixed step), to learn which accuracy was reached.
 ///
 /// # Errors
 /// See [`StudyError`].
 pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
-    Gun::load(plan)?.shoot(true)
+    Gun::load(plan)?.shoot(Check::Again)
 }
 
 /// Errors of peaks over the accuracy asked of times, at most.
@@ -158,6 +175,37 @@ pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
     };
     let pulses = [Pulse::Incident, Pulse::Wall, Pulse::Reflected];
     pulses.into_iter().filter_map(note).collect()
+}
+
+/// The error of the reflected time if the sensor bead's signal has a maximum above the
+/// one picked that the accuracy of heights does not show: where the signal is higher
+/// than the peak and changes by less than their error for as long as the shortest
+/// contact lasts.
+pub(crate) fn hidden(
+    seen: &Passages,
+    passage: &Passage,
+    (accuracy, least_s): (f64, f64),
+) -> Option<f64> {
+    let (picked, flight_s) = (passage.reflected?, passage.tof_incident_s());
+    let wall_s = passage.wall.time_s;
+    let end_s = wall_s + RETURN_WITHIN * flight_s;
+    let within = |it: &&Stretch| it.start_s > wall_s && it.end_s() < end_s;
+    let stretches: Vec<&Stretch> = seen.sensor().stretches().iter().filter(within).collect();
+    let largest = stretches.iter().map(|it| it.values[0]);
+    let error = OF_PEAKS * accuracy * largest.fold(passage.incident.value, f64::max);
+    let mut after = stretches.iter();
+    let mut then = after.next()?;
+    let place = stretches.iter().find(|now| {
+        while then.start_s < now.start_s + least_s {
+            match after.next() {
+                Some(next) => then = next,
+                None => return false,
+            }
+        }
+        let [one, two] = [now.values[0], then.values[0]];
+        one.min(two) > picked.value + error && (one - two).abs() < error
+    })?;
+    Some((place.start_s - picked.time_s).abs() / flight_s)
 }
 
 /// Maxima above 5 % of the largest.

@@ -224,3 +224,55 @@ fn over_a_thousand_random_rows_no_error_is_twice_the_accuracy_asked() {
     let fast = shots.iter().filter(|shot| shot.step_s.is_some()).count();
     assert!(fast > 500, "{fast} by the ensemble loop");
 }
+
+/// Soft beads by turns on a slope against a light stop: behind the wall's pulse the
+/// sensor's force falls slowly, and its one maximum there is 1e-5 of the pulse high.
+const LIGHT_STOP: &str = r#"
+[materials.a]
+young_modulus = "16112853.397792958 Pa"
+poisson_ratio = 0.05741919740751395
+shear_viscosity = "1.8625106312219641 Pa s"
+[materials.b]
+young_modulus = "705868590.0032899 Pa"
+poisson_ratio = 0.22637807056088377
+shear_viscosity = "84.37186070091057 Pa s"
+[striker]
+speed = "1.1493016801900247 m/s"
+radius = "0.0067555201336785 m"
+mass = "0.004082651765117734 kg"
+material = "a"
+[[beads]]
+repeat = 30
+cell = [
+  { radius = "0.00337776006683925 m", mass = "0.0005103314706397167 kg", material = "a" },
+  { radius = "0.0020266560401035498 m", mass = "0.00011023159765817877 kg", material = "b" },
+]
+[[contacts]]
+from = 0
+laws = ["elastic_hertz", { law = "damping_linear", coefficient = "0.04203654434674535 N s/m" }]
+[far_end]
+kind = "stop"
+mass = "0.00030540512543732044 kg"
+[track]
+incline = "5.0 deg"
+gravity = "9.80665 m/s^2"
+[sensors]
+bead = 7
+"#;
+
+#[test]
+fn maxima_that_loose_runs_do_not_show_are_not_passed_over() {
+    let experiment = Experiment::from_text("light-stop.toml", LIGHT_STOP).unwrap();
+    let plan = Plan::from_experiment(&experiment, None)
+        .unwrap()
+        .0
+        .for_flights();
+    for accuracy in [1e-4, 1e-5, 1e-6] {
+        let shot = fly(&[plan.clone().with_accuracy(accuracy)]).remove(0);
+        // 221.16 us by `bench/random`; without the maximum the next one is 12 ms off.
+        let off = (shot.flight.unwrap().reflected_s.unwrap() / 221.16e-6 - 1.0).abs();
+        let stated = shot.accuracy_reached.unwrap();
+        // Digits known of the reference, beside what is stated.
+        assert!(off < 3e-5 + stated, "{accuracy:e}: {off:e} {stated:e}");
+    }
+}

@@ -9,7 +9,9 @@ use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_study::reproduce::CASES;
-use hertzchain_study::{Flight, Pick, Plan, Shot, Solver, StudyError, shoot, shoot_checked};
+use hertzchain_study::{
+    Flight, Pick, Plan, Shot, Solver, StudyError, shoot, shoot_checked, shoot_estimated,
+};
 
 fn plan(name: &str, speed_m_s: f64) -> Plan {
     let experiment = preset(name).unwrap();
@@ -268,6 +270,50 @@ fn a_checked_shot_is_refined_until_it_keeps_the_asked_accuracy() {
     let tight = flight(&asked.with_accuracy(1e-11));
     // The rerun that tells is itself wrong by a fraction of that.
     assert!(shot.flight.unwrap().change(&tight) < 1.5e-8);
+}
+
+#[test]
+fn a_plain_shot_knows_its_error_in_harsh_short_rows() {
+    // One ball against a fixed half-bead: its flight lasts a tenth of the contact, so
+    // that errors of peaks count many times; and forces begin with an infinite slope.
+    for law in [
+        r#"{ law = "damping_tsuji", damping_ratio = 0.13 }"#,
+        r#"{ law = "damping_kuwabara_kono", coefficient = "3000 N s/m^1.5" }"#,
+        r#"{ law = "damping_linear", coefficient = "5 N s/m" }"#,
+    ] {
+        let text = format!(
+            "[materials.a]\nyoung_modulus = \"200 GPa\"\npoisson_ratio = 0.3\n[striker]\n\
+             speed = \"1 m/s\"\nmass = \"3 g\"\n[[beads]]\ncount = 2\nradius = \"5 mm\"\nmass = \"4 g\"\n\
+             material = \"a\"\n[[contacts]]\nlaws = [\"elastic_hertz\", {law}]\n[sensors]\nbead = 2"
+        );
+        let experiment = Experiment::from_text("short.toml", &text).unwrap();
+        let plan = Plan::from_experiment(&experiment, None).unwrap().0;
+        let exact = flight(&plan.clone().with_accuracy(1e-11));
+        for accuracy in [1e-4, 1e-6, 1e-8] {
+            let asked = plan.clone().with_accuracy(accuracy).with_budget();
+            let shot = shoot_estimated(&asked).unwrap();
+            let (error, reached) = (shot.flight.unwrap().change(&exact), shot.accuracy_reached);
+            assert!(
+                error <= reached.unwrap(),
+                "{law}, {accuracy:e}: {error:e} {reached:?}"
+            );
+            assert!(
+                reached.unwrap() <= accuracy,
+                "{law}, {accuracy:e}: {reached:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_plain_shot_of_the_papers_rows_keeps_its_bits() {
+    for name in CASES {
+        let plan = plan(name, 0.3).with_budget();
+        assert_eq!(
+            shoot_estimated(&plan).unwrap().flight,
+            shoot(&plan).unwrap().flight
+        );
+    }
 }
 
 #[test]

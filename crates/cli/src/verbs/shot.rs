@@ -8,7 +8,7 @@ use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::print;
 use crate::words::lines;
-use hertzchain_study::{Plan, shoot, shoot_checked};
+use hertzchain_study::{Plan, shoot_checked, shoot_estimated};
 use hertzchain_verbs::table::named;
 use hertzchain_verbs::{input, json};
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = open_folder(arguments)?;
     let shot = match arguments.how.check {
         true => shoot_checked(&plan),
-        false => shoot(&plan),
+        false => shoot_estimated(&plan),
     };
     let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
     failure::print_speed_warnings(given, &warnings);

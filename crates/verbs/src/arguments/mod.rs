@@ -58,7 +58,7 @@ pub struct How {
     /// Where a pulse is timed
     #[arg(long, value_enum, value_name = "NAME")]
     pub pick: Option<Pick>,
-    /// Compute again and print the accuracy reached; shots of ensembles always are
+    /// Compare with tighter runs; without, `shot` estimates its error by looser ones
     #[arg(long)]
     pub check: bool,
 }
