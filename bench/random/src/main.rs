@@ -23,9 +23,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 const USAGE: &str = "usage: hertzchain-random [COUNT] [--seed N] [--from N] [--jobs N] \
-     [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] [--sample]";
+     [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] \
+     [--seconds N] [--sample]";
 
 /// What is to be done.
 struct Options {
@@ -36,6 +38,8 @@ struct Options {
     program: PathBuf,
     keep: PathBuf,
     only: Option<String>,
+    /// No row is begun after this time.
+    limit: Duration,
     /// Print reference numbers for the test of a fixed sample instead.
     sample: bool,
 }
@@ -51,6 +55,7 @@ impl Options {
             program: "target/release/hertzchain".into(),
             keep: "target/random".into(),
             only: None,
+            limit: Duration::MAX,
             sample: false,
         };
         while let Some(word) = words.next() {
@@ -63,6 +68,7 @@ impl Options {
                 "--program" => options.program = value()?.into(),
                 "--keep" => options.keep = value()?.into(),
                 "--only" => options.only = Some(value()?),
+                "--seconds" => options.limit = Duration::from_secs(number(value()?)?),
                 "--sample" => options.sample = true,
                 count => options.count = number(count.to_owned())?,
             }
@@ -190,7 +196,7 @@ fn print_findings(options: &Options, at: u64, text: &str, outcomes: &[Outcome]) 
 
 fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
     std::fs::create_dir_all(&options.keep)?;
-    let next = AtomicU64::new(options.from);
+    let (next, begun) = (AtomicU64::new(options.from), Instant::now());
     let tallies = Mutex::new(BTreeMap::<String, Tally>::new());
     let work = |job: usize| {
         let file = options
@@ -198,7 +204,7 @@ fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
             .join(format!(".row-{}-{job}.toml", std::process::id()));
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
-            if at >= options.from + options.count {
+            if at >= options.from + options.count || begun.elapsed() > options.limit {
                 break;
             }
             let row = draw::row(options.seed, at);
