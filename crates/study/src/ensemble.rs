@@ -15,7 +15,7 @@ use crate::stop::stopped;
 use crate::tuned::Tuned;
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
 use hertzchain_chain::observe::Passages;
-use hertzchain_chain::{InstructionSet, Sensor, Start, System};
+use hertzchain_chain::{InstructionSet, Sensor, Start, System, Tension};
 use rayon::prelude::*;
 
 /// Runs plans on all threads of the current rayon pool; results are in order
@@ -154,9 +154,25 @@ pub(crate) fn suits(plan: &Plan) -> bool {
 /// and once and a half that by the second.
 pub const JUDGES: [(f64, f64); 2] = [(1.3, 3.0), (1.69, 1.5)];
 
+/// Rows of which forces are cut, or begin and end otherwise than the paper's, are up
+/// to 2.5 times as wrong as the changes say.
+const OF_SHARP: f64 = 3.0;
+
+/// Laws of the rows on which [`JUDGES`] were measured.
+const MEASURED: [&str; 3] = ["elastic_hertz", "damping_viscoelastic", "damping_cubic"];
+
+/// Whether a row has no other laws than those, no cut forces and no gaps.
+fn is_gentle(plan: &Plan) -> bool {
+    let chain = &plan.chain;
+    let mut laws = chain.sections.iter().flat_map(|section| &section.laws);
+    chain.tension == Tension::Allowed
+        && chain.gaps.is_empty()
+        && laws.all(|law| MEASURED.contains(&law.info().name))
+}
+
 /// Least accuracy reached that is stated, over the one asked: both changes are small
 /// by chance in one random row of a hundred that is wrong by less.
-const LEAST_STATED: f64 = 0.2;
+const LEAST_STATED: f64 = 0.5;
 
 /// Shots of plans that go together, or of one that goes alone: what was fired,
 /// and the rest by the wave loop.
@@ -187,9 +203,9 @@ fn judged(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let shots = fire(plans, &loaded, set, &own).into_iter();
     let [near, far] = JUDGES.map(|(longer, _)| fire(plans, &loaded, set, &own.longer(longer)));
     let judges = near.into_iter().zip(far);
+    let shots = plans.iter().zip(shots).zip(judges);
     shots
-        .zip(judges)
-        .map(|(shot, (near, far))| kept(shot?, [&near?, &far?]))
+        .map(|((plan, shot), (near, far))| kept(plan, shot?, [&near?, &far?]))
         .collect()
 }
 
@@ -203,9 +219,9 @@ pub(crate) fn load(plans: &[&Plan]) -> Vec<Option<System>> {
 }
 
 /// A shot with the accuracy it reached, if that is what was asked.
-fn kept(mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
+fn kept(plan: &Plan, mut shot: Shot, judges: [&Shot; 2]) -> Option<Shot> {
     let [near, far] = [0, 1].map(|at| JUDGES[at].1 * shot.change(judges[at]));
-    let reached = near.max(far);
+    let reached = near.max(far) * if is_gentle(plan) { 1.0 } else { OF_SHARP };
     shot.accuracy_reached = Some(reached.max(LEAST_STATED * shot.accuracy_asked));
     (reached <= shot.accuracy_asked).then_some(shot)
 }
