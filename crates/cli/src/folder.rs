@@ -2,21 +2,16 @@
 
 use crate::failure::Failure;
 use hertzchain_figures::Figure;
-use hertzchain_measure::records::beside;
-use hertzchain_study::reproduce::write_atomically;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use hertzchain_measure::records::Files;
+use std::io::{self, Write};
+use std::path::Path;
 
 /// Resolution of PNG pictures in dots per inch.
 const DPI: f64 = 300.0;
 
-/// A folder that was found writable.
+/// Files for a folder that was found writable; they appear in it together.
 #[derive(Debug)]
-pub struct Folder {
-    path: PathBuf,
-    written: Vec<PathBuf>,
-}
+pub struct Folder(Files);
 
 impl Folder {
     /// Makes the folder if need be and checks that it can be written to,
@@ -29,26 +24,14 @@ impl Folder {
                 path.display()
             )));
         }
-        let refused = |error: io::Error| {
-            Failure::User(format!("cannot write into {}: {error}", path.display()))
-        };
-        fs::create_dir_all(path).map_err(refused)?;
-        let probe = path.join(format!(".hertzchain-{}.probe", std::process::id()));
-        fs::write(&probe, b"")
-            .and_then(|()| fs::remove_file(&probe))
-            .map_err(refused)?;
-        Ok(Self {
-            path: path.to_owned(),
-            written: Vec::new(),
-        })
+        let refused =
+            |error| Failure::User(format!("cannot write into {}: {error}", path.display()));
+        Files::within(path).map(Self).map_err(refused)
     }
 
-    /// Writes a file beside its place, then renames it.
+    /// Writes a file that gets its name with all others.
     pub fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
-        let path = self.path.join(name);
-        write_atomically(&path, content).map_err(|error| Failure::Ours(error.to_string()))?;
-        self.written.push(path);
-        Ok(())
+        self.write_with(name, |file| file.write_all(content))
     }
 
     /// The same of what is made while it is written, and may be longer than memory.
@@ -57,16 +40,13 @@ impl Folder {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        let path = self.path.join(name);
-        let part = beside(&path);
-        let written = whole(&part, write).and_then(|()| fs::rename(&part, &path));
-        written.map_err(|error| {
-            // Nothing half-written stays; the first error is the one that counts.
-            let _ = fs::remove_file(&part);
-            Failure::Ours(format!("cannot write {}: {error}", path.display()))
-        })?;
-        self.written.push(path);
-        Ok(())
+        let written = self.0.write(name, write);
+        written.map_err(|error| self.unwritable(name, &error))
+    }
+
+    fn unwritable(&self, what: &str, error: &io::Error) -> Failure {
+        let (path, left) = (self.0.folder().join(what), "its files are those of before");
+        Failure::Ours(format!("cannot write {}: {error}; {left}", path.display()))
     }
 
     /// Writes tables, each under its name.
@@ -86,27 +66,19 @@ impl Folder {
 
     /// Where it is.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.0.folder()
     }
 
-    /// Everything written.
-    pub fn into_written(self) -> Vec<PathBuf> {
-        self.written
+    /// Names of the files.
+    pub fn names(&self) -> Vec<&str> {
+        self.0.names().collect()
     }
 
-    /// What was written, one path a line.
-    pub fn list(&self) -> String {
-        let lines = self
-            .written
-            .iter()
-            .map(|path| format!("  {}\n", path.display()));
-        lines.collect()
+    /// Gives all files their names; returns them, one path a line.
+    pub fn finish(self) -> Result<String, Failure> {
+        let files = self.0.finish();
+        let files = files.map_err(|error| Failure::Ours(format!("cannot name a file: {error}")))?;
+        let lines = files.iter().map(|path| format!("  {}\n", path.display()));
+        Ok(lines.collect())
     }
-}
-
-/// A file that is whole, or an error.
-fn whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(path)?);
-    write(&mut file)?;
-    file.flush()
 }

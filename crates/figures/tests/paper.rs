@@ -6,9 +6,8 @@ use hertzchain_experiment::Reading;
 use hertzchain_figures::{Figure, paper};
 use hertzchain_study::claims::{Claim, Verdict, claims};
 use hertzchain_study::readings::{Row, Scan};
-use hertzchain_study::reproduce::{Options, Reproduction, Silent, reproduce};
+use hertzchain_study::reproduce::{Options, PROVENANCE, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
-use std::fs;
 
 const TABLES: [&str; 8] = [
     "claims.json",
@@ -91,17 +90,17 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     assert!(smallest > 6.0 - 5e-3 && width_mm == 175.0, "{width_mm} mm");
     assert!(wide.caption_text().contains("† Not decidable"));
     computed.scan = None;
-    let folder = std::env::temp_dir().join(format!("hertzchain-paper-{}", std::process::id()));
-    let mut listed = computed.write_tables(&folder).unwrap();
-    listed.extend(paper::write(&computed, &folder).unwrap());
-    let provenance = computed.write_provenance(&folder, &listed).unwrap();
-    let provenance = fs::read_to_string(provenance).unwrap();
-    let entries = fs::read_dir(&folder).unwrap();
-    let written: BTreeSet<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    let png = fs::read(folder.join("figure1.png")).unwrap();
-    fs::remove_dir_all(&folder).unwrap();
+    let tables = computed.tables().unwrap();
+    let pictures = paper::files(&computed).unwrap();
+    let names = tables.iter().map(|(name, _)| *name);
+    let names = names.chain(pictures.iter().map(|(name, _)| &**name));
+    let names: Vec<&str> = names.chain([PROVENANCE]).collect();
+    let provenance = computed.provenance_json(&names);
+    let written: BTreeSet<String> = names.iter().map(|name| (*name).to_owned()).collect();
+    let png = pictures
+        .iter()
+        .find(|(name, _)| name == "figure1.png")
+        .unwrap();
     let figures = FIGURES
         .iter()
         .flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}")));
@@ -115,5 +114,5 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     for name in expected {
         assert!(provenance.contains(&format!("\"{name}\"")), "{name}");
     }
-    assert!(png.starts_with(b"\x89PNG"));
+    assert!(png.1.starts_with(b"\x89PNG"));
 }

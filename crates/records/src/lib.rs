@@ -8,9 +8,9 @@
 //! its samples, so that no analysis peeks by accident.
 
 mod arrays;
-mod beside;
 mod channels;
 mod check;
+mod checksum;
 mod csv;
 mod cut;
 mod encoding;
@@ -27,8 +27,8 @@ mod series;
 mod table;
 mod tdms;
 mod wav;
+mod whole;
 
-pub use beside::{beside, remove_left_behind};
 pub use error::RecordError;
 pub use format::Format;
 pub use options::{Parts, ReadOptions, Rows};
@@ -36,3 +36,4 @@ pub use read::{Records, read};
 pub use record::{Channel, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
 pub use table::Table;
+pub use whole::{Files, remove_left_behind, write_whole};

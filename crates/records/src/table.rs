@@ -1,12 +1,11 @@
 //! Tables of numbers as HDF5, each with a text that tells what they are: for
 //! results that many processes write and one puts together.
 
-use crate::beside;
 use crate::error::{RecordError, name};
 use crate::hdf5::damaged;
 use crate::series::{column, describe, unit};
+use crate::whole::{exclusive, named};
 use rust_hdf5::{H5File, Hdf5Error};
-use std::fs;
 use std::path::Path;
 
 /// Name of the text's dataset.
@@ -36,17 +35,13 @@ impl Table {
     /// # Errors
     /// [`RecordError::Unwritable`].
     pub fn write(&self, path: &Path) -> Result<(), RecordError> {
-        let part = beside(path);
-        let failed = |detail: String| {
-            // Nothing half-written stays; the first error is the one that counts.
-            let _ = fs::remove_file(&part);
-            RecordError::Unwritable {
-                file: name(path),
-                detail,
-            }
+        let failed = |error: &dyn std::error::Error| RecordError::Unwritable {
+            file: name(path),
+            detail: error.to_string(),
         };
-        self.put(&part).map_err(|error| failed(error.to_string()))?;
-        fs::rename(&part, path).map_err(|error| failed(error.to_string()))
+        let part = exclusive(path).map_err(|error| failed(&error))?;
+        self.put(part.path()).map_err(|error| failed(&error))?;
+        named(part, path).map_err(|error| failed(&error))
     }
 
     fn put(&self, part: &Path) -> Result<(), Hdf5Error> {
@@ -63,7 +58,7 @@ impl Table {
             column.write_raw(values)?;
             describe(&column, name, unit(name))?;
         }
-        file.close_no_sync()
+        file.close()
     }
 
     /// Reads the text of a table and those columns of it that are asked for;

@@ -14,4 +14,5 @@ mod series;
 mod tdms;
 mod times;
 mod times_by_python;
+mod whole;
 mod words;

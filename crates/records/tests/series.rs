@@ -3,7 +3,7 @@
 use crate::common::{folder, python};
 use hertzchain_records::{
     Channels, ReadOptions, Record, RecordError, Samples, SeriesInfo, SeriesWriter, ShotRow, read,
-    truth, untriggered,
+    truth, untriggered, verify,
 };
 use std::fs;
 use std::path::Path;
@@ -272,4 +272,22 @@ with xarray.open_dataset("series.h5", engine="h5netcdf", group="truth") as data:
     assert_eq!(all(&folder.join("untold.h5"))[2].triggered, None);
     let sum: i64 = samples(1, 1000).iter().map(|count| i64::from(*count)).sum();
     assert_eq!(printed.trim(), sum.to_string());
+}
+
+#[test]
+fn a_finished_series_with_any_flipped_bit_is_not_taken_for_finished() {
+    let path = folder("flipped").join("series.h5");
+    write(&path, 3, 400).unwrap();
+    verify(&path, &info(400), 3, 0.5).unwrap();
+    let whole = fs::read(&path).unwrap();
+    // A bit of every eleventh byte, which falls on all parts of the file.
+    for at in (0..whole.len()).step_by(11) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1 << (at % 8);
+        fs::write(&path, flipped).unwrap();
+        let found = verify(&path, &info(400), 3, 0.5);
+        assert!(found.is_err(), "byte {at} of {}", whole.len());
+    }
+    fs::write(&path, &whole[..whole.len() - 1]).unwrap();
+    assert!(verify(&path, &info(400), 3, 0.5).is_err());
 }

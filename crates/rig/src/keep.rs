@@ -7,7 +7,7 @@
 use crate::error::RigError;
 use crate::plan::{Plan, Series};
 use hertzchain_experiment::Experiment;
-use hertzchain_records::{beside, remove_left_behind};
+use hertzchain_records::{remove_left_behind, write_whole};
 use hertzchain_study::reproduce::commit;
 use hertzchain_study::{Fingerprint, Inputs};
 use std::collections::HashSet;
@@ -64,12 +64,7 @@ impl Folder {
                 folder.holds("recordings, but no campaign.toml that tells of which campaign")
             );
         }
-        let part = beside(&told_in);
-        let written = fs::write(&part, told).and_then(|()| fs::rename(&part, &told_in));
-        written.map_err(|error| {
-            let _ = fs::remove_file(&part);
-            refused(error)
-        })?;
+        write_whole(&told_in, |file| file.write_all(told.as_bytes())).map_err(refused)?;
         Ok(folder)
     }
 

@@ -4,8 +4,8 @@ use crate::error::RigError;
 use crate::keep::{Folder, fingerprint};
 use crate::plan::{Plan, Series};
 use crate::recording;
-use hertzchain_records::beside;
-use std::fs;
+use hertzchain_records::write_whole;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -90,11 +90,7 @@ fn same(one: &Path, other: &Path) -> Result<(), RigError> {
     }
 }
 
-/// Beside its place, then renamed.
 fn copy(from: &Path, to: &Path) -> io::Result<()> {
-    let part = beside(to);
-    let copied = fs::copy(from, &part).and_then(|_| fs::rename(&part, to));
-    copied.inspect_err(|_| {
-        let _ = fs::remove_file(&part);
-    })
+    let mut bytes = File::open(from)?;
+    write_whole(to, |file| io::copy(&mut bytes, file).map(|_| ()))
 }

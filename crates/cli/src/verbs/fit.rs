@@ -67,8 +67,9 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
     folder.figure("fit", &pictures::fit(fitted))?;
     let tables = fit::tables(fitted);
     write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
-    fit::finished(folder.path());
-    eprint!("Written:\n{}", folder.list());
+    let out = folder.path().to_owned();
+    eprint!("Written:\n{}", folder.finish()?);
+    fit::finished(&out);
     Ok(())
 }
 

@@ -25,7 +25,7 @@ pub fn run(out: Option<&Path>) -> Result<(), Failure> {
         let titled = verb.clone().display_name(name.clone());
         folder.write(&format!("{name}.1"), &page(titled)?)?;
     }
-    print::print(&format!("Manual pages:\n{}", folder.list()))
+    print::print(&format!("Manual pages:\n{}", folder.finish()?))
 }
 
 fn page(command: Command) -> Result<Vec<u8>, Failure> {

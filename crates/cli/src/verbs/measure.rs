@@ -112,6 +112,6 @@ fn write(
         folder.write("ratios.csv", ratios_csv(curves).as_bytes())?;
         folder.figure("ratios", &pictures::ratios(curves, reference))?;
     }
-    eprint!("Written:\n{}", folder.list());
+    eprint!("Written:\n{}", folder.finish()?);
     Ok(())
 }

@@ -14,10 +14,9 @@ mod times;
 pub use rig::rig;
 
 use crate::{Colour, Figure, FigureError, Marker};
-use hertzchain_study::reproduce::{ReproduceError, Reproduction, write_atomically};
-use std::path::{Path, PathBuf};
+use hertzchain_study::reproduce::{ReproduceError, Reproduction};
 
-/// A picture that can't be made or written.
+/// A picture that can't be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
     /// It can't be rendered.
@@ -28,7 +27,7 @@ pub enum PaperError {
         /// Why.
         error: FigureError,
     },
-    /// It can't be computed or written.
+    /// It can't be computed.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
 }
@@ -55,28 +54,23 @@ pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, PaperEr
     Ok(figures)
 }
 
-/// Writes all figures of a reproduction into a folder, each as SVG and PNG, and
-/// their captions; returns what was written.
+/// All figures of a reproduction as files, each as SVG and PNG, and their captions: name and
+/// content.
 ///
 /// # Errors
-/// The first picture that can't be made or written; none is left half-written.
-pub fn write(of: &Reproduction, folder: &Path) -> Result<Vec<PathBuf>, PaperError> {
-    let mut written = Vec::new();
+/// The first picture that can't be made.
+pub fn files(of: &Reproduction) -> Result<Vec<(String, Vec<u8>)>, PaperError> {
+    let mut files = Vec::new();
     let mut captions = String::from("# Captions\n");
     for (name, figure) in figures(of)? {
         captions += &format!("\n## {name}\n{}\n", figure.caption_text());
         let png = figure.png(DOTS_PER_INCH);
         let png = png.map_err(|error| PaperError::Figure { name, error })?;
-        for (ending, content) in [("svg", figure.svg().into_bytes()), ("png", png)] {
-            let path = folder.join(format!("{name}.{ending}"));
-            write_atomically(&path, &content)?;
-            written.push(path);
-        }
+        files.push((format!("{name}.svg"), figure.svg().into_bytes()));
+        files.push((format!("{name}.png"), png));
     }
-    let path = folder.join("captions.md");
-    write_atomically(&path, captions.as_bytes())?;
-    written.push(path);
-    Ok(written)
+    files.push(("captions.md".to_owned(), captions.into_bytes()));
+    Ok(files)
 }
 
 /// How a case is named in legends.

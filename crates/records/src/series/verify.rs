@@ -2,14 +2,16 @@
 
 use super::read::{attribute_text, channels, column};
 use super::{SeriesInfo, layout};
+use crate::checksum;
 use crate::error::RecordError;
 use crate::hdf5::damaged;
 use rust_hdf5::{H5File, Hdf5Error};
+use std::fs::File;
 use std::path::Path;
 
 /// Opens a finished series and compares it with what a writer would have been
 /// told: every text of the information, the shape of each channel, the numbers and
-/// the programmed speed of the shots. Samples are not read.
+/// the programmed speed of the shots, and the checksum of the file.
 ///
 /// # Errors
 /// [`RecordError::Malformed`] with what is damaged, missing or other than expected.
@@ -19,6 +21,16 @@ pub fn verify(
     shots: usize,
     programmed_speed_m_s: f64,
 ) -> Result<(), RecordError> {
+    let open = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
+    let agrees = checksum::agrees(&open).map_err(|cause| RecordError::reading(file, cause))?;
+    let broken = match agrees {
+        Some(true) => None,
+        Some(false) => Some("damaged: its bytes do not have its checksum"),
+        None => Some("cut short: its checksum is missing"),
+    };
+    if let Some(what) = broken {
+        return Err(RecordError::malformed(file, "this series", what));
+    }
     let found = differs(file, info, shots, programmed_speed_m_s);
     match found.unwrap_or_else(|error| Some(damaged(&error))) {
         Some(what) => Err(RecordError::malformed(file, "this series", what)),

@@ -1,11 +1,12 @@
 //! Writing a series: beside its place, shot by shot, renamed when complete.
 
 use super::layout;
-use crate::beside;
+use crate::checksum;
 use crate::error::{RecordError, name};
+use crate::whole::{exclusive, named};
 use rust_hdf5::{H5Dataset, H5File, H5Group, Hdf5Error};
-use std::fs;
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
 /// Effort of the compression. Noise takes half of 16 bits whatever the effort,
 /// and time triples from here to the highest.
@@ -94,9 +95,9 @@ pub struct ShotRow<'a> {
 /// last one's file stays. A writer that is dropped unfinished removes its part.
 pub struct SeriesWriter {
     path: PathBuf,
-    part: PathBuf,
-    /// `None` once finished.
-    open: Option<Open>,
+    /// Removed when it is dropped.
+    part: NamedTempFile,
+    open: Growing,
     samples_per_shot: usize,
     table: Table,
 }
@@ -140,13 +141,13 @@ impl SeriesWriter {
                 source_name: name(path),
             });
         }
-        let part = beside(path);
-        let started = start(&part, info).map_err(|error| unwritable(path, &error));
-        let open = started.inspect_err(|_| remove(&part))?;
+        let part = exclusive(path).map_err(|error| refused(path, &error))?;
+        let started = start(part.path(), info);
+        let open = started.map_err(|error| unwritable(path, &error))?;
         Ok(Self {
             path: path.to_owned(),
             part,
-            open: Some(open),
+            open: Growing(Some(open)),
             samples_per_shot: info.samples_per_shot,
             table: Table {
                 long_names: info.long_names,
@@ -163,7 +164,7 @@ impl SeriesWriter {
     pub fn push(&mut self, row: &ShotRow<'_>) -> Result<(), RecordError> {
         self.fits(row)?;
         let at = self.table.shots.len();
-        let open = self.open.as_ref().ok_or_else(|| self.lost())?;
+        let open = self.open.0.as_ref().ok_or_else(|| self.lost())?;
         for (channel, samples) in open.channels.iter().zip(self.cut(row.samples)) {
             let written = append(channel, at, samples);
             written.map_err(|error| unwritable(&self.path, &error))?;
@@ -182,22 +183,17 @@ impl SeriesWriter {
                 source_name: name(&self.path),
             });
         }
-        let open = self.open.take().ok_or_else(|| self.lost())?;
+        let open = self.open.0.take().ok_or_else(|| self.lost())?;
         let written = self.table.write(&open).and_then(|()| {
             let Open { file, channels } = open;
             drop(channels);
             file.close()
         });
-        let failed = |error: &dyn std::error::Error| RecordError::Unwritable {
-            file: name(&self.path),
-            detail: error.to_string(),
-        };
-        if let Err(error) = written {
-            remove(&self.part);
-            return Err(unwritable(&self.path, &error));
-        }
-        fs::rename(&self.part, &self.path).map_err(|error| failed(&error))?;
-        Ok(self.path.clone())
+        written.map_err(|error| unwritable(&self.path, &error))?;
+        let sealed = checksum::append(self.part.as_file());
+        let sealed = sealed.and_then(|()| named(self.part, &self.path));
+        sealed.map_err(|error| refused(&self.path, &error))?;
+        Ok(self.path)
     }
 
     /// The samples of each channel.
@@ -211,7 +207,7 @@ impl SeriesWriter {
             shot: row.shot,
             detail,
         };
-        let channels = self.open.as_ref().map_or(1, |open| open.channels.len());
+        let channels = self.open.0.as_ref().map_or(1, |open| open.channels.len());
         let all = channels * self.samples_per_shot;
         if row.samples.len() != all {
             let found = row.samples.len();
@@ -244,14 +240,14 @@ impl SeriesWriter {
     }
 }
 
-impl Drop for SeriesWriter {
+/// `None` once finished.
+struct Growing(Option<Open>);
+
+impl Drop for Growing {
     fn drop(&mut self) {
-        if let Some(open) = self.open.take() {
-            // Dropped, the library would complete a file that goes away and, on a
-            // full disk, complain of it to the terminal.
-            std::mem::forget(open);
-            remove(&self.part);
-        }
+        // Dropped, the library would complete a file that goes away and, on a full disk,
+        // complain of it to the terminal.
+        std::mem::forget(self.0.take());
     }
 }
 
@@ -395,11 +391,6 @@ pub(crate) fn unit(name: &str) -> &'static str {
     found.map_or("1", |ending| ending.1)
 }
 
-/// Best effort: what is left is nobody's, and hidden.
-fn remove(part: &Path) {
-    let _ = fs::remove_file(part);
-}
-
 fn start(part: &Path, info: &SeriesInfo) -> Result<Open, Hdf5Error> {
     let file = H5File::create(part)?;
     attributes(&file, info)?;
@@ -474,7 +465,11 @@ fn append(samples: &H5Dataset, at: usize, row: &[i16]) -> Result<(), Hdf5Error> 
     samples.extend(&[at + 1, row.len()])
 }
 
-fn unwritable(path: &Path, error: &Hdf5Error) -> RecordError {
+fn refused(path: &Path, error: &std::io::Error) -> RecordError {
+    unwritable(path, error)
+}
+
+fn unwritable(path: &Path, error: &dyn std::error::Error) -> RecordError {
     let text = error.to_string();
     let full = std::io::Error::from_raw_os_error(NO_SPACE).to_string();
     let advice = match text.contains(&full) {

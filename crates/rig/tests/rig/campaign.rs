@@ -99,7 +99,7 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     let lost = before.keys().nth(2).unwrap();
     std::fs::remove_file(out.0.join(lost)).unwrap();
     // Of a killed run, of one that is still at work, and of somebody else.
-    let part = |name: &str| out.0.join(format!(".{name}.1-2-3.part"));
+    let part = |name: &str| out.0.join(format!(".{name}.hertzchain-aBcDeFgH1234.part"));
     let (killed, alive, other) = (part(lost), part("dry-01-0.1000.h5"), part("mine.h5"));
     for path in [&killed, &alive, &other] {
         std::fs::write(path, b"half a file").unwrap();

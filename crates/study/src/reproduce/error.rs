@@ -40,14 +40,6 @@ pub enum ReproduceError {
         /// Why.
         error: std::io::Error,
     },
-    /// A file can't be written.
-    #[error("{path} can't be written: {error}")]
-    Write {
-        /// The file.
-        path: String,
-        /// Why.
-        error: std::io::Error,
-    },
 }
 
 pub(crate) fn failed(case: &str, speed_m_s: f64, error: StudyError) -> ReproduceError {

@@ -5,7 +5,7 @@ use std::fs;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Name of the file.
-pub(super) const PROVENANCE: &str = "provenance.json";
+pub const PROVENANCE: &str = "provenance.json";
 
 /// What the file says wrote it.
 pub(super) const PROGRAM: &str = "hertzchain";

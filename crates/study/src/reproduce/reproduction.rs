@@ -3,11 +3,10 @@
 use super::cases::{CASES, Cases};
 use super::films::{Film, SignalShot, films, signals};
 use super::gather::{Effort, Gathering, gather};
-use super::leftovers::remove_leftovers;
-use super::provenance::{PROVENANCE, commit, machine};
+use super::provenance::{commit, machine};
 use super::{
     Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
-    power_laws_csv, ratios_csv, tof_csv, write_atomically,
+    power_laws_csv, ratios_csv, tof_csv,
 };
 use crate::claims::{
     Evidence, Judged, MEANING, claims, claims_json, claims_markdown, judge_all_rounded,
@@ -18,7 +17,6 @@ use crate::readings::{
 use crate::{Plan, shoot};
 use hertzchain_experiment::Reading;
 use serde_json::json;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What to compute, and how well.
@@ -192,11 +190,11 @@ fn provenance(
 }
 
 impl Reproduction {
-    /// Writes the tables and claims into a folder; returns what was written.
+    /// The tables and claims as files: name and content.
     ///
     /// # Errors
-    /// The first file that can't be written; none is left half-written.
-    pub fn write_tables(&self, folder: &Path) -> Result<Vec<PathBuf>, ReproduceError> {
+    /// An oil that can't be described.
+    pub fn tables(&self) -> Result<Vec<(&'static str, String)>, ReproduceError> {
         let reading = stated(&self.reading);
         let mut files = vec![
             ("tof.csv", tof_csv(&self.evidence)),
@@ -223,33 +221,14 @@ impl Reproduction {
             let page = scan_markdown(scan) + &two_digits_markdown(&self.judged, two_digits);
             files.push(("readings.md", page));
         }
-        let mut written = Vec::new();
-        for (name, content) in files {
-            let path = folder.join(name);
-            write_atomically(&path, content.as_bytes())?;
-            written.push(path);
-        }
-        Ok(written)
+        Ok(files)
     }
 
-    /// Ends a run: removes from the folder what the provenance of an earlier
-    /// run lists and this one did not write, then writes the provenance with the list
-    /// of all that was written.
-    ///
-    /// # Errors
-    /// A file that can't be removed or written.
-    pub fn write_provenance(
-        &self,
-        folder: &Path,
-        written: &[PathBuf],
-    ) -> Result<PathBuf, ReproduceError> {
-        let path = folder.join(PROVENANCE);
-        let names = written.iter().chain([&path]);
-        let names = names.filter_map(|path| path.strip_prefix(folder).ok()?.to_str());
-        let names: Vec<&str> = names.collect();
-        remove_leftovers(folder, &names)?;
-        write_atomically(&path, json(&self.provenance.json(&names)).as_bytes())?;
-        Ok(path)
+    /// The provenance as a file named [`PROVENANCE`](super::PROVENANCE), which lists itself and
+    /// the files of those names.
+    #[must_use]
+    pub fn provenance_json(&self, files: &[&str]) -> String {
+        json(&self.provenance.json(files))
     }
 }
 

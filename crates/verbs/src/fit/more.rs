@@ -8,7 +8,7 @@ use hertzchain_infer::{
     Chain, Covariance, CurveProblem, Fit, Posterior, Problem, Profile, Profiling, Requirements,
     Sampling, Surrogate, Unconverged, profile,
 };
-use hertzchain_study::reproduce::write_atomically;
+use hertzchain_measure::records::write_whole;
 use hertzchain_study::{StudyError, note_progress, stopped};
 use std::fs;
 use std::io::{self, BufReader, Read, Write};
@@ -129,8 +129,13 @@ fn started(
     let unread = |error: &dyn std::fmt::Display| {
         Failure::User(format!("--resume: {}: {error}", path.display()))
     };
-    let file = fs::File::open(&path).map_err(|error| unread(&error))?;
-    let read = serde_json::from_reader(BufReader::with_capacity(PIECE, Wanted(file)));
+    let mut bytes = Vec::new();
+    let read = fs::File::open(&path).and_then(|file| Wanted(file).read_to_end(&mut bytes));
+    wanted()?;
+    read.map_err(|error| unread(&error))?;
+    let damaged = || unread(&"damaged; remove it, or leave --resume out to begin anew");
+    let text = partial::checked(&bytes).ok_or_else(damaged)?;
+    let read = serde_json::from_reader(BufReader::with_capacity(PIECE, Wanted(text)));
     wanted()?;
     let chain: Chain = read.map_err(|error| unread(&error))?;
     chain.belongs_to(problem).map_err(|error| unread(&error))?;
@@ -184,14 +189,15 @@ impl<'a> Saving<'a> {
         let ours = |error: &dyn std::fmt::Display| Failure::Ours(error.to_string());
         fs::create_dir_all(folder).map_err(|error| ours(&error))?;
         let path = folder.join(CHAIN);
-        write_atomically(&path, &saved(chain)?).map_err(|error| ours(&error))?;
+        let saved = saved(chain)?;
+        write_whole(&path, |file| file.write_all(&saved)).map_err(|error| ours(&error))?;
         // From the end of writing: a long chain takes its time.
         self.saved = Instant::now();
         Ok(())
     }
 }
 
-/// A chain as it lies in the output folder.
+/// A chain as it lies in the output folder: JSON, and a line with its hash.
 ///
 /// # Errors
 /// Numbers that are none, of which JSON knows nothing; a wish to stop.
@@ -199,7 +205,8 @@ pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
     let mut text = Wanted(Vec::new());
     let written = serde_json::to_writer(&mut text, chain);
     written.map_err(|error| Failure::Ours(error.to_string()))?;
-    Ok(text.0)
+    text.0.push(b'\n');
+    Ok(partial::sealed(text.0))
 }
 
 /// Leaves a fit's walkers in the output folder, to be led on, and nothing of what it took to
@@ -209,7 +216,10 @@ pub fn saved(chain: &Chain) -> Result<Vec<u8>, Failure> {
 /// A folder that can't be written.
 pub fn leave(found: &Inferred, out: &Path) -> Result<(), Failure> {
     if let More::Sampled(sampled) = &found.more {
-        let written = write_atomically(&out.join(CHAIN), &saved(&sampled.chain)?);
+        let saved = saved(&sampled.chain)?;
+        let path = out.join(CHAIN);
+        let written = fs::create_dir_all(out)
+            .and_then(|()| write_whole(&path, |file| file.write_all(&saved)));
         written.map_err(|error| Failure::Ours(error.to_string()))?;
     }
     partial::finished(out);

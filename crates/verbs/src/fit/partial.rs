@@ -7,7 +7,7 @@
 use super::{Arguments, words};
 use crate::failure::Failure;
 use hertzchain_infer::{ModelError, Parameter, Problem, Residuals};
-use hertzchain_study::reproduce::write_atomically;
+use hertzchain_measure::records::{remove_left_behind, write_whole};
 use hertzchain_study::{Fingerprint, StudyError, count_done, stopped};
 use std::collections::HashMap;
 use std::fs;
@@ -23,7 +23,7 @@ pub const PARTIAL: &str = "partial";
 const EVERY: Duration = Duration::from_secs(1);
 
 /// How each part begins, before the problem's fingerprint.
-const HEAD: &str = "hertzchain residuals 1 ";
+const HEAD: &str = "hertzchain residuals 2 ";
 
 /// What a part's name begins with.
 const PART: &str = "part-";
@@ -33,6 +33,9 @@ const RIVAL: &str = "against-";
 
 /// The same of a fit that was repeated with more accurate curves.
 const FINER: &str = "finer-";
+
+/// Digits of a hash.
+const HASH: usize = 64;
 
 /// Bytes of a number.
 const NUMBER: usize = 8;
@@ -132,6 +135,7 @@ impl Kept {
             saved: Instant::now(),
             failed: None,
         };
+        remove_left_behind(&kept.folder, |_| true);
         match resume {
             true => kept.read()?,
             false => forget(&kept.folder),
@@ -150,10 +154,11 @@ impl Kept {
             if stopped() {
                 return Err(Failure::User(StudyError::Stopped.to_string()));
             }
-            let numbers = bytes.strip_prefix(&self.head[..]).ok_or_else(|| {
+            let damaged = || refused(&"damaged; remove it, or leave --resume out to begin anew");
+            let whole = checked(&bytes).ok_or_else(damaged)?;
+            let numbers = whole.strip_prefix(&self.head[..]).ok_or_else(|| {
                 refused(&"other data, another model or another build of the program; leave --resume out to begin anew")
             })?;
-            let damaged = || refused(&"damaged; remove it, or leave --resume out to begin anew");
             self.known.extend(entries(numbers).ok_or_else(damaged)?);
             self.parts += 1;
         }
@@ -198,12 +203,28 @@ impl Kept {
         let path = self.folder.join(format!("{PART}{:06}", self.parts));
         let mut bytes = self.head.clone();
         bytes.append(&mut self.fresh);
-        match write_atomically(&path, &bytes) {
+        let bytes = sealed(bytes);
+        let written = fs::create_dir_all(&self.folder)
+            .and_then(|()| write_whole(&path, |file| file.write_all(&bytes)));
+        match written {
             Ok(()) => self.parts += 1,
             Err(error) => self.failed = Some(error.to_string()),
         }
         self.saved = Instant::now();
     }
+}
+
+/// Bytes with their hash after them, in hexadecimal digits.
+pub(super) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    bytes.extend(Fingerprint::of_bytes(&bytes).to_string().into_bytes());
+    bytes
+}
+
+/// The bytes before their hash; `None` if it is not theirs.
+pub(super) fn checked(bytes: &[u8]) -> Option<&[u8]> {
+    let length = bytes.len().checked_sub(HASH)?;
+    let (whole, hash) = bytes.split_at(length);
+    (Fingerprint::of_bytes(whole).to_string().as_bytes() == hash).then_some(whole)
 }
 
 /// Points and residuals of a part; none if it is damaged.
@@ -420,6 +441,35 @@ mod tests {
         finished(&out);
         assert!(!out.join(PARTIAL).exists());
         let _ = fs::remove_dir_all(out);
+    }
+
+    #[test]
+    fn a_part_with_any_flipped_bit_is_refused_and_none_is_taken_for_a_result() {
+        let out = tempfile::tempdir().unwrap();
+        let square = Square::new();
+        let resumed = |resume| {
+            Remembered::new(
+                &square,
+                || Fingerprint::of_bytes(b"square"),
+                &arguments(out.path(), resume),
+            )
+        };
+        let kept = resumed(false).unwrap();
+        kept.residuals(&[vec![3.0]]);
+        kept.kept.as_ref().unwrap().lock().unwrap().save();
+        let part = parts(&out.path().join(PARTIAL)).pop().unwrap();
+        let whole = fs::read(&part).unwrap();
+        for bit in 0..8 * whole.len() {
+            let mut flipped = whole.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            fs::write(&part, flipped).unwrap();
+            let Err(Failure::User(why)) = resumed(true) else {
+                unreachable!("bit {bit} was flipped, and the part was taken")
+            };
+            assert!(why.contains("damaged"), "{why}");
+        }
+        fs::write(&part, whole).unwrap();
+        assert!(resumed(true).is_ok());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{Arguments, CHAIN};
 use crate::failure::Failure;
-use hertzchain_study::reproduce::write_atomically;
+use hertzchain_measure::records::write_whole;
 use std::fs;
 use std::path::Path;
 
@@ -42,7 +42,7 @@ pub fn left(arguments: &Arguments) -> Result<(), Failure> {
     let ours = |error: &dyn std::fmt::Display| Failure::Ours(error.to_string());
     fs::create_dir_all(out).map_err(|error| ours(&error))?;
     let text = serde_json::to_vec(&words).map_err(|error| ours(&error))?;
-    write_atomically(&path, &text).map_err(|error| ours(&error))
+    write_whole(&path, |file| file.write_all(&text)).map_err(|error| ours(&error))
 }
 
 /// Forgets them where nothing is left to go on with.

@@ -74,8 +74,9 @@ fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure
     folder.figure("pulses", &picture(&shown))?;
     let tables = tables_of_any(&fitted.inferred);
     write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
-    finished(folder.path());
-    eprint!("Written:\n{}", folder.list());
+    let out = folder.path().to_owned();
+    eprint!("Written:\n{}", folder.finish()?);
+    finished(&out);
     Ok(())
 }
 

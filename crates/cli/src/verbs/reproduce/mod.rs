@@ -10,16 +10,17 @@ use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_figures::paper::{self, PaperError};
 use hertzchain_study::claims::{Judged, MEANING, Verdict, computed_text};
 use hertzchain_study::readings::Scan;
-use hertzchain_study::reproduce::{Options, Progress, ReproduceError, Reproduction, reproduce};
+use hertzchain_study::reproduce::{
+    Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_leftovers, reproduce,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Runs the verb.
 pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
-    let folder = &arguments.out;
     // Whether it can be written to, before anything is computed for it.
-    Folder::open(folder)?;
+    let mut folder = Folder::open(&arguments.out)?;
     let options = match arguments.readings {
         true => Options::default().with_readings(),
         false => Options::default(),
@@ -27,23 +28,31 @@ pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
     let bar = Bar::new();
     let computed = reproduce(&options, &bar);
     let computed = computed.map_err(|error| failure(&error))?;
-    let tables = computed.write_tables(folder);
-    let mut written = tables.map_err(|error| failure(&error))?;
-    let pictures = paper::write(&computed, folder).map_err(|error| match error {
+    write(&computed, &mut folder)?;
+    let mut text = summary(&computed, folder.path());
+    if arguments.rig {
+        text.push_str(&rig::run(&mut folder, &bar)?);
+    }
+    bar.0.finish_and_clear();
+    let names: Vec<&str> = folder.names().into_iter().chain([PROVENANCE]).collect();
+    let provenance = computed.provenance_json(&names);
+    remove_leftovers(folder.path(), &names).map_err(|error| failure(&error))?;
+    folder.write(PROVENANCE, provenance.as_bytes())?;
+    folder.finish()?;
+    print(&text)
+}
+
+/// Tables and pictures.
+fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
+    for (name, table) in computed.tables().map_err(|error| failure(&error))? {
+        folder.write(name, table.as_bytes())?;
+    }
+    let pictures = paper::files(computed).map_err(|error| match error {
         PaperError::Reproduce(error) => failure(&error),
         error => Failure::Ours(error.to_string()),
     })?;
-    written.extend(pictures);
-    let rig = arguments.rig.then(|| rig::run(folder, &bar)).transpose()?;
-    bar.0.finish_and_clear();
-    let mut text = summary(&computed, folder);
-    if let Some(rig) = rig {
-        text.push_str(&rig.summary);
-        written.extend(rig.written);
-    }
-    let ended = computed.write_provenance(folder, &written);
-    ended.map_err(|error| failure(&error))?;
-    print(&text)
+    let mut pictures = pictures.into_iter();
+    pictures.try_for_each(|(name, content)| folder.write(&name, &content))
 }
 
 /// The paper's chains come with the program: nothing here is the user's fault.

@@ -6,24 +6,14 @@ use crate::folder::Folder;
 use crate::pictures::rig as pictures;
 use hertzchain_experiment::preset;
 use hertzchain_rig::claims::{Design, MEANING, RigClaims, observe, series_csv};
-use std::path::{Path, PathBuf};
 
-/// What was found and written.
-pub struct Found {
-    /// For people.
-    pub summary: String,
-    /// The files.
-    pub written: Vec<PathBuf>,
-}
-
-/// Runs the campaigns and writes verdicts, table and pictures.
-pub fn run(folder: &Path, bar: &Bar) -> Result<Found, Failure> {
+/// Runs the campaigns and writes verdicts, table and pictures; returns what was found, for people.
+pub fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
     let ours = |error: &dyn std::error::Error| Failure::Ours(error.to_string());
     let paper = preset("paper").map_err(|error| ours(&error))?;
     let design = Design::about(paper);
     let evidence = observe(&design, bar).map_err(|error| ours(&error))?;
     let claims = RigClaims::judge(&design, &evidence).map_err(|error| ours(&error))?;
-    let mut into = Folder::open(folder)?;
     let json = format!("{:#}\n", claims.json());
     into.write("rig-claims.json", json.as_bytes())?;
     into.write("rig-claims.md", claims.markdown().as_bytes())?;
@@ -31,13 +21,10 @@ pub fn run(folder: &Path, bar: &Bar) -> Result<Found, Failure> {
     for (name, figure) in pictures::figures(&evidence, &claims) {
         into.figure(name, &figure)?;
     }
-    Ok(Found {
-        summary: format!(
-            "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
-            evidence.rigs.len(),
-            verdicts(&claims.judged),
-            folder.join("rig-claims.md").display(),
-        ),
-        written: into.into_written(),
-    })
+    Ok(format!(
+        "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
+        evidence.rigs.len(),
+        verdicts(&claims.judged),
+        into.path().join("rig-claims.md").display(),
+    ))
 }

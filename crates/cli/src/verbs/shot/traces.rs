@@ -92,7 +92,7 @@ pub fn write(
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
         folder.write("animation.html", page.as_bytes())?;
     }
-    eprint!("Written:\n{}", folder.list());
+    eprint!("Written:\n{}", folder.finish()?);
     Ok(())
 }
 

@@ -95,7 +95,7 @@ fn lines(style: Style, rows: &Rows) -> String {
 pub fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
-    eprint!("Written:\n{}", folder.list());
+    eprint!("Written:\n{}", folder.finish()?);
     Ok(())
 }
 
