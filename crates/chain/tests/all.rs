@@ -7,6 +7,7 @@ mod convergence;
 mod ensemble_accuracy;
 mod ensemble_allocations;
 mod ensemble_lanes;
+mod ensemble_limits;
 mod ensemble_openings;
 mod ensemble_reference;
 mod ensemble_sensors;

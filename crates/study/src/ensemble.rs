@@ -317,12 +317,14 @@ pub(crate) fn fire(
         whole_chain: false,
         openings: setting.openings,
     };
-    let mut flown = ensemble::fire_while(&shots, &settings, &|| !stopped()).into_iter();
-    let one = |(plan, system): (&&Plan, &Option<System>)| {
-        let system = system.as_ref()?;
-        shot(plan, (system, settings.end), flown.next()?.ok()?)
+    let fired: Vec<(&Plan, &System)> = ready().collect();
+    let kept = |at: usize, flown: Result<Flown, _>| {
+        let (plan, system) = fired[at];
+        shot(plan, (system, settings.end), flown.ok()?)
     };
-    plans.iter().zip(loaded).map(one).collect()
+    let mut kept = ensemble::fire_each(&shots, &settings, &|| !stopped(), kept).into_iter();
+    let one = |system: &Option<System>| system.as_ref().and_then(|_| kept.next()?);
+    loaded.iter().map(one).collect()
 }
 
 /// A single step may correct a velocity by this fraction of the shot's speed:

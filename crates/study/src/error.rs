@@ -41,6 +41,17 @@ pub enum StudyError {
         /// How far the shot had come, in s.
         time_s: f64,
     },
+    /// Signals that fill the memory.
+    #[error(
+        "the sensors have shown more than is kept of a shot after {steps:.1e} steps, {time_s:.3e} s after \
+         its start; give a shorter duration (--duration), a longer step or less accuracy"
+    )]
+    LongSignal {
+        /// How far the shot had come, in s.
+        time_s: f64,
+        /// Steps until then.
+        steps: f64,
+    },
     /// The sensor bead is not part of the chain.
     #[error("sensor bead {bead} is outside the chain of {beads} beads")]
     SensorOutside {

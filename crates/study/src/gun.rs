@@ -385,6 +385,12 @@ impl<'a> Gun<'a> {
         if stopped() {
             return Err(StudyError::Stopped);
         }
+        if following.passages().is_full() {
+            return Err(StudyError::LongSignal {
+                time_s: outcome.time_s,
+                steps: outcome.work.steps as f64,
+            });
+        }
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
         let mut shot = self.shot(method, outcome, &following, separation, trace);
         shot.finished &= !breaking_off.is_long();

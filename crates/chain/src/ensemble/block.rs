@@ -415,6 +415,29 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         }
     }
 
+    /// Steps for which no contact of a lane is closed, if nothing but contacts acts; else 0.
+    pub fn fly_for(&self, lane: usize) -> f64 {
+        let system = self.systems[lane];
+        let [x, v] = [&self.motion.x, &self.motion.v];
+        let of = |values: &[N], body: usize| values[body * self.lanes + lane].into();
+        let touches_s = |contact: usize| -> f64 {
+            let apart_m = of(x, contact + 1) - of(x, contact) - system.offset_m[contact];
+            let rate_m_s = of(v, contact) - of(v, contact + 1);
+            match (apart_m >= 0.0, rate_m_s > 0.0) {
+                (false, _) => 0.0,
+                (true, true) => apart_m / rate_m_s,
+                (true, false) => f64::INFINITY,
+            }
+        };
+        let until_s = match system.flies_free() {
+            true => (0..system.contacts())
+                .map(touches_s)
+                .fold(f64::INFINITY, f64::min),
+            false => 0.0,
+        };
+        until_s / self.paces[lane].step_s
+    }
+
     /// Velocities of all bodies of a lane in m/s.
     pub fn velocities(&self, lane: usize) -> impl Iterator<Item = f64> + '_ {
         let v = &self.motion.v;

@@ -104,6 +104,14 @@ pub enum EnsembleError {
         /// Step in s.
         step_s: f64,
     },
+    /// More steps than are kept of a shot.
+    #[error(
+        "a batch keeps {MOST_STEPS} steps of a shot, and this one, at t = {time_s:e} s, takes more"
+    )]
+    TooManySteps {
+        /// Time reached in s.
+        time_s: f64,
+    },
     /// Nobody wanted the shot any more.
     #[error("the shot was broken off")]
     BrokenOff,
@@ -140,43 +148,57 @@ const LOOK_EVERY: usize = 16;
 /// Steps between looks at how good the steps are.
 const CORRECTION_EVERY: usize = 64;
 
+/// Most steps of a shot: what sixteen lanes' sensors show in so many takes 67 MB. Pulses are
+/// through chains of a thousand beads in half of them; what takes longer flies through gaps, which
+/// the wave loop crosses in few steps.
+const MOST_STEPS: usize = 1 << 19;
+
 /// Most rows that are reserved before a shot; longer shots allocate as they go.
 const RESERVED: usize = 1 << 16;
 
-/// Fires shots: side by side where the chains have the same shape, one alone
-/// otherwise. Results are in order; a shot that fails stops no other.
+/// Fires shots, side by side where chains have the same shape; one that fails stops no other.
 #[must_use]
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
     fire_while(shots, settings, &|| true)
 }
 
-/// The same for as long as somebody wants it, who is asked every few steps; what
-/// has not come to its end then is [`EnsembleError::BrokenOff`].
+/// The same for as long as `wanted` says so, which is asked every few steps; what has not ended then
+/// is [`EnsembleError::BrokenOff`].
 #[must_use]
 pub fn fire_while(
     shots: &[Shot<'_>],
     settings: &Settings,
     wanted: &dyn Fn() -> bool,
 ) -> Vec<Result<Flown, EnsembleError>> {
-    let mut flown: Vec<Option<Result<Flown, EnsembleError>>> = vec![None; shots.len()];
+    fire_each(shots, settings, wanted, |_, flown| flown)
+}
+
+/// The same, of each shot only what `kept` makes of it, by its place in the list: signals take
+/// memory, and those of one shot at a time are held.
+#[must_use]
+pub fn fire_each<T>(
+    shots: &[Shot<'_>],
+    settings: &Settings,
+    wanted: &dyn Fn() -> bool,
+    kept: impl Fn(usize, Result<Flown, EnsembleError>) -> T,
+) -> Vec<T> {
+    let mut all: Vec<Option<T>> = shots.iter().map(|_| None).collect();
     let mut ready = Vec::with_capacity(shots.len());
     for (shot, fired) in shots.iter().enumerate() {
         match check(fired, settings) {
             Ok(()) => ready.push(shot),
-            Err(error) => flown[shot] = Some(Err(error)),
+            Err(error) => all[shot] = Some(kept(shot, Err(error))),
         }
     }
     for block in blocks(shots, &ready) {
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
-        let results = match side_by_side[0].precision {
-            Precision::Double => fire_block::<f64, 8>(&side_by_side, settings, wanted),
-            Precision::Single => fire_block::<f32, 16>(&side_by_side, settings, wanted),
-        };
-        for (shot, result) in block.into_iter().zip(results) {
-            flown[shot] = Some(result);
+        let mut keep = |lane: usize, flown| all[block[lane]] = Some(kept(block[lane], flown));
+        match side_by_side[0].precision {
+            Precision::Double => fire_block::<f64, 8>(&side_by_side, settings, wanted, &mut keep),
+            Precision::Single => fire_block::<f32, 16>(&side_by_side, settings, wanted, &mut keep),
         }
     }
-    flown.into_iter().flatten().collect()
+    all.into_iter().flatten().collect()
 }
 
 /// Computes the forces of all contacts again and again, of as many copies of a
@@ -254,6 +276,7 @@ enum State {
     Finished { step: usize, early: bool },
     Failed { step: usize },
     BrokenOff { step: usize },
+    TooLong { step: usize },
 }
 
 /// Fires alike shots, one or up to `W`.
@@ -261,7 +284,8 @@ fn fire_block<N: Number<W>, const W: usize>(
     shots: &[Shot<'_>],
     settings: &Settings,
     wanted: &dyn Fn() -> bool,
-) -> Vec<Result<Flown, EnsembleError>> {
+    keep: &mut dyn FnMut(usize, Result<Flown, EnsembleError>),
+) {
     let schedule = Schedule::shared();
     // One shot runs alone; several fill the lanes, the last ones idly.
     let lanes = if shots.len() == 1 { 1 } else { W };
@@ -285,44 +309,29 @@ fn fire_block<N: Number<W>, const W: usize>(
     );
     let ends = (settings, wanted);
     fly(&mut block, &mut recorder, &mut flying, ends, &fired);
-    let mut signals = signals(&recorder, &flying, (&fired, &steps_s), settings, schedule);
     let looked_at = block.bodies_looked_at / lanes as u64;
-    let result = |(at, lane): (usize, Lane)| {
+    let sensors = 0..settings.sensors.len();
+    let extremes: Vec<Vec<Vec<usize>>> = sensors
+        .map(|sensor| recorder.extremes(sensor, settings.set))
+        .collect();
+    for (at, lane) in flying.into_iter().enumerate() {
         let clock = Clock {
             schedule,
             step_s: steps_s[at],
         };
-        lane.flown(std::mem::take(&mut signals[at]), clock, looked_at)
-    };
-    flying.into_iter().enumerate().map(result).collect()
-}
-
-/// What the sensors showed, lane by lane.
-fn signals<N: Number<W>, const W: usize>(
-    recorder: &Recorder<N, W>,
-    lanes: &[Lane],
-    (systems, steps_s): (&[&System], &[f64]),
-    settings: &Settings,
-    schedule: &Schedule,
-) -> Vec<Vec<Signal>> {
-    let mut signals: Vec<Vec<Signal>> = vec![Vec::new(); lanes.len()];
-    for (index, &sensor) in settings.sensors.iter().enumerate() {
-        let extremes = recorder.extremes(index, settings.set);
-        for (at, lane) in lanes.iter().enumerate() {
+        let signals = settings.sensors.iter().enumerate().map(|(index, &sensor)| {
             let trace = Trace {
                 samples: recorder.samples(index, at),
                 last_step: lane.ended(),
-                clock: Clock {
-                    schedule,
-                    step_s: steps_s[at],
-                },
-                silent: systems[at].silence(sensor),
-                least_n_s: least_n_s(systems[at]),
+                clock,
+                silent: fired[at].silence(sensor),
+                least_n_s: least_n_s(fired[at]),
             };
-            signals[at].push(trace.signal(sensor, &extremes[at], settings.shapes));
-        }
+            trace.signal(sensor, &extremes[index][at], settings.shapes)
+        });
+        let signals = signals.collect();
+        keep(at, lane.flown(signals, clock, looked_at));
     }
-    signals
 }
 
 /// Steps until a duration is over, at the next look.
@@ -369,6 +378,7 @@ fn fly<N: Number<W>, const W: usize>(
         for (at, lane) in lanes.iter_mut().enumerate() {
             if lane.state == State::Flying {
                 lane.look(block, recorder, at, settings.end, systems[at]);
+                lane.give_up(block, at);
             }
         }
         if let Some(behind) = &mut behind {
@@ -425,12 +435,25 @@ impl Lane {
         }
     }
 
+    /// Gives up what takes too many steps: at once where bodies only fly until then.
+    fn give_up<N: Number<W>, const W: usize>(&mut self, block: &Block<'_, N, W>, at: usize) {
+        let step = block.steps;
+        if self.last_step <= MOST_STEPS || self.state != State::Flying {
+            return;
+        }
+        let look = step.is_multiple_of(LOOK_EVERY << 8);
+        if step >= MOST_STEPS || look && block.fly_for(at) > MOST_STEPS as f64 {
+            self.state = State::TooLong { step };
+        }
+    }
+
     /// Step at which the lane came to its end.
     fn ended(&self) -> usize {
         match self.state {
-            State::Finished { step, .. } | State::Failed { step } | State::BrokenOff { step } => {
-                step
-            }
+            State::Finished { step, .. }
+            | State::Failed { step }
+            | State::BrokenOff { step }
+            | State::TooLong { step } => step,
             State::Flying => self.last_step,
         }
     }
@@ -449,6 +472,10 @@ impl Lane {
                 return Err(EnsembleError::NotFinite { time_s, step_s });
             }
             State::BrokenOff { .. } => return Err(EnsembleError::BrokenOff),
+            State::TooLong { step } => {
+                let time_s = clock.time_s(step);
+                return Err(EnsembleError::TooManySteps { time_s });
+            }
         };
         let finite = self.velocity_m_s.iter().all(|v| v.is_finite());
         if !finite {

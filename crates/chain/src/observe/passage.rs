@@ -185,6 +185,12 @@ impl Passages {
         &self.sensor
     }
 
+    /// Whether a signal takes all the memory that it may; that ends the shot.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.sensor.is_full() || self.wall.is_full()
+    }
+
     /// The wall's signal.
     #[must_use]
     pub fn wall(&self) -> &Signal {
@@ -314,6 +320,9 @@ impl Observer for Passages {
         self.until_s = piece.time_s(1.0);
         self.sensor.step(piece);
         self.wall.step(piece);
+        if self.is_full() {
+            return Flow::Finished;
+        }
         self.update();
         match self.ends_shot && self.over {
             true => Flow::Finished,

@@ -40,6 +40,27 @@ impl Stretch {
         f0 + s * (d1 + 0.5 * s1 * (d2 + s2 * (d3 + s3 * d4)))
     }
 
+    /// This and the next stretch as one, if they are as long and it differs from no value of
+    /// either by more than `most`.
+    fn joined(&self, next: &Self, most: f64) -> Option<Self> {
+        let ([a0, a1, a2, a3, a4], [b0, b1, b2, b3, b4]) = (self.values, next.values);
+        let as_long = (self.length_s - next.length_s).abs() <= 1e-6 * self.length_s;
+        let apart_s = next.start_s - self.end_s();
+        let one = Self {
+            start_s: self.start_s,
+            length_s: next.end_s() - self.start_s,
+            values: [a0, a2, 0.5 * (a4 + b0), b2, b4],
+        };
+        let quarter_s = 0.25 * self.length_s;
+        let between = [(1.0, a1), (3.0, a3), (5.0, b1), (7.0, b3)];
+        let same = between.iter().all(|(quarters, value)| {
+            let differs = one.at(self.start_s + quarters * quarter_s) - value;
+            differs.abs() <= most
+        });
+        let adjoins = as_long && apart_s.abs() <= 1e-6 * self.length_s && (a4 - b0).abs() <= most;
+        (adjoins && same).then_some(one)
+    }
+
     /// End in s.
     #[must_use]
     pub fn end_s(&self) -> f64 {
@@ -99,6 +120,16 @@ pub(crate) fn least_n_s(system: &System) -> f64 {
 
 /// A force jump smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
+
+/// Most stretches of a signal: 59 MB.
+const MOST_STRETCHES: usize = 1 << 20;
+
+/// Most maxima of a signal: 34 MB.
+const MOST_MAXIMA: usize = 1 << 21;
+
+/// Stretches are joined where that changes no value by more than this fraction of the largest:
+/// what a flank or a width is then wrong by is far below their accuracy.
+const MERGED: f64 = 1e-8;
 
 impl Signal {
     /// Of a sensor.
@@ -165,6 +196,26 @@ impl Signal {
         }
     }
 
+    /// Whether the signal takes all the memory that it may: steps that follow are not kept.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.stretches.len() >= MOST_STRETCHES || self.maxima.len() >= MOST_MAXIMA
+    }
+
+    /// Joins neighbouring stretches where one quartic says the same: steps much shorter than a
+    /// pulse, of which there may be a billion, are kept as densely as the pulse needs.
+    fn merge(&mut self) {
+        let (floor, mut kept) = (MERGED * self.largest, 0);
+        let mut at = 0;
+        while let Some(&first) = self.stretches.get(at) {
+            let joined = (self.stretches.get(at + 1)).and_then(|next| first.joined(next, floor));
+            at += 1 + usize::from(joined.is_some());
+            self.stretches[kept] = joined.unwrap_or(first);
+            kept += 1;
+        }
+        self.stretches.truncate(kept);
+    }
+
     /// A slope right in sign: near a maximum the samples alone may not be.
     fn slope(&self, piece: &Piece<'_>, theta: f64, (slope, off): (f64, f64)) -> f64 {
         match slope.abs() < off {
@@ -220,6 +271,12 @@ impl Observer for Signal {
         if !piece.sees(self.sensor) {
             self.fall_silent();
             return Flow::Continue;
+        }
+        if self.stretches.len() >= MOST_STRETCHES {
+            self.merge();
+        }
+        if self.is_full() {
+            return Flow::Finished;
         }
         let values = std::array::from_fn(|i| piece.signal(self.sensor, 0.25 * i as f64));
         let stretch = Stretch {
@@ -292,4 +349,47 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
     // Fixed steps run across jumps, where values decide, not rates.
     let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
     (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A wave, and a jump in the middle, in stretches much shorter than it.
+    fn dense(count: usize) -> Signal {
+        let length_s = 1.0 / count as f64;
+        let value = |time_s: f64| time_s.sin() + f64::from(time_s >= 0.5);
+        let stretch = |i: usize| {
+            let start_s = i as f64 * length_s;
+            let inside = |k: usize| start_s + 0.999_999 * 0.25 * k as f64 * length_s;
+            Stretch {
+                start_s,
+                length_s,
+                values: std::array::from_fn(|k| value(inside(k))),
+            }
+        };
+        Signal {
+            largest: 2.0,
+            stretches: (0..count).map(stretch).collect(),
+            ..Signal::new(Sensor::Contact(0))
+        }
+    }
+
+    #[test]
+    fn stretches_much_shorter_than_a_pulse_are_joined_and_say_the_same() {
+        let (mut joined, whole) = (dense(4096), dense(4096));
+        joined.merge();
+        // All but those at the jump, which is at a seam.
+        assert_eq!(joined.stretches.len(), 2048);
+        for i in 0..10_000 {
+            let time_s = f64::from(i) / 10_000.0;
+            let differs = joined.at(time_s) - whole.at(time_s);
+            // What the joining allows.
+            assert!(differs.abs() < 2.0 * 2.0 * MERGED, "{time_s}: {differs}");
+        }
+        let mut other = dense(64);
+        other.stretches[1].values[2] += 1e-3;
+        other.merge();
+        assert_eq!(other.stretches.len(), 2 + 31, "what differs stays as it is");
+    }
 }

@@ -33,8 +33,9 @@ const OF_BUDGET: usize = 10;
 const ROUNDING: f64 = 1e-9;
 
 impl Tracer {
-    /// Most numbers of a trace, times and energies included: 0.8 GB.
-    pub const MOST_NUMBERS: usize = 100_000_000;
+    /// Most numbers of a trace, times and energies included: 0.24 GB, and as much again where
+    /// they are copied to be written.
+    pub const MOST_NUMBERS: usize = 30_000_000;
 
     /// Samples sensors every `interval_s`, and energy about every
     /// `budget_interval_s` (at the starts of steps).

@@ -4,6 +4,7 @@ use crate::arguments::Shot as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures;
+use crate::print;
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
@@ -17,7 +18,7 @@ const SAMPLES: usize = 3000;
 const FEWEST_SAMPLES: usize = 200;
 
 /// Most numbers in memory.
-const MOST_NUMBERS: usize = 60_000_000;
+const MOST_NUMBERS: usize = 25_000_000;
 
 /// Which bodies exist: the striker's place is empty in a chain without one,
 /// and the far end moves only if it is a stop.
@@ -92,7 +93,7 @@ pub fn write(
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
         folder.write("animation.html", page.as_bytes())?;
     }
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     Ok(())
 }
 
