@@ -1,14 +1,17 @@
 //! What went wrong, printed, with the exit code: 2 for the user's mistakes, 1
 //! for ours.
 
+use crate::print::note;
 use hertzchain_experiment::Warning;
 use hertzchain_infer::{Data, Model};
+use hertzchain_measure::records::without_controls;
 use hertzchain_verbs::arguments::infer::{Assignment, Measured};
 use hertzchain_verbs::failure;
 pub use hertzchain_verbs::failure::{Failure, of_speed};
 use hertzchain_verbs::given::Given;
 use hertzchain_verbs::inference::{assumed, kept};
 use hertzchain_verbs::input::option;
+use std::borrow::Cow;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
@@ -16,9 +19,18 @@ fn colour() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
+/// Prints a report: in colour on a terminal, unless it quotes control characters.
+fn show(report: impl Fn(bool) -> String) {
+    let plain = report(false);
+    match without_controls(&plain) {
+        Cow::Borrowed(_) if colour() => eprint!("{}", report(true)),
+        shown => eprint!("{shown}"),
+    }
+}
+
 /// Prints why a verb failed and says how the program ends.
 pub fn report(failure: &Failure) -> ExitCode {
-    eprint!("{}", failure.report(colour()));
+    show(|colour| failure.report(colour));
     match failure {
         Failure::Mistakes(_) | Failure::User(_) => ExitCode::from(2),
         Failure::Ours(_) => ExitCode::from(1),
@@ -28,20 +40,20 @@ pub fn report(failure: &Failure) -> ExitCode {
 
 /// Warnings at a speed that an option gave, told of the option.
 pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
-    eprint!("{}", failure::option_warnings(option, warnings, colour()));
+    show(|colour| failure::option_warnings(option, warnings, colour));
 }
 
 /// What is assumed of data that do not say all.
 pub fn print_assumed(data: &Data, measured: &Measured) {
     if let Some(assumed) = assumed(data, measured) {
-        eprintln!("warning: {assumed}");
+        note(&format!("warning: {assumed}"));
     }
 }
 
 /// Numbers that are kept while their unit changes.
 pub fn print_kept(model: &Model, sets: &[Assignment]) {
     for kept in kept(model, sets) {
-        eprintln!("warning: {kept}");
+        note(&format!("warning: {kept}"));
     }
 }
 
@@ -49,6 +61,6 @@ pub fn print_kept(model: &Model, sets: &[Assignment]) {
 pub fn print_speed_warnings(given: Option<&Given>, warnings: &[Warning]) {
     match given {
         Some(given) => print_option_warnings(&option(given), warnings),
-        None => eprint!("{}", failure::warnings(warnings, colour())),
+        None => show(|colour| failure::warnings(warnings, colour)),
     }
 }

@@ -1,6 +1,7 @@
 //! Results as CSV, in SI.
 
 use crate::{Case, Curves, Lost, Shot, SpeedRow};
+use hertzchain_records::no_formula;
 use hertzchain_signal::{Estimate, Flight, Picked, PowerLaw, Ratio, Summary};
 use std::io::{self, Write};
 use std::iter::once;
@@ -13,9 +14,10 @@ fn cell(value: Option<f64>) -> String {
 
 /// A text in a cell.
 fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n']) {
+    let text = no_formula(text);
+    match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
+        false => text.into_owned(),
     }
 }
 

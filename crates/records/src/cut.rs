@@ -7,8 +7,8 @@ use crate::record::{Channel, Record, Samples};
 use std::io::Read;
 use std::path::PathBuf;
 
-/// Most samples of a channel in one record: a GiB of `f64`.
-pub(crate) const MOST_SAMPLES: usize = 1 << 27;
+/// Most samples of a channel in one record: 0.27 GB of `f64`.
+pub(crate) const MOST_SAMPLES: usize = 1 << 25;
 
 /// Samples of several channels that come one after the other.
 pub(crate) trait Stream {

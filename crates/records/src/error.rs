@@ -82,7 +82,9 @@ pub enum RecordError {
         given_hz: f64,
     },
     /// A rate that no sampling has.
-    #[error("{file}: a sampling interval of {interval_s} s is impossible")]
+    #[error(
+        "{file}: a sampling interval of {interval_s:e} s is impossible: recorders have 1 ps to 1000 s"
+    )]
     ImpossibleRate {
         /// Which file.
         file: String,

@@ -8,6 +8,9 @@ use std::path::Path;
 /// round intervals to four digits.
 const SAME_RATE: f64 = 1e-3;
 
+/// Intervals that a recorder can have, in s: from a picosecond to a quarter of an hour.
+const POSSIBLE_S: std::ops::RangeInclusive<f64> = 1e-12..=1e3;
+
 /// Relative error of an interval below which nobody need be told: a nanosecond in a hundred
 /// microseconds.
 const MATTERS: f64 = 1e-5;
@@ -61,7 +64,7 @@ pub(crate) fn interval_s(
         (Some(stated), None) => stated,
         (None, None) => return Err(RecordError::NoRate { file: name(file) }),
     };
-    match interval_s.is_normal() && interval_s > 0.0 {
+    match POSSIBLE_S.contains(&interval_s) {
         true => Ok(interval_s),
         false => Err(RecordError::ImpossibleRate {
             file: name(file),

@@ -6,7 +6,7 @@ use crate::format::Format;
 use crate::options::{Parts, ReadOptions};
 use crate::record::Record;
 use crate::{check, csv, hdf5, numpy, series, tdms, wav};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What a format's reader gives: records until nothing sensible is left.
 pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, RecordError>>>;
@@ -21,7 +21,12 @@ pub struct Records {
     parts: Parts,
     channels_were_told: bool,
     length: Option<usize>,
+    file: PathBuf,
+    given: usize,
 }
+
+/// Most records of a file: an array of more rows is one of something else.
+const MOST_RECORDS: usize = 100_000;
 
 impl std::fmt::Debug for Records {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -34,6 +39,19 @@ impl Iterator for Records {
 
     fn next(&mut self) -> Option<Self::Item> {
         let record = self.records.next()?;
+        self.given += 1;
+        if self.given > MOST_RECORDS {
+            self.records = Box::new(std::iter::empty());
+            let detail = format!(
+                "more than {MOST_RECORDS} records; --rows says what the rows of an array are, and \
+                 parts of a file can be measured one by one"
+            );
+            return Some(Err(RecordError::malformed(
+                &self.file,
+                "a recording",
+                detail,
+            )));
+        }
         Some(record.and_then(|record| self.judged(record)))
     }
 }
@@ -78,6 +96,8 @@ pub fn read(file: &Path, options: &ReadOptions) -> Records {
         parts: options.parts,
         channels_were_told: !options.channels.is_empty(),
         length: None,
+        file: file.to_owned(),
+        given: 0,
     }
 }
 

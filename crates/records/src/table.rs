@@ -2,7 +2,7 @@
 //! results that many processes write and one puts together.
 
 use crate::error::{RecordError, name};
-use crate::hdf5::damaged;
+use crate::hdf5::{damaged, dataset};
 use crate::series::{column, describe, unit};
 use crate::whole::{exclusive, named};
 use rust_hdf5::{H5File, Hdf5Error};
@@ -73,7 +73,7 @@ impl Table {
 
     fn found(path: &Path, columns: &[&str]) -> Result<Self, Hdf5Error> {
         let open = H5File::open(path)?;
-        let about = open.dataset(ABOUT)?.read_raw::<u8>()?;
+        let about = dataset(&open, ABOUT)?.read_raw::<u8>()?;
         let about = String::from_utf8(about)
             .map_err(|_| Hdf5Error::InvalidState("its text is not UTF-8".to_owned()))?;
         let there = open.dataset_names();
@@ -82,7 +82,7 @@ impl Table {
             .iter()
             .filter(|name| there.iter().any(|n| n == *name))
         {
-            let rows = open.dataset(name)?.shape().iter().product();
+            let rows = dataset(&open, name)?.shape().iter().product();
             read.push(((*name).to_owned(), column::<f64>(&open, name, rows)?));
         }
         Ok(Self {

@@ -8,6 +8,7 @@
 mod common;
 mod damaged;
 mod formats;
+mod limits;
 mod long_rows;
 mod odd;
 mod series;

@@ -2,6 +2,7 @@
 
 use crate::table::cell;
 use csv::{Writer, WriterBuilder};
+use hertzchain_measure::records::no_formula;
 
 /// A table under way: a line of titles, then lines of as many cells.
 #[derive(Debug)]
@@ -59,7 +60,7 @@ impl Cell {
     fn text(self) -> String {
         match self {
             Self::Number(number) if number.is_finite() => cell(number),
-            Self::Words(words) => words,
+            Self::Words(words) => no_formula(&words).into_owned(),
             Self::Number(_) | Self::Empty => String::new(),
         }
     }
@@ -132,5 +133,7 @@ mod tests {
         ];
         let table = Csv::new(["a", "b"]).with(cells);
         assert_eq!(table.text(), "a,b\n\"a, \"\"b\"\"\",,1.5e-7,,3,true\n");
+        let table = Csv::new(["name"]).with([Cell::from("=1+1"), Cell::from(-1.5)]);
+        assert_eq!(table.text(), "name\n'=1+1,-1.5\n");
     }
 }

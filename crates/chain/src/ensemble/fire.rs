@@ -310,10 +310,8 @@ fn fire_block<N: Number<W>, const W: usize>(
     let ends = (settings, wanted);
     fly(&mut block, &mut recorder, &mut flying, ends, &fired);
     let looked_at = block.bodies_looked_at / lanes as u64;
-    let sensors = 0..settings.sensors.len();
-    let extremes: Vec<Vec<Vec<usize>>> = sensors
-        .map(|sensor| recorder.extremes(sensor, settings.set))
-        .collect();
+    let extremes = |sensor| recorder.extremes(sensor, settings.set);
+    let extremes: Vec<Vec<Vec<usize>>> = (0..settings.sensors.len()).map(extremes).collect();
     for (at, lane) in flying.into_iter().enumerate() {
         let clock = Clock {
             schedule,

@@ -2,7 +2,7 @@
 
 use crate::arguments::Campaign as Arguments;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{self, print};
 use hertzchain_rig::{Done, Plan, Progress, RigError, campaign, outlook};
 use hertzchain_verbs::input;
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
@@ -19,7 +19,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let plan = Plan::new(&experiment, arguments.seed).map_err(failure)?;
     for warning in outlook(&plan).map_err(failure)? {
-        eprintln!("warning: {warning}");
+        print::note(&format!("warning: {warning}"));
     }
     let threads = arguments.threads.unwrap_or(0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
@@ -37,10 +37,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Series that can't be computed are told, after all the others were.
 fn judge(done: &Done) -> Result<(), Failure> {
     for why in &done.failed {
-        eprintln!("warning: {why}");
+        print::note(&format!("warning: {why}"));
     }
     if let Some(warning) = untriggered(done) {
-        eprintln!("warning: {warning}");
+        print::note(&format!("warning: {warning}"));
     }
     match done.failed.len() {
         0 => Ok(()),
@@ -116,7 +116,9 @@ impl Shown {
             let elapsed_s = self.begun.elapsed().as_secs_f64();
             let rate_hz = fired as f64 / elapsed_s;
             let left_s = (shots - fired) as f64 / rate_hz;
-            eprintln!("{fired} of {shots} shots, {rate_hz:.1} a second, {left_s:.0} s left");
+            print::note(&format!(
+                "{fired} of {shots} shots, {rate_hz:.1} a second, {left_s:.0} s left"
+            ));
         }
     }
 }

@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
         folder.tables(&design::tables(&designed))?;
-        eprint!("Written:\n{}", folder.finish()?);
+        print::written(&folder.finish()?);
         Ok(())
     })
 }

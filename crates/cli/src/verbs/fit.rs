@@ -68,7 +68,7 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
     let tables = fit::tables(fitted);
     write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
     let out = folder.path().to_owned();
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     fit::finished(&out);
     Ok(())
 }

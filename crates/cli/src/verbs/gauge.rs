@@ -60,6 +60,6 @@ fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result
     if gauged.form.is_some() || gauged.rows.iter().any(|row| row.told.is_ok()) {
         folder.figure("contacts", &pictures::contacts(gauged))?;
     }
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     Ok(())
 }

@@ -58,13 +58,15 @@ const MOST_LINES: usize = 20;
 /// What is to be known of records beside their times.
 fn tell(measured: &Measurement) {
     for refused in &measured.refused {
-        eprintln!("refused: {refused}");
+        print::note(&format!("refused: {refused}"));
     }
     for line in measured.unmatched.iter().take(MOST_LINES) {
-        eprintln!("--shots: {line}");
+        print::note(&format!("--shots: {line}"));
     }
     if let more @ 1.. = measured.unmatched.len().saturating_sub(MOST_LINES) {
-        eprintln!("--shots: … and {more} more; measured.json has all");
+        print::note(&format!(
+            "--shots: … and {more} more; measured.json has all"
+        ));
     }
     for Note { text, files } in &measured.notes {
         let first = files.first().map(|file| file.display().to_string());
@@ -72,7 +74,10 @@ fn tell(measured: &Measurement) {
             0 | 1 => String::new(),
             files => format!(" and {} more", files - 1),
         };
-        eprintln!("note: {}{more}: {text}", first.unwrap_or_default());
+        print::note(&format!(
+            "note: {}{more}: {text}",
+            first.unwrap_or_default()
+        ));
     }
     eprintln!("note: {}", corrected(measured.bandwidth));
 }
@@ -112,6 +117,6 @@ fn write(
         folder.write("ratios.csv", ratios_csv(curves).as_bytes())?;
         folder.figure("ratios", &pictures::ratios(curves, reference))?;
     }
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     Ok(())
 }

@@ -116,7 +116,7 @@ fn judge(swept: &Sweep, units: Units) -> Result<(), Failure> {
         })
         .collect();
     for line in &lines {
-        eprintln!("warning: no shot at {line}");
+        print::note(&format!("warning: no shot at {line}"));
     }
     match lines.len() == swept.points.len() {
         true => Err(Failure::User("no speed gave a shot".into())),
@@ -179,7 +179,9 @@ fn print_warnings(experiment: &Experiment, swept: &Sweep) {
     }
     match warned.count() {
         0 => {}
-        1 => eprintln!("warning: the same goes for another speed; --json has all warnings"),
-        n => eprintln!("warning: the same goes for {n} other speeds; --json has all warnings"),
+        1 => print::note("warning: the same goes for another speed; --json has all warnings"),
+        n => print::note(&format!(
+            "warning: the same goes for {n} other speeds; --json has all warnings"
+        )),
     }
 }

@@ -107,7 +107,10 @@ impl Animation {
     pub fn html(&self) -> String {
         let title = crate::draw::escape(&self.title);
         let script = SCRIPT.replace("\"@DATA@\"", &self.data());
-        PAGE.replace("@TITLE@", &title).replace("@SCRIPT@", &script)
+        // Parts are not searched again: a title may have any text.
+        let (before, after) = PAGE.split_once("@SCRIPT@").unwrap_or((PAGE, ""));
+        let [before, after] = [before, after].map(|part| part.replace("@TITLE@", &title));
+        before + &script + &after
     }
 
     /// All numbers and names as one JavaScript object.
@@ -291,6 +294,15 @@ mod tests {
         let page = moving(3, 4).units((1.0, ""), "").html();
         assert!(page.contains("timeUnit:\"\",forceUnit:\"\""));
         assert!(!page.contains("µs"));
+    }
+
+    #[test]
+    fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
+        let title = "@SCRIPT@ and @TITLE@ and \"@DATA@\"";
+        let page = moving(2, 3).title(title).html();
+        let shown = crate::draw::escape(title);
+        assert_eq!(page.matches(&shown).count(), 2, "{page}");
+        assert_eq!(page.matches("const data =").count(), 1);
     }
 
     #[test]

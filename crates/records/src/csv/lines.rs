@@ -11,6 +11,9 @@ pub(super) struct Lines {
     blank: usize,
 }
 
+/// Most bytes of a line: 16 MiB, a row of a million samples of sixteen letters.
+const MOST: usize = 1 << 24;
+
 /// What was read of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Read {
@@ -56,6 +59,9 @@ impl Lines {
                 let count = buffer.len();
                 line.extend_from_slice(buffer);
                 self.reader.consume(count);
+                if line.len() > MOST {
+                    return Err(too_long());
+                }
                 continue;
             };
             line.extend_from_slice(buffer.get(..end).unwrap_or_default());
@@ -83,4 +89,9 @@ impl Lines {
             self.reader.consume(1);
         }
     }
+}
+
+fn too_long() -> io::Error {
+    let detail = format!("a line of it is longer than {} MiB", MOST >> 20);
+    io::Error::new(io::ErrorKind::InvalidData, detail)
 }

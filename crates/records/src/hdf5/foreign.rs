@@ -1,6 +1,6 @@
 //! Datasets of numbers that another program wrote.
 
-use super::damaged;
+use super::{damaged, dataset};
 use crate::arrays::{self, Arrays, Axes, INTERVALS, RATES, Table};
 use crate::cut::{Cut, Stream};
 use crate::error::{RecordError, name};
@@ -45,7 +45,7 @@ pub(super) fn open(file: &Path, open: H5File, options: &ReadOptions) -> Result<R
 impl Datasets {
     fn dataset(&self, name: &str) -> Result<H5Dataset, RecordError> {
         let refused = |error| refused(&self.file, name, &error);
-        self.open.dataset(name).map_err(refused)
+        dataset(&self.open, name).map_err(refused)
     }
 }
 

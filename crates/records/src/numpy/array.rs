@@ -10,6 +10,7 @@ use crate::options::ReadOptions;
 use crate::read::Raw;
 use crate::record::Samples;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
+use std::io::Read;
 
 /// An array whose numbers are still to be read.
 pub(super) struct Array {
@@ -171,12 +172,71 @@ fn numbers(
 fn opened(place: &Place) -> Result<(NpyHeader, Bytes), RecordError> {
     let reading = |cause| RecordError::reading(&place.file, cause);
     let mut bytes = place.open().map_err(reading)?;
-    let header = NpyHeader::from_reader(&mut bytes);
+    let begins = beginning(&mut bytes).map_err(reading)?;
+    if let Some(detail) = lies(&begins) {
+        return Err(RecordError::malformed(&place.file, "a NumPy array", detail));
+    }
+    let header = NpyHeader::from_reader(begins.chain(&mut bytes));
     let header = header.map_err(|error| match error.kind() {
         std::io::ErrorKind::UnexpectedEof => reading(error),
         _ => RecordError::malformed(&place.file, "a NumPy array", error),
     })?;
     Ok((header, bytes))
+}
+
+/// Most bytes of a header: NumPy itself reads no longer ones, and a table's has a hundred.
+const MOST_HEADER: usize = 10_000;
+
+/// Most brackets within each other in a header.
+const MOST_NESTED: usize = 16;
+
+/// The bytes of a header, as far as it is not longer than it may be.
+fn beginning(bytes: &mut Bytes) -> std::io::Result<Vec<u8>> {
+    let mut begins = Vec::new();
+    bytes.by_ref().take(FIXED as u64).read_to_end(&mut begins)?;
+    let more = header_length(&begins).unwrap_or(0).min(MOST_HEADER);
+    bytes.by_ref().take(more as u64).read_to_end(&mut begins)?;
+    Ok(begins)
+}
+
+/// Bytes of magic and version, and of the length in the first version.
+const FIXED: usize = 10;
+
+/// Bytes after the first ten that the header has, by what these say.
+fn header_length(begins: &[u8]) -> Option<usize> {
+    let (version, low) = (begins.get(6)?, begins.get(8..10)?);
+    let low = usize::from(u16::from_le_bytes(low.try_into().ok()?));
+    match version {
+        1 => Some(low),
+        // The other two bytes of the length follow; a length in them is beyond all bounds.
+        _ => Some(low + 2),
+    }
+}
+
+/// Why a header cannot be one.
+fn lies(begins: &[u8]) -> Option<String> {
+    let length = header_length(begins)?;
+    let upper = match begins.get(6)? {
+        1 => &[][..],
+        _ => begins.get(10..12)?,
+    };
+    if length > MOST_HEADER || upper.iter().any(|byte| *byte != 0) {
+        return Some(format!("its header claims more than {MOST_HEADER} bytes"));
+    }
+    let mut nested = 0_usize;
+    for byte in begins {
+        match byte {
+            b'(' | b'[' | b'{' => nested += 1,
+            b')' | b']' | b'}' => nested = nested.saturating_sub(1),
+            _ => {}
+        }
+        if nested > MOST_NESTED {
+            let detail =
+                format!("its header has more than {MOST_NESTED} brackets within each other");
+            return Some(detail);
+        }
+    }
+    None
 }
 
 /// Why items are not read.

@@ -7,6 +7,7 @@ use crate::channels;
 use crate::error::RecordError;
 use crate::options::ReadOptions;
 use crate::read::Raw;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -24,13 +25,18 @@ struct Entry {
 struct Archive {
     file: PathBuf,
     entries: Vec<Entry>,
+    /// Places in that list.
+    by_name: HashMap<String, usize>,
 }
 
 /// Opens an archive of arrays.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
+    let entries = entries(file)?;
+    let names = entries.iter().enumerate().rev();
     let archive = Archive {
         file: file.to_owned(),
-        entries: entries(file)?,
+        by_name: names.map(|(at, entry)| (entry.name.clone(), at)).collect(),
+        entries,
     };
     arrays::open(Rc::new(archive), options)
 }
@@ -67,7 +73,7 @@ impl Arrays for Archive {
 
 impl Archive {
     fn array(&self, name: &str) -> Result<Array, RecordError> {
-        let entry = self.entries.iter().find(|entry| entry.name == name);
+        let entry = self.by_name.get(name).and_then(|at| self.entries.get(*at));
         match entry {
             Some(entry) => Array::open(entry.place.clone(), Some(entry.name.clone())),
             None => Err(RecordError::NoChannel {

@@ -3,7 +3,7 @@
 use super::layout;
 use crate::channels::chosen;
 use crate::error::{RecordError, name};
-use crate::hdf5::damaged;
+use crate::hdf5::{damaged, dataset};
 use crate::interval::interval_s;
 use crate::options::ReadOptions;
 use crate::read::Raw;
@@ -122,7 +122,7 @@ impl Shelf {
 
 /// The channels of a file, with their names: one, or one a sensor.
 pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, Hdf5Error> {
-    let named = |name: &'static str| Ok((name, open.dataset(name)?));
+    let named = |name: &'static str| Ok((name, dataset(open, name)?));
     let there = open.root_group().dataset_names()?;
     let separate = layout::SEPARATE
         .iter()
@@ -142,7 +142,7 @@ pub(super) fn channels(open: &H5File) -> Result<Vec<(&'static str, H5Dataset)>, 
 pub fn untriggered(file: &Path) -> Result<usize, RecordError> {
     let count = || -> Result<usize, Hdf5Error> {
         let open = H5File::open(file)?;
-        let shots = open.dataset(layout::SHOT)?.shape().iter().product();
+        let shots = dataset(&open, layout::SHOT)?.shape().iter().product();
         let fired = triggered(&open, shots)?;
         Ok(fired.into_iter().filter(|fired| *fired == 0).count())
     };
@@ -163,7 +163,7 @@ pub(crate) fn column<T: rust_hdf5::H5Type>(
     name: &str,
     count: usize,
 ) -> Result<Vec<T>, Hdf5Error> {
-    let column = open.dataset(name)?.read_raw::<T>()?;
+    let column = dataset(open, name)?.read_raw::<T>()?;
     match column.len() == count {
         true => Ok(column),
         false => Err(Hdf5Error::InvalidState(format!(

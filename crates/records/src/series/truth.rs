@@ -3,6 +3,7 @@
 
 use super::layout;
 use crate::error::RecordError;
+use crate::hdf5::dataset;
 use rust_hdf5::{H5File, Hdf5Error};
 use std::path::Path;
 
@@ -22,7 +23,7 @@ fn columns(file: &Path) -> Result<Vec<(String, Vec<f64>)>, Hdf5Error> {
     let names = open.root_group().group(layout::TRUTH)?.dataset_names()?;
     let column = |name: String| {
         let path = format!("{}/{name}", layout::TRUTH);
-        Ok((name, open.dataset(&path)?.read_raw::<f64>()?))
+        Ok((name, dataset(&open, &path)?.read_raw::<f64>()?))
     };
     let told = names.into_iter().filter(|name| name != layout::CONTACT);
     told.map(column).collect()

@@ -6,6 +6,7 @@ use super::lead::{LEAD, Lead};
 use super::scaling::{Properties, polynomial};
 use crate::error::{RecordError, name};
 use crate::numbers::Number;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -102,12 +103,44 @@ impl Values {
     }
 }
 
+/// Objects in the order in which they came, each found by its path.
+#[derive(Default)]
+struct Objects {
+    list: Vec<Object>,
+    places: HashMap<String, usize>,
+}
+
+impl Objects {
+    fn put(&mut self, object: Object) {
+        match self.places.get(&object.path) {
+            Some(at) => self.list[*at] = object,
+            None => {
+                self.places.insert(object.path.clone(), self.list.len());
+                self.list.push(object);
+            }
+        }
+    }
+
+    fn get(&self, path: &str) -> Option<&Object> {
+        self.places.get(path).and_then(|at| self.list.get(*at))
+    }
+}
+
+/// Most objects of all segments together: a day of a hundred channels, a segment a second.
+const MOST_OBJECTS: usize = 1 << 23;
+
 /// The state while segments are read.
+#[derive(Default)]
 struct Walk {
-    objects: Vec<Object>,
+    objects: Objects,
     /// Last known layout of objects that had samples once.
-    known: Vec<Object>,
+    known: Objects,
     groups: Vec<(String, Vec<Channel>)>,
+    /// Places of groups by their names, and of channels in them by both.
+    group_places: HashMap<String, usize>,
+    channel_places: HashMap<(usize, String), usize>,
+    /// Objects of the segments so far.
+    seen: usize,
 }
 
 impl Index {
@@ -116,11 +149,7 @@ impl Index {
         let reading = |cause| RecordError::reading(file, cause);
         let mut opened = File::open(file).map_err(reading)?;
         let length = opened.metadata().map_err(reading)?.len();
-        let mut walk = Walk {
-            objects: Vec::new(),
-            known: Vec::new(),
-            groups: Vec::new(),
-        };
+        let mut walk = Walk::default();
         let mut at = 0;
         let mut cut_short = None;
         while at < length && cut_short.is_none() {
@@ -146,6 +175,14 @@ impl Index {
             }
             if lead.has_samples() {
                 walk.samples(&lead, raw, end);
+            }
+            walk.seen = walk.seen.saturating_add(walk.objects.list.len());
+            if walk.seen > MOST_OBJECTS {
+                let detail = format!(
+                    "its segments list more than {MOST_OBJECTS} channels in all; defragment it, or \
+                     export parts of it"
+                );
+                return Err(RecordError::malformed(file, "TDMS", detail));
             }
             at = end;
         }
@@ -180,7 +217,7 @@ impl Walk {
             big_endian: lead.is_big_endian(),
         };
         if lead.has_new_list() {
-            self.objects.clear();
+            self.objects = Objects::default();
         }
         for _ in 0..bytes.u32()? {
             let path = bytes.text()?;
@@ -200,7 +237,7 @@ impl Walk {
         let raw = match bytes.u32()? {
             u32::MAX => None,
             0 => {
-                let before = self.known.iter().find(|known| known.path == path);
+                let before = self.known.get(&path);
                 before.and_then(|known| known.raw.clone())
             }
             kind @ (ANALOGUE | DIGITAL) => Some(Values::Card(Layout::of(bytes, kind)?)),
@@ -219,12 +256,8 @@ impl Walk {
     }
 
     fn list(&mut self, object: Object) {
-        for list in [&mut self.objects, &mut self.known] {
-            match list.iter_mut().find(|listed| listed.path == object.path) {
-                Some(listed) => *listed = object.clone(),
-                None => list.push(object.clone()),
-            }
-        }
+        self.objects.put(object.clone());
+        self.known.put(object);
     }
 
     /// Keeps what a channel's properties say.
@@ -238,24 +271,27 @@ impl Walk {
     /// The channel of a path like `/'group'/'channel'`, if it has numbers.
     fn channel(&mut self, path: &str, code: Option<u32>, big: bool) -> Option<&mut Channel> {
         let (group, name) = parts(path)?;
-        let at = self.groups.iter().position(|known| known.0 == group);
+        let at = self.group_places.get(&group).copied();
         let at = at.unwrap_or_else(|| {
+            self.group_places.insert(group.clone(), self.groups.len());
             self.groups.push((group, Vec::new()));
             self.groups.len() - 1
         });
         let channels = &mut self.groups.get_mut(at)?.1;
-        let known = channels.iter().position(|channel| channel.name == name);
+        let place = (at, name);
+        let known = self.channel_places.get(&place).copied();
         let index = match (known, code.and_then(kind)) {
             (Some(index), _) => index,
             (None, None) => return None,
             (None, Some(kind)) => {
                 channels.push(Channel {
-                    name,
+                    name: place.1.clone(),
                     number: Number::plain(kind, big),
                     properties: Properties::new(),
                     powers: Vec::new(),
                     pieces: Vec::new(),
                 });
+                self.channel_places.insert(place, channels.len() - 1);
                 channels.len() - 1
             }
         };
@@ -264,7 +300,10 @@ impl Walk {
 
     /// Where the samples of one segment are.
     fn samples(&mut self, lead: &Lead, raw: u64, end: u64) {
-        let objects = self.objects.iter();
+        if end <= raw {
+            return;
+        }
+        let objects = self.objects.list.iter();
         let with = objects.filter_map(|object| Some((object.path.clone(), object.raw.clone()?)));
         let with: Vec<(String, Values)> = with.collect();
         let (places, chunk_bytes) = match lead.is_of_cards() {

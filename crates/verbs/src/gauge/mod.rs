@@ -15,7 +15,7 @@ use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{
     Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
 };
-use std::fs;
+use hertzchain_measure::records::text;
 use std::path::Path;
 
 /// Everything that the gauge says.
@@ -132,7 +132,7 @@ pub fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
     let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
     if let Some(file) = file {
         let unread = |error| Failure::User(format!("--oils {}: {error}", file.display()));
-        let text = fs::read_to_string(file).map_err(unread)?;
+        let text = text(file).map_err(unread)?;
         all.extend(oils(&file.display().to_string(), &text).map_err(user)?);
     }
     Ok(all)

@@ -17,6 +17,7 @@ use hertzchain_infer::{
     CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeError, FreeNumber, FreeNumbers, Model,
     Observable, Problem, PulseProblem, Scatter, Selection,
 };
+use hertzchain_measure::records::{peek, text};
 use hertzchain_study::{StudyError, stopped};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fs;
@@ -59,7 +60,8 @@ pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, F
         return Ok(false);
     }
     let mut begin = Vec::new();
-    let mut opened = fs::File::open(file).map_err(|error| unread(&error))?;
+    let copy = peek(file).map_err(|error| unread(&error))?;
+    let mut opened = fs::File::open(copy).map_err(|error| unread(&error))?;
     let probe = opened.by_ref().take(PROBE).read_to_end(&mut begin);
     probe.map_err(|error| unread(&error))?;
     let binary = begin.contains(&0) || std::str::from_utf8(&begin).is_err();
@@ -83,7 +85,7 @@ const SPEEDS: &str = "speed_m_s";
 
 /// The same of another case.
 pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
-    let text = fs::read_to_string(file)
+    let text = text(file)
         .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
     parsed(&file.display().to_string(), &text, measured, case)
 }

@@ -11,7 +11,7 @@ use crate::arguments::measure::{
 use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::{self as experiment, Experiment};
-use hertzchain_measure::records::{Parts, ReadOptions, Rows};
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, Shot, ShotList};
 use hertzchain_signal::{
     Bandwidth, Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
@@ -39,7 +39,9 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Fai
     for path in given {
         match path.is_dir() {
             true => files.extend(inside(path)?),
-            false => files.push(path.clone()),
+            false => files.push(seekable(path).map_err(|error| {
+                Failure::User(format!("{} can't be read: {error}", path.display()))
+            })?),
         }
     }
     let list = list.and_then(|list| list.canonicalize().ok());
@@ -59,6 +61,7 @@ fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let is_recording = |path: &PathBuf| {
         let ending = path.extension().and_then(|ending| ending.to_str());
         ending.is_some_and(|ending| ENDINGS.contains(&ending.to_ascii_lowercase().as_str()))
+            && path.is_file()
     };
     let mut found: Vec<PathBuf> = paths.filter(is_recording).collect();
     found.sort();
@@ -140,7 +143,7 @@ pub fn list(file: &Path) -> Result<ShotList, Failure> {
     let wrong = |error: &dyn std::error::Error| {
         Failure::User(format!("--shots {}: {error}", file.display()))
     };
-    let text = fs::read_to_string(file).map_err(|error| wrong(&error))?;
+    let text = text(file).map_err(|error| wrong(&error))?;
     ShotList::parse(&text).map_err(|error| wrong(&error))
 }
 

@@ -75,7 +75,7 @@ fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure
     let tables = tables_of_any(&fitted.inferred);
     write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
     let out = folder.path().to_owned();
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     finished(&out);
     Ok(())
 }

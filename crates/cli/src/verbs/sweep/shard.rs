@@ -2,7 +2,7 @@
 
 use super::Arguments;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{self, print};
 use hertzchain_shards::ShardsError;
 use hertzchain_study::{Column, Part, Run, RunError, Shard};
 use std::path::Path;
@@ -59,11 +59,14 @@ pub fn told(part: &Part) {
     };
     if let Some(odd) = &part.rows.odd {
         for line in &odd.lines {
-            eprintln!("warning: {line}");
+            print::note(&format!("warning: {line}"));
         }
         match odd.shots {
             0 | 1 => {}
-            shots => eprintln!("warning: there is something odd at {} speeds", shots),
+            shots => print::note(&format!(
+                "warning: there is something odd at {} speeds",
+                shots
+            )),
         }
     }
     for failed in &part.rows.failed {

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::format::{self, Style};
 use crate::pictures;
-use crate::print::{heading, print};
+use crate::print::{self, heading, print};
 use hertzchain_experiment::Units;
 use hertzchain_study::{COLUMNS, Column, Part, Rows};
 use hertzchain_verbs::table::{self, cell};
@@ -95,7 +95,7 @@ fn lines(style: Style, rows: &Rows) -> String {
 pub fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
-    eprint!("Written:\n{}", folder.finish()?);
+    print::written(&folder.finish()?);
     Ok(())
 }
 

@@ -1,0 +1,58 @@
+//! Names and titles from files, as they may be shown and written.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+
+/// A text in which control characters but line ends and tabs are written as `\u001b`: those of a
+/// file's name or a title could steer a terminal.
+#[must_use]
+pub fn without_controls(text: &str) -> Cow<'_, str> {
+    let steers = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        match steers(letter) {
+            // Writing to a text cannot fail.
+            true => drop(write!(plain, "\\u{:04x}", u32::from(letter))),
+            false => plain.push(letter),
+        }
+    }
+    Cow::Owned(plain)
+}
+
+/// The words of a table's cell that no spreadsheet takes for a formula: those that begin as one,
+/// and are no number, stand after an apostrophe.
+#[must_use]
+pub fn no_formula(words: &str) -> Cow<'_, str> {
+    let formula = words.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    match formula && words.parse::<f64>().is_err() {
+        true => Cow::Owned(format!("'{words}")),
+        false => Cow::Borrowed(words),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_written_out_and_all_else_stays() {
+        let plain = "a title, 1.5 µs\n\tand a line";
+        assert_eq!(without_controls(plain), plain);
+        let steering = "\u{1b}[2J\r\u{7}\u{9b}31m\u{7f}";
+        let written = "\\u001b[2J\\u000d\\u0007\\u009b31m\\u007f";
+        assert_eq!(without_controls(steering), written);
+    }
+
+    #[test]
+    fn words_that_begin_as_formulas_are_words_and_numbers_stay_numbers() {
+        for formula in ["=1+1", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1"] {
+            assert_eq!(no_formula(formula), format!("'{formula}"));
+        }
+        for other in ["-1.5e-7", "+3", "dry", "a-b", "", "-inf"] {
+            assert_eq!(no_formula(other), other);
+        }
+    }
+}
