@@ -5,7 +5,7 @@ use crate::failure::{Failure, print_kept};
 use crate::folder::Folder;
 use crate::format::digits;
 use crate::notes::with_notes;
-use crate::print::heading;
+use crate::print::{self, heading};
 use crate::words::lines;
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 use hertzchain_infer::Problem;
