@@ -13,6 +13,7 @@ mod words;
 use arguments::{Program, Verb};
 use clap::Parser;
 use failure::Failure;
+use hertzchain_measure::records::remove_copies;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -21,10 +22,12 @@ fn main() -> ExitCode {
         Some(verb) => run(verb),
         None => verbs::version::run(program.verbose),
     };
-    match done {
+    let code = match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure::report(&failure),
-    }
+    };
+    remove_copies();
+    code
 }
 
 fn run(verb: Verb) -> Result<(), Failure> {

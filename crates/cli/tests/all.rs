@@ -19,6 +19,7 @@ mod gauge;
 mod legends;
 mod limits;
 mod measure;
+mod pipes;
 mod program;
 mod pulses;
 mod result_tables;

@@ -37,9 +37,10 @@ fn copies() -> MutexGuard<'static, Option<Copies>> {
 /// What the system says; a longer text, or one that is not UTF-8.
 pub fn text(path: &Path) -> io::Result<String> {
     let mut text = String::new();
-    let mut opened: Box<dyn Read> = match path == Path::new(STDIN) {
+    let file = peeked(path)?;
+    let mut opened: Box<dyn Read> = match file == Path::new(STDIN) {
         true => Box::new(io::stdin()),
-        false => Box::new(File::open(peeked(path)?)?),
+        false => Box::new(File::open(file)?),
     };
     opened
         .by_ref()

@@ -1,0 +1,25 @@
+//! Tables and recordings that come through pipes.
+
+use crate::common::{ERRORS, curve, folder};
+use std::fs;
+use std::process::{Command, Stdio};
+
+/// What the program prints, and what lies in its folder of temporary files afterwards.
+fn piped(test: &str, arguments: &[&str], input: &str) -> (Option<i32>, String, usize) {
+    let scratch = folder(test);
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    let program = program.args(arguments).env("TMPDIR", &scratch);
+    let program = program.stdin(fs::File::open(input).unwrap());
+    let done = program.stdout(Stdio::null()).output().unwrap();
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    let left = fs::read_dir(scratch).unwrap().count();
+    (done.status.code(), told, left)
+}
+
+#[test]
+fn a_table_from_standard_input_is_fitted_and_no_copy_of_it_stays() {
+    let table = curve(&folder("piped-table"), "dry");
+    let arguments = [&["fit", "-", "-p", "dry", "--free", "eta"][..], &ERRORS].concat();
+    let (code, told, left) = piped("piped-fit", &arguments, &table);
+    assert_eq!((code, left), (Some(0), 0), "{told}");
+}
