@@ -170,7 +170,7 @@ fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
         "{open}"
     );
     assert!(open.contains("--rate"), "{open}");
-    assert_eq!(told(&["--rate", "1MHz"]), "");
+    assert_eq!(told(&["--rate", "1MHz", "--bandwidth", "0"]), "");
 }
 
 #[test]
@@ -245,7 +245,8 @@ fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
     let output = measure(&folder, &["two.csv", "--time-unit", "us", "--json"]);
     let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
     assert!((found.as_f64().unwrap() - 1e-6 * incident_us(0.5)).abs() < 1e-7);
-    assert_eq!(told_of_two_columns(&folder, &["--time-unit", "us"]), "");
+    let stated = ["--time-unit", "us", "--bandwidth", "0"];
+    assert_eq!(told_of_two_columns(&folder, &stated), "");
 }
 
 #[test]

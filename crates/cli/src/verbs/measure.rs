@@ -26,6 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
+    note_low_pass(measured.bandwidth, arguments.picking.bandwidth);
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
@@ -79,18 +80,20 @@ fn tell(measured: &Measurement) {
             first.unwrap_or_default()
         ));
     }
-    eprintln!("note: {}", corrected(measured.bandwidth));
 }
 
-/// Whether maxima are those before the amplifier's low-pass.
-fn corrected(bandwidth: Option<Bandwidth>) -> String {
-    match bandwidth {
-        Some(Bandwidth { corner_hz, order }) => format!(
-            "maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
+/// Notes whether maxima are those before the amplifier's low-pass, unless the user left it as it is
+/// by a corner of 0.
+fn note_low_pass(corrected: Option<Bandwidth>, asked_hz: Option<f64>) {
+    match (corrected, asked_hz) {
+        (Some(Bandwidth { corner_hz, order }), _) => print::note(&format!(
+            "note: maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
+        )),
+        (None, Some(_)) => {}
+        (None, None) => print::note(
+            "note: times are not corrected for the amplifier's low-pass: its corner is not stated \
+             (--bandwidth, --rig)",
         ),
-        None => "times are not corrected for the amplifier's low-pass: its corner is not stated \
-                 (--bandwidth, --rig)"
-            .to_owned(),
     }
 }
 

@@ -26,7 +26,7 @@ pub fn verify(
     let broken = match agrees {
         Some(true) => None,
         Some(false) => Some("damaged: its bytes do not have its checksum"),
-        None => Some("cut short: its checksum is missing"),
+        None => Some("cut short or damaged: its checksum is missing"),
     };
     if let Some(what) = broken {
         return Err(RecordError::malformed(file, "this series", what));
