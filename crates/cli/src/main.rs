@@ -16,7 +16,11 @@ use failure::Failure;
 use hertzchain_measure::records::remove_copies;
 use std::process::ExitCode;
 
+/// Exit code of a program that the user ended: 128 and the number of SIGINT.
+const INTERRUPTED: i32 = 130;
+
 fn main() -> ExitCode {
+    end_on_interrupt();
     let program = Program::parse();
     let done = match program.verb {
         Some(verb) => run(verb),
@@ -28,6 +32,17 @@ fn main() -> ExitCode {
     };
     remove_copies();
     code
+}
+
+/// Ends the program with a message at Ctrl-C. Files appear whole, so none has to be closed.
+fn end_on_interrupt() {
+    let installed = ctrlc::set_handler(|| {
+        print::note("interrupted: what was not finished is not written");
+        std::process::exit(INTERRUPTED);
+    });
+    if let Err(error) = installed {
+        print::note(&format!("warning: Ctrl-C ends without a message: {error}"));
+    }
 }
 
 fn run(verb: Verb) -> Result<(), Failure> {

@@ -1,4 +1,4 @@
-//! Tables and recordings that come through pipes.
+//! Tables and recordings that come through pipes, and programs that are interrupted.
 
 use crate::common::{ERRORS, curve, folder};
 use std::fs;
@@ -22,4 +22,27 @@ fn a_table_from_standard_input_is_fitted_and_no_copy_of_it_stays() {
     let arguments = [&["fit", "-", "-p", "dry", "--free", "eta"][..], &ERRORS].concat();
     let (code, told, left) = piped("piped-fit", &arguments, &table);
     assert_eq!((code, left), (Some(0), 0), "{told}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_campaign_ends_with_a_message_and_130() {
+    let out = folder("interrupted").join("records");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    let program = program
+        .args(["campaign", "--preset", "paper", "--out"])
+        .arg(&out);
+    let mut program = program.stderr(Stdio::piped()).spawn().unwrap();
+    // The folder is made by the verb, so the handler is there; the preset takes minutes.
+    while !out.exists() && program.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &program.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+    let done = program.wait_with_output().unwrap();
+    let reported = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(130), "{reported}");
+    assert!(reported.contains("interrupted"), "{reported}");
 }

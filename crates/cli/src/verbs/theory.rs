@@ -19,7 +19,7 @@ pub fn run(arguments: &Check) -> Result<(), Failure> {
     if arguments.json {
         // A list of groups has no place for it.
         if let Some(assumed) = input::assumed(&arguments.input) {
-            eprintln!("warning: {assumed}");
+            print::note(&format!("warning: {assumed}"));
         }
         return print::print_json(&json::groups(&groups));
     }

@@ -5,7 +5,7 @@ mod rig;
 use crate::arguments::Reproduce;
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::print::print;
+use crate::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_figures::paper::{self, PaperError};
 use hertzchain_study::claims::{Judged, MEANING, Verdict, computed_text};
@@ -84,7 +84,7 @@ impl Progress for Bar {
     }
 
     fn note(&self, text: &str) {
-        self.0.suspend(|| eprintln!("{text}"));
+        self.0.suspend(|| print::note(text));
     }
 }
 

@@ -70,10 +70,7 @@ pub fn told(part: &Part) {
         }
     }
     for failed in &part.rows.failed {
-        eprintln!(
-            "warning: no shot at {}: {}",
-            speed(failed.place),
-            failed.why
-        );
+        let place = speed(failed.place);
+        print::note(&format!("warning: no shot at {place}: {}", failed.why));
     }
 }
