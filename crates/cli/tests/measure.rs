@@ -170,7 +170,7 @@ fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
         "{open}"
     );
     assert!(open.contains("--rate"), "{open}");
-    assert_eq!(told(&["--rate", "1MHz", "--bandwidth", "0"]), "");
+    assert_eq!(told(&["--rate", "1MHz", "--low-pass", "0"]), "");
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
     let output = measure(&folder, &["two.csv", "--time-unit", "us", "--json"]);
     let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
     assert!((found.as_f64().unwrap() - 1e-6 * incident_us(0.5)).abs() < 1e-7);
-    let stated = ["--time-unit", "us", "--bandwidth", "0"];
+    let stated = ["--time-unit", "us", "--low-pass", "0"];
     assert_eq!(told_of_two_columns(&folder, &stated), "");
 }
 
@@ -465,10 +465,32 @@ fn ratios_of_both_times_are_printed() {
 fn a_low_pass_above_half_the_rate_is_told_once() {
     let folder = folder("low-pass");
     shots(&folder);
-    let output = measure(&folder, &[".", "--shots", "list.txt", "--low-pass", "2MHz"]);
+    let output = measure(&folder, &[".", "--shots", "list.txt", "--smooth", "2MHz"]);
     assert_eq!(output.status.code(), Some(2));
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(told.matches("half the sampling rate").count(), 1, "{told}");
     assert!(told.contains("sampled at 1000000 Hz"), "{told}");
     assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn the_amplifiers_low_pass_has_the_names_that_fit_gives_it() {
+    let folder = folder("names-of-low-pass");
+    shots(&folder);
+    let refused = |options: &[&str]| {
+        let output = measure(&folder, &[&["."], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    for former in ["--bandwidth", "--bandwidth-order"] {
+        let words = refused(&[former, "first"]);
+        assert!(
+            words.contains("--low-pass") && words.contains("--filter"),
+            "{words}"
+        );
+    }
+    let words = refused(&["--filter", "butterworth2"]);
+    assert!(words.contains("--low-pass or --rig"), "{words}");
+    let words = refused(&["--low-pass", "50kHz", "--filter", "bessel4"]);
+    assert!(words.contains("--low-pass 0 leaves times"), "{words}");
 }

@@ -86,7 +86,7 @@ CALLS = {
     "shot": "hc.shot(hc.preset('dry').set({'beads[0].count': 20000.0}), 0.5, accuracy=1e-10)",
     "campaign": "hc.campaign(hc.preset('paper'), folder)",
     # One record, of which a filter alone takes seconds and looks at nothing meanwhile.
-    "measure": "hc.measure(volts, rate=1e6, whole=True, low_pass=1e5)",
+    "measure": "hc.measure(volts, rate=1e6, whole=True, smooth=1e5)",
     "force of Python": "hc.shot(hc.preset('dry'), accuracy=1e-13, duration=1.0, forces=hc.ForceLaw(lambda overlap, rate: 8.79e9 * overlap**1.5))",
     "posterior": "hc.fit(data, free='eta,B', method='posterior', direct=True)",
     "gauge": "hc.gauge(data, data, model='motor')",

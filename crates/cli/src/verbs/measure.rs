@@ -26,7 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
-    note_low_pass(measured.bandwidth, arguments.picking.bandwidth);
+    note_low_pass(measured.bandwidth, arguments.picking.low_pass);
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
@@ -92,7 +92,7 @@ fn note_low_pass(corrected: Option<Bandwidth>, asked_hz: Option<f64>) {
         (None, Some(_)) => {}
         (None, None) => print::note(
             "note: times are not corrected for the amplifier's low-pass: its corner is not stated \
-             (--bandwidth, --rig)",
+             (--low-pass, --rig)",
         ),
     }
 }

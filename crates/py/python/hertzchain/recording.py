@@ -210,7 +210,7 @@ class Measured:
         What could not be read.
     lost : list
         Speeds of cases at which no shot has a time that counts, with the number of shots.
-    bandwidth : dict or None
+    low_pass : dict or None
         Corner in Hz and order of the amplifier's low-pass that maxima are corrected for.
     notes, unmatched : list
         What was taken for granted; what table and recordings do not find in each other.
@@ -228,7 +228,7 @@ class Measured:
     cases: dict[str, Case]
     ratios: list[dict[str, Any]]
     notes: list[dict[str, Any]]
-    bandwidth: dict[str, float] | None
+    low_pass: dict[str, float] | None
     unmatched: list[str]
     lost: list[dict[str, Any]]
     refused: list[str]
@@ -311,10 +311,10 @@ def measure(
     sensor: int | None = None,
     polarity: Literal["positive", "negative"] | None = None,
     wall_polarity: Literal["positive", "negative"] | None = None,
+    smooth: str | float | None = None,
     low_pass: str | float | None = None,
+    filter: str | None = None,
     ac_coupling: str | float | None = None,
-    bandwidth: str | float | None = None,
-    bandwidth_order: Literal["first", "second"] = "first",
     rig: Path_ | None = None,
     shots: Path_ | None = None,
     speed_error: float | None = None,
@@ -324,6 +324,8 @@ def measure(
     threads: int | None = None,
     progress: object = None,
     high_pass: str | float | None = None,
+    bandwidth: str | float | None = None,
+    bandwidth_order: str | None = None,
 ) -> Measured:
     """Measures times of flight on recordings of any rig, with errors and curves.
 
@@ -347,15 +349,16 @@ def measure(
         Channel, column or array by name or number from 1; two: the sensor bead's, the wall's.
     method : {"local", "onset", "correlation", "shape"}
         How pulses are timed.
-    low_pass : str or float, optional
+    smooth : str or float, optional
         Corner in Hz of a low-pass to apply, without delay.
+    low_pass, filter : str or float, str, optional
+        Corner in Hz (0 leaves times as they are), and order and kind, of the amplifier's low-pass,
+        whose delay and rounding are taken out of maxima.
     ac_coupling : str or float, optional
         Corner in Hz of the AC coupling (high-pass) that the signal went through: its droop is
         corrected. 0 leaves it.
-    high_pass : str or float, optional
-        The former name of ``ac_coupling``: rejected.
-    bandwidth, bandwidth_order : str or float, {"first", "second"}, optional
-        Corner in Hz and order of the amplifier's low-pass, whose delay and rounding are taken out of maxima.
+    high_pass, bandwidth, bandwidth_order : optional
+        The former names of ``ac_coupling``, ``low_pass`` and ``filter``: rejected.
     level : float, optional
         In V: where shots of a long recording begin.
     trust_rate, time_unit, shot_samples, whole, rows, onset, beads, sensor, polarity, \
@@ -388,7 +391,7 @@ wall_polarity, reference, keep_dubious
     told = options.words(
         rate=rate, trust_rate=trust_rate, time_unit=time_unit, shot_samples=shot_samples, level=level, whole=whole,
         rows=rows, method=method, onset=onset, beads=beads, sensor=sensor, polarity=polarity,
-        wall_polarity=wall_polarity, low_pass=low_pass, ac_coupling=ac_coupling, high_pass=high_pass,
+        wall_polarity=wall_polarity, smooth=smooth, low_pass=low_pass, filter=filter, ac_coupling=ac_coupling, high_pass=high_pass,
         bandwidth=bandwidth, bandwidth_order=bandwidth_order, rig=rig, shots=shots,
         speed_error=speed_error, speed_gap=speed_gap, reference=reference, keep_dubious=keep_dubious,
     )  # fmt: skip

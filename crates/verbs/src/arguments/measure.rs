@@ -1,5 +1,6 @@
 //! Arguments of `measure`.
 
+use super::infer::Filter;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -91,21 +92,28 @@ pub struct Picking {
     /// The same for the wall's channel, if it has one
     #[arg(long, value_enum, value_name = "WAY")]
     pub wall_polarity: Option<Way>,
-    /// Low-pass without delay, forward and backward, at so many Hz
-    #[arg(long, value_name = "RATE", value_parser = rate)]
+    /// Smooth records by a low-pass without delay, forward and backward, of this corner
+    #[arg(long, value_name = "FREQUENCY", value_parser = rate)]
+    pub smooth: Option<f64>,
+    /// Corner of the amplifier's low-pass, such as 180kHz, in place of the rig's: its delay and rounding are
+    /// taken out of maxima; 0 leaves them
+    #[arg(long, value_name = "FREQUENCY", value_parser = rate_or_none)]
     pub low_pass: Option<f64>,
-    /// Corner of the amplifier's low-pass in Hz, whose delay and rounding are taken out of maxima; 0 leaves them
-    #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
-    pub bandwidth: Option<f64>,
-    /// Order of that low-pass: one pole, or a Butterworth filter's two
-    #[arg(long, value_enum, value_name = "ORDER", default_value = "first")]
-    pub bandwidth_order: BandwidthOrder,
+    /// Order and kind of the amplifier's low-pass; the rig's, or one pole, when absent
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub filter: Option<Filter>,
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
     #[arg(long, value_name = "RATE", value_parser = rate_or_none)]
     pub ac_coupling: Option<f64>,
     /// The former name of --ac-coupling, rejected since it reads as a filter to be applied
     #[arg(long, hide = true, value_parser = renamed)]
     pub high_pass: Option<f64>,
+    /// The former name of --low-pass, rejected since `fit` has the other one
+    #[arg(long, hide = true, value_parser = renamed_low_pass)]
+    pub bandwidth: Option<f64>,
+    /// The former name of --filter
+    #[arg(long, hide = true, value_parser = renamed_low_pass)]
+    pub bandwidth_order: Option<f64>,
 }
 
 /// Picking methods by name.
@@ -119,15 +127,6 @@ pub enum MethodName {
     Correlation,
     /// Where a bell of free height and width fits best
     Shape,
-}
-
-/// Orders of an amplifier's low-pass by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BandwidthOrder {
-    /// One pole
-    First,
-    /// Butterworth, two poles
-    Second,
 }
 
 /// Directions by name.
@@ -200,6 +199,13 @@ pub fn rate(text: &str) -> Result<f64, String> {
 fn renamed(_: &str) -> Result<f64, String> {
     Err("no filter is applied: --ac-coupling (ac_coupling in Python) is the corner of the AC coupling \
          whose droop is corrected"
+        .to_owned())
+}
+
+/// Rejects the former names of --low-pass and --filter.
+fn renamed_low_pass(_: &str) -> Result<f64, String> {
+    Err("the amplifier's low-pass is stated by --low-pass (its corner) and --filter (order and kind); in Python \
+         low_pass and filter"
         .to_owned())
 }
 

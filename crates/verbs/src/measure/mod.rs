@@ -5,9 +5,8 @@ mod results;
 pub use results::{json, write_json};
 
 use crate::arguments::Input;
-use crate::arguments::measure::{
-    BandwidthOrder, Measure as Arguments, MethodName, Picking, RowsAre, Way,
-};
+use crate::arguments::infer::Filter;
+use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
 use crate::failure::Failure;
 use crate::input;
 use hertzchain_experiment::{self as experiment, Experiment};
@@ -177,7 +176,7 @@ fn measuring(
         high_pass_s: high_pass_hz
             .filter(|hz| *hz > 0.0)
             .map(|hz| (TAU * hz).recip()),
-        low_pass: picking.low_pass.map(|cutoff_hz| LowPass {
+        low_pass: picking.smooth.map(|cutoff_hz| LowPass {
             cutoff_hz,
             order: ORDER,
         }),
@@ -187,45 +186,41 @@ fn measuring(
 
 /// The amplifier's low-pass, if an option or the rig's file states it; 0 for none.
 fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandwidth>, Failure> {
-    let given = picking.bandwidth;
-    if given.is_some_and(|hz| hz > 0.0) && picking.method != MethodName::Local {
+    let amplifier = rig.map(|rig| &rig.campaign().amplifier);
+    let corner_hz = picking.low_pass.or(amplifier.map(|of| of.low_pass_hz));
+    if picking.filter.is_some() && corner_hz.is_none() {
         return Err(Failure::User(
-            "--bandwidth corrects maxima, the times of --method local, and no others".to_owned(),
+            "--filter is of the amplifier's low-pass, whose corner --low-pass or --rig states"
+                .to_owned(),
         ));
     }
-    let order = |order: BandwidthOrder| match order {
-        BandwidthOrder::First => 1,
-        BandwidthOrder::Second => 2,
+    let local = picking.method == MethodName::Local;
+    let Some(corner_hz) = corner_hz.filter(|hz| *hz > 0.0 && (local || picking.low_pass.is_some()))
+    else {
+        return Ok(None);
     };
-    let given = given.map(|corner_hz| Bandwidth {
-        corner_hz,
-        order: order(picking.bandwidth_order),
-    });
-    let found = match given {
-        Some(given) => Some(given),
-        None => rig.map(of_rig).transpose()?,
-    };
-    Ok(found.filter(|found| found.corner_hz > 0.0))
-}
-
-/// The low-pass of a rig's amplifier.
-fn of_rig(rig: &Experiment) -> Result<Bandwidth, Failure> {
-    let amplifier = &rig.campaign().amplifier;
-    let order = match (amplifier.order, amplifier.kind) {
-        (experiment::LowPass::First, _) => 1,
-        (experiment::LowPass::Second, experiment::LowPassKind::Butterworth) => 2,
-        _ => {
-            return Err(Failure::User(format!(
-                "the rig's amplifier has a {}: only low-passes of first order and Butterworth's of second are taken \
-                 out of maxima; --bandwidth 0 leaves times as they are",
-                amplifier.filters()
-            )));
+    if !local {
+        return Err(Failure::User(
+            "--low-pass corrects maxima, the times of --method local, and no others".to_owned(),
+        ));
+    }
+    let order = match (picking.filter, amplifier.map(|of| (of.order, of.kind))) {
+        (Some(Filter::First), _) | (None, None) => Some(1),
+        (Some(Filter::Butterworth2), _) => Some(2),
+        (None, Some((experiment::LowPass::First, _))) => Some(1),
+        (None, Some((experiment::LowPass::Second, experiment::LowPassKind::Butterworth))) => {
+            Some(2)
         }
+        _ => None,
     };
-    Ok(Bandwidth {
-        corner_hz: amplifier.low_pass_hz,
-        order,
-    })
+    let order = order.ok_or_else(|| {
+        Failure::User(
+            "only low-passes of first order and Butterworth's of second are taken out of maxima: --filter names \
+             another one, or the rig's amplifier has it; --low-pass 0 leaves times as they are"
+                .to_owned(),
+        )
+    })?;
+    Ok(Some(Bandwidth { corner_hz, order }))
 }
 
 fn polarity(way: Option<Way>) -> Polarity {

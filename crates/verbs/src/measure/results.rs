@@ -37,10 +37,10 @@ impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { measured, curves } = self;
         let mut all = serializer.serialize_map(None)?;
-        let bandwidth = measured
+        let low_pass = measured
             .bandwidth
-            .map(|low_pass| json!({ "corner_hz": low_pass.corner_hz, "order": low_pass.order }));
-        all.serialize_entry("bandwidth", &bandwidth)?;
+            .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
+        all.serialize_entry("low_pass", &low_pass)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
         all.serialize_entry("lost", &Each(&curves.lost, lost))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
