@@ -13,6 +13,10 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets --locked -- -D warnings
 
+# Licences and advisories of the dependencies (needs cargo-deny)
+deny:
+    cargo deny check
+
 # What must pass before a change goes in
 ci:
     .ci/run

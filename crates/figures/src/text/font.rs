@@ -4,7 +4,9 @@ use std::fmt;
 use std::fmt::Write as _;
 use std::sync::LazyLock;
 
-use ttf_parser::{Face, OutlineBuilder};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, MetadataProvider};
 
 /// Which of the embedded faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,7 +20,7 @@ pub(crate) enum Style {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct GlyphId {
     style: Style,
-    index: u16,
+    index: u32,
 }
 
 impl fmt::Display for GlyphId {
@@ -32,15 +34,15 @@ impl fmt::Display for GlyphId {
     }
 }
 
-static REGULAR: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::REGULAR));
-static ITALIC: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::ITALIC));
-static BOLD: LazyLock<Face<'static>> = LazyLock::new(|| parse(ttf_noto_sans::BOLD));
+static REGULAR: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::REGULAR));
+static ITALIC: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::ITALIC));
+static BOLD: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::BOLD));
 
-fn parse(bytes: &'static [u8]) -> Face<'static> {
-    Face::parse(bytes, 0).expect("the embedded font is a valid TrueType file")
+fn parse(bytes: &'static [u8]) -> FontRef<'static> {
+    FontRef::new(bytes).expect("the embedded font is a valid TrueType file")
 }
 
-fn face(style: Style) -> &'static Face<'static> {
+fn face(style: Style) -> &'static FontRef<'static> {
     match style {
         Style::Regular => &REGULAR,
         Style::Italic => &ITALIC,
@@ -50,29 +52,35 @@ fn face(style: Style) -> &'static Face<'static> {
 
 /// Font units per em, the same for all embedded faces.
 pub(crate) fn units_per_em() -> f64 {
-    f64::from(REGULAR.units_per_em())
+    let metrics = REGULAR.metrics(Size::unscaled(), LocationRef::default());
+    f64::from(metrics.units_per_em)
 }
 
 impl GlyphId {
     /// The glyph of a character; an empty box if the face has none.
     pub(crate) fn of(style: Style, c: char) -> Self {
-        let found = face(style).glyph_index(c);
+        let found = face(style).charmap().map(c);
         Self {
             style,
-            index: found.map_or(0, |g| g.0),
+            index: found.map_or(0, |g| g.to_u32()),
         }
     }
 
     /// Advance width in em.
     pub(crate) fn advance(self) -> f64 {
-        let units = face(self.style).glyph_hor_advance(ttf_parser::GlyphId(self.index));
-        f64::from(units.unwrap_or(0)) / units_per_em()
+        let metrics = face(self.style).glyph_metrics(Size::unscaled(), LocationRef::default());
+        let units = metrics.advance_width(self.index.into());
+        f64::from(units.unwrap_or(0.0)) / units_per_em()
     }
 
     /// Outline in font units, y upward.
     pub(crate) fn outline(self) -> String {
         let mut path = Outline::default();
-        face(self.style).outline_glyph(ttf_parser::GlyphId(self.index), &mut path);
+        let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+        if let Some(glyph) = face(self.style).outline_glyphs().get(self.index.into()) {
+            let drawn = glyph.draw(settings, &mut path);
+            drawn.expect("the embedded font's outlines are whole");
+        }
         path.0
     }
 }
@@ -90,7 +98,7 @@ impl Outline {
     }
 }
 
-impl OutlineBuilder for Outline {
+impl OutlinePen for Outline {
     fn move_to(&mut self, x: f32, y: f32) {
         self.push('M', &[x, y]);
     }

@@ -1,6 +1,8 @@
 //! How small the type of a picture is when it is printed as wide as it says.
 
 use roxmltree::{Document, Node};
+use skrifa::MetadataProvider;
+use skrifa::instance::{LocationRef, Size};
 
 /// Size in points of the smallest glyph of an SVG at its own width, and that
 /// width in millimetres; infinite without any text.
@@ -13,8 +15,9 @@ pub fn smallest_type(svg: &str) -> (f64, f64) {
     let box_width = number(box_width.split(' ').nth(2).expect("four numbers"));
     // 72 points are an inch of 25.4 mm.
     let scale = width_mm / 25.4 * 72.0 / box_width;
-    let font = ttf_parser::Face::parse(ttf_noto_sans::REGULAR, 0).expect("the font");
-    let em = f64::from(font.units_per_em());
+    let font = skrifa::FontRef::new(ttf_noto_sans::REGULAR).expect("the font");
+    let metrics = font.metrics(Size::unscaled(), LocationRef::default());
+    let em = f64::from(metrics.units_per_em);
     (em * smallest(root, scale), width_mm)
 }
 
