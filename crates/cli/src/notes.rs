@@ -1,6 +1,7 @@
 //! How far long work is, on standard error.
 
 use crate::failure::Failure;
+use crate::print;
 use hertzchain_study::Stop;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -24,7 +25,7 @@ pub fn with_notes<T: Send>(
             while ended.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
                 let note = stop.note();
                 if note != last {
-                    eprintln!("{note}");
+                    print::note(&note);
                     last = note;
                 }
             }

@@ -8,20 +8,41 @@ use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 pub fn print(text: &str) -> Result<(), Failure> {
     let end = if text.ends_with('\n') { "" } else { "\n" };
     let plain = shown(text, bold());
-    print_with(|out| {
+    to_stdout(|out| {
         out.write_all(plain.as_bytes())?;
         out.write_all(end.as_bytes())
     })
 }
 
-/// Prints what is made while it is printed.
+/// Prints what is made while it is printed, without control characters.
 pub fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    to_stdout(|out| write(&mut Plain(out)))
+}
+
+fn to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     let written = write(&mut out);
     match written.and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::BrokenPipe),
         Err(error) => Err(Failure::Ours(format!("standard output: {error}"))),
+    }
+}
+
+/// A writer of text without control characters, given whole letters at a time, as by serde.
+struct Plain<W>(W);
+
+impl<W: Write> Write for Plain<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => self.0.write_all(without_controls(text).as_bytes())?,
+            Err(_) => self.0.write_all(bytes)?,
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
     }
 }
 
@@ -70,6 +91,14 @@ pub fn note(text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn streamed_json_escapes_the_controls_that_json_leaves_raw() {
+        let mut out = Plain(Vec::new());
+        serde_json::to_writer(&mut out, "µ\u{9b}31m\u{7f}\u{1b}").unwrap();
+        let written = String::from_utf8(out.0).unwrap();
+        assert_eq!(written, "\"µ\\u009b31m\\u007f\\u001b\"");
+    }
 
     #[test]
     fn headings_are_bold_and_nothing_else_steers_the_terminal() {

@@ -1,7 +1,8 @@
 //! Tables and recordings that come through pipes, and programs that are interrupted.
 
-use crate::common::{ERRORS, curve, folder};
+use crate::common::{ERRORS, curve, file, folder, run};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 /// What the program prints, and what lies in its folder of temporary files afterwards.
@@ -45,4 +46,26 @@ fn an_interrupted_campaign_ends_with_a_message_and_130() {
     let reported = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(130), "{reported}");
     assert!(reported.contains("interrupted"), "{reported}");
+}
+
+#[test]
+fn a_shot_that_takes_minutes_is_announced_with_its_steps() {
+    let folder = folder("long");
+    let preset = run(&["presets", "dry"]);
+    let text = String::from_utf8(preset.stdout).unwrap();
+    let text = text.replace("count = 40", "count = 20000");
+    let row = file(&folder, "long.toml", &text);
+    let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+    let shot = program.args(["shot", &row]).stderr(Stdio::piped());
+    let mut child = shot.stdout(Stdio::null()).spawn().unwrap();
+    let mut first = String::new();
+    let reported = BufReader::new(child.stderr.take().unwrap()).read_line(&mut first);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    reported.unwrap();
+    // 75 steps a bead, as shots of 40 to 4,000 beads take.
+    assert!(
+        first.starts_with("This shot takes about 1.5e6 steps"),
+        "{first}"
+    );
 }

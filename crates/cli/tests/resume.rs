@@ -42,6 +42,38 @@ fn a_posterior_that_is_killed_goes_on_to_the_walkers_of_one_that_was_not() {
     assert!(begun != chain("whole"));
 }
 
+#[test]
+fn walkers_with_any_flipped_bit_are_refused() {
+    let folder = folder("flipped-walkers");
+    let data = curve(&folder, "dry");
+    let out = folder.join("out");
+    let posterior = |steps: &str, more: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
+        program
+            .args(["fit", &data, "-p", "dry", "--free", "eta,B"])
+            .args(["--method", "posterior", "--seed", "5", "--steps", steps])
+            .args(ERRORS)
+            .arg("--out")
+            .arg(&out)
+            .args(more);
+        program.output().unwrap()
+    };
+    posterior("2", &[]);
+    let path = out.join("chain.json");
+    let whole = fs::read(&path).unwrap();
+    // A number, a name, the line's end before the hash, the hash.
+    for at in [whole.len() / 3, 5, whole.len() - 66, whole.len() - 20] {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1;
+        fs::write(&path, &flipped).unwrap();
+        let refused = posterior("4", &["--resume"]);
+        let reported = String::from_utf8_lossy(&refused.stderr);
+        assert!(!refused.status.success(), "byte {at}");
+        assert!(reported.contains("damaged"), "byte {at}: {reported}");
+        assert!(fs::read(&path).unwrap() == flipped, "byte {at}");
+    }
+}
+
 /// Residuals are written as they come: a run that is killed goes on from there to the
 /// bits of one that was not.
 #[test]

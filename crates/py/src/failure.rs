@@ -1,6 +1,7 @@
 //! Failures as Python's exceptions, with the reports of the command line.
 
 use hertzchain_experiment::{Finding, Mistakes, OpenError, PathError};
+use hertzchain_measure::records::without_controls as plain;
 use hertzchain_verbs::failure::{self, Failure};
 use miette::Diagnostic;
 use pyo3::prelude::*;
@@ -48,10 +49,10 @@ fn raised<'py>(py: Python<'py>, failure: &Failure) -> PyResult<Bound<'py, PyAny>
     match failure {
         Failure::Mistakes(mistakes) => {
             let report = failure.report(false);
-            class("ExperimentError")?.call1((report.trim_end(), findings(py, mistakes)?))
+            class("ExperimentError")?.call1((plain(report.trim_end()), findings(py, mistakes)?))
         }
-        Failure::User(text) => class("OptionError")?.call1((text,)),
-        Failure::Ours(text) => class("InternalError")?.call1((text,)),
+        Failure::User(text) => class("OptionError")?.call1((plain(text),)),
+        Failure::Ours(text) => class("InternalError")?.call1((plain(text),)),
         Failure::BrokenPipe => class("InternalError")?.call1(("broken pipe",)),
     }
 }

@@ -5,40 +5,13 @@ use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::flight::Flight;
 use crate::following::Following;
+use crate::long_work::Counted;
 use crate::plan::{Plan, Solver, Watch};
 use crate::shot::{Rebound, Shot, ambiguous, hidden, reported};
-use crate::stop::{count_steps, stopped};
+use crate::stop::stopped;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
-use hertzchain_chain::wave::{Control, Flow, Limits, Method, Observer, Outcome, Piece, run};
+use hertzchain_chain::wave::{Control, Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
-
-/// Ends a shot that is no longer wanted or takes too many steps, which it counts.
-struct BreakingOff {
-    steps: u64,
-    most_steps: f64,
-}
-
-/// Steps that are counted at a time: threads that share a counter wait for each other.
-const COUNTED: u64 = 64;
-
-impl Observer for BreakingOff {
-    fn step(&mut self, _: &Piece<'_>) -> Flow {
-        self.steps += 1;
-        if self.steps.is_multiple_of(COUNTED) {
-            count_steps(COUNTED);
-        }
-        match stopped() || self.is_long() {
-            true => Flow::Finished,
-            false => Flow::Continue,
-        }
-    }
-}
-
-impl BreakingOff {
-    fn is_long(&self) -> bool {
-        self.steps as f64 >= self.most_steps
-    }
-}
 
 /// Loosest tolerance of a run: steps of any chain are then still error-controlled.
 const LOOSEST: f64 = 1e-2;
@@ -366,12 +339,9 @@ impl<'a> Gun<'a> {
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut breaking_off = BreakingOff {
-            steps: 0,
-            most_steps: self.end.most_steps,
-        };
+        let mut counted = Counted::new(self.plan, &self.system, &self.end);
         let mut observers: Vec<&mut dyn Observer> =
-            vec![&mut breaking_off, &mut following, &mut separation];
+            vec![&mut counted, &mut following, &mut separation];
         if self.end.when_apart {
             observers.push(&mut apart);
         }
@@ -393,7 +363,7 @@ impl<'a> Gun<'a> {
         }
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
         let mut shot = self.shot(method, outcome, &following, separation, trace);
-        shot.finished &= !breaking_off.is_long();
+        shot.finished &= !counted.is_long();
         shot.notes.extend(self.ended_early(&shot, &following));
         Ok(shot)
     }

@@ -1,7 +1,7 @@
 //! Long chains that end at a wall: what they cost, counted, and what ends them.
 
 use hertzchain_experiment::Experiment;
-use hertzchain_study::{Plan, Shot, shoot};
+use hertzchain_study::{Expected, Plan, Shot, shoot};
 
 fn row(count: usize) -> Plan {
     let text = format!(
@@ -62,4 +62,18 @@ fn flights_and_rebound_of_a_long_chain_are_those_of_a_shot_followed_for_long() {
         "{:?}",
         shot.notes
     );
+}
+
+/// A row that keeps its energy takes fewer steps than the dry ones that the estimate is from.
+#[test]
+fn the_steps_of_a_shot_are_estimated_to_a_factor_of_two() {
+    for count in [40, 400] {
+        let plan = row(count);
+        let expected = Expected::of(&plan).unwrap().steps;
+        let taken = shoot(&plan).unwrap().work.steps as f64;
+        assert!(
+            (0.5..2.0).contains(&(expected / taken)),
+            "{expected} for {taken}"
+        );
+    }
 }

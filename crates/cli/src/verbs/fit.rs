@@ -55,11 +55,11 @@ fn pace(problem: &CurveProblem, arguments: &Arguments) {
     let count = problem.parameters().len();
     let most = Surrogate::MOST_PARAMETERS;
     if arguments.method == Method::Posterior && !arguments.direct && count > most {
-        eprintln!(
+        print::note(&format!(
             "warning: {count} parameters are free, and curves are interpolated for up to {most}: \
              every curve of the posterior is computed, a hundred times as slowly; fix some \
              parameters, or use --method profile"
-        );
+        ));
     }
 }
 

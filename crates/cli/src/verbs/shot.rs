@@ -6,12 +6,16 @@ mod traces;
 use crate::arguments::Shot as Arguments;
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
+use crate::notes::with_notes;
 use crate::print;
 use crate::words::lines;
-use hertzchain_study::{Plan, shoot_checked, shoot_estimated};
+use hertzchain_study::{Expected, Plan, shoot_checked, shoot_estimated};
 use hertzchain_verbs::table::named;
 use hertzchain_verbs::{input, json};
 use std::path::Path;
+
+/// Expected time in s from which on a shot is announced.
+const LONG_S: f64 = 10.0;
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -25,10 +29,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     input::check_effort(&arguments.how, &plan, experiment.units())?;
     plan.budget = true;
     let folder = open_folder(arguments)?;
-    let shot = match arguments.how.check {
+    announce(&plan);
+    let shot = with_notes(Some(1), || match arguments.how.check {
         true => shoot_checked(&plan),
         false => shoot_estimated(&plan),
-    };
+    })?;
     let shot = shot.map_err(|error| Failure::of_shot(&experiment, &arguments.how, error))?;
     failure::print_speed_warnings(given, &warnings);
     if arguments.json {
@@ -44,6 +49,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| {
         traces::write(folder, arguments, &experiment, &plan, &shot)
     })
+}
+
+/// Announces a shot that takes long.
+fn announce(plan: &Plan) {
+    let expected = Expected::of(plan).ok();
+    if let Some(expected) = expected.filter(|expected| expected.time_s > LONG_S) {
+        print::note(&format!("This shot takes {expected}; Ctrl-C ends it."));
+    }
 }
 
 fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
