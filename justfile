@@ -40,6 +40,10 @@ test-random *options:
     cargo build --release --locked -p hertzchain -p hertzchain-random
     target/release/hertzchain-random {{options}}
 
+# Coverage of the stated errors of picked pulses: just bench-picking 20 --seed 7
+bench-picking *options:
+    cargo run --release --locked -p hertzchain-picking -- {{options}}
+
 # The same shots by general integrators and LAMMPS, side by side (needs Python; about ten minutes)
 bench-peers *options:
     bench/peers/run.sh {{options}}

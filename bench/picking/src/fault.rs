@@ -1,0 +1,161 @@
+//! Records of a computed shot, with noise and what instruments do to it.
+
+use crate::row::{FINE_S, Row};
+use hertzchain_signal::Bandwidth;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::TAU;
+
+/// Quiet before the touch in s.
+const LEAD_S: f64 = 500e-6;
+/// Deviation of strikers' speeds in m/s within a series, measured without error.
+const SPEED_STD: f64 = 0.003;
+/// Times of flight go as speed to this power within a series.
+const EXPONENT: f64 = -0.2;
+
+/// How an amplifier saturates: from the voltage and the level where it ends.
+pub type Clip = fn(f64, f64) -> f64;
+
+pub const HARD: Clip = |volts, end| volts.min(end);
+pub const TANH: Clip = |volts, end| end * (volts / end).tanh();
+pub const SHORT_KNEE: Clip = |volts, end| {
+    let rest = 0.1 * end;
+    volts.min(0.9 * end) + rest * ((volts - 0.9 * end).max(0.0) / rest).tanh()
+};
+pub const KNEE: Clip = |volts, end| match volts > 0.0 {
+    true => volts / (1.0 + (volts / end).powi(8)).powf(0.125),
+    false => volts,
+};
+
+/// What is done to a shot's signals.
+#[derive(Clone)]
+pub struct Fault {
+    pub rate_hz: f64,
+    pub noise_db: f64,
+    /// The saturation, and the share of the wall's pulse at which it ends.
+    pub clip: Option<(Clip, f64)>,
+    pub separate: bool,
+    pub crosstalk: f64,
+    /// Height over that of its pulse, and lead in s, of a bell half as wide before each.
+    pub precursor: (f64, f64),
+    pub without_return: bool,
+    pub low_pass: Option<Bandwidth>,
+    /// Whether the low-pass is given to the measurement.
+    pub corrected: bool,
+    /// Whether strikers' speeds differ from shot to shot.
+    pub speeds_differ: bool,
+}
+
+impl Default for Fault {
+    fn default() -> Self {
+        Self {
+            rate_hz: 1e6,
+            noise_db: 40.0,
+            clip: None,
+            separate: false,
+            crosstalk: 0.0,
+            precursor: (0.0, 0.0),
+            without_return: false,
+            low_pass: None,
+            corrected: false,
+            speeds_differ: false,
+        }
+    }
+}
+
+/// Voltages of the channels without noise, at the trace's interval.
+pub fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
+    let [mut sensor, mut wall] = row.forces.clone();
+    if fault.without_return {
+        let half = 0.5 * (row.maxima_s[0] + row.maxima_s[1]);
+        let gone = sensor.iter_mut().skip((half / FINE_S) as usize);
+        gone.for_each(|volts| *volts = 0.0);
+    }
+    let (share, lead_s) = fault.precursor;
+    let bell = |at_s: f64, i: usize| (-((i as f64 * FINE_S - at_s + lead_s) / 20e-6).powi(2)).exp();
+    for i in 0..sensor.len() {
+        sensor[i] += share * bell(row.maxima_s[0], i);
+        wall[i] += share * row.wall_height * bell(row.maxima_s[1], i);
+        let both = (sensor[i], wall[i]);
+        sensor[i] += fault.crosstalk * both.1;
+        wall[i] += fault.crosstalk * both.0;
+    }
+    let mut channels = match fault.separate {
+        true => vec![sensor, wall],
+        false => vec![sensor.iter().zip(&wall).map(|(a, b)| a + b).collect()],
+    };
+    for channel in &mut channels {
+        if let Some((clip, share)) = fault.clip {
+            let end = share * row.wall_height;
+            channel
+                .iter_mut()
+                .for_each(|volts| *volts = clip(*volts, end));
+        }
+        if let Some(low_pass) = fault.low_pass {
+            filter(low_pass, channel);
+        }
+    }
+    channels
+}
+
+/// A low-pass, by Euler's method at the trace's interval.
+fn filter(low_pass: Bandwidth, channel: &mut [f64]) {
+    let ratio = TAU * low_pass.corner_hz * FINE_S;
+    let (mut value, mut rate) = (0.0, 0.0);
+    for volts in channel {
+        if low_pass.order == 1 {
+            // Half a step's delay is left out: the mean of both ends.
+            let before = value;
+            value += ratio * (*volts - value) / (1.0 + 0.5 * ratio);
+            *volts = 0.5 * (before + value);
+        } else {
+            rate += ratio * (*volts - value - 2.0_f64.sqrt() * rate);
+            value += ratio * rate;
+            *volts = value;
+        }
+    }
+}
+
+/// One shot's samples a channel, from a random moment on and in noise, and its striker's speed.
+pub fn record(
+    row: &Row,
+    volts: &[Vec<f64>],
+    fault: &Fault,
+    rng: &mut ChaCha8Rng,
+) -> (Vec<Vec<f64>>, f64) {
+    let phase = f64::from(rng.next_u32()) / f64::from(u32::MAX);
+    let off: f64 = StandardNormal.sample(rng);
+    let speed_m_s = match fault.speeds_differ {
+        true => row.speed_m_s + SPEED_STD * off,
+        false => row.speed_m_s,
+    };
+    let slower = (speed_m_s / row.speed_m_s).powf(EXPONENT);
+    let channels = volts.iter();
+    let samples = channels.map(|volts| sampled(volts, fault, (phase, slower), rng));
+    (samples.collect(), speed_m_s)
+}
+
+fn sampled(
+    volts: &[f64],
+    fault: &Fault,
+    (phase, slower): (f64, f64),
+    rng: &mut ChaCha8Rng,
+) -> Vec<f64> {
+    let per = (fault.rate_hz * FINE_S).recip();
+    let noise = 10_f64.powf(-fault.noise_db / 20.0);
+    let lead = LEAD_S / FINE_S;
+    let count = ((volts.len() as f64 * slower.min(1.0) + lead) / per) as usize - 2;
+    let sample = |i: usize| {
+        let at = ((i as f64 + phase) * per - lead) / slower;
+        let first = at.floor().max(0.0) as usize;
+        let part = at - first as f64;
+        let clean = match (at >= 0.0, volts.get(first), volts.get(first + 1)) {
+            (true, Some(left), Some(right)) => left + part * (right - left),
+            _ => 0.0,
+        };
+        let error: f64 = StandardNormal.sample(rng);
+        0.3 + clean + noise * error
+    };
+    (0..count).map(sample).collect()
+}

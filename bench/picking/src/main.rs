@@ -1,0 +1,219 @@
+//! Coverage of the stated errors of picked pulses, by computed records with known times.
+//!
+//! `cargo run --release -p hertzchain-picking -- 20` puts noise, saturation, crosstalk, precursors
+//! and a low-pass into 20 computed shots of each preset at six speeds, measures them, and prints one
+//! line of a table for each kind of records.
+#![allow(clippy::print_stdout, reason = "the table is what it is for")]
+
+mod fault;
+mod row;
+mod tally;
+
+use fault::{Fault, HARD, KNEE, SHORT_KNEE, TANH};
+use hertzchain_signal::Bandwidth;
+use row::Row;
+use std::error::Error;
+use tally::Tally;
+
+const PRESETS: [&str; 4] = ["dry", "pump", "gear", "motor"];
+const SPEEDS_M_S: [f64; 6] = [0.08, 0.2, 0.5, 1.2, 2.0, 2.5];
+const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each]";
+const HEADER: &str = "\
+| records | shots | timed | counted | incident: within 1.96, % | made/stated | reflected: % | made/stated \
+| counted, incident: % | made/stated | reflected: % | made/stated | returns | χ² of means, incident \
+| reflected | χ² of exponents, incident | reflected | correlation made | stated | worst row, incident | reflected |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+
+/// What the command line asks for.
+struct Options {
+    shots: u64,
+    seed: u64,
+    only: String,
+    each: bool,
+}
+
+impl Options {
+    fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
+        let mut options = Self {
+            shots: 20,
+            seed: 1,
+            only: String::new(),
+            each: false,
+        };
+        while let Some(word) = words.next() {
+            match word.as_str() {
+                "--seed" => options.seed = words.next().ok_or(USAGE)?.parse()?,
+                "--only" => options.only = words.next().ok_or(USAGE)?,
+                "--each" => options.each = true,
+                count => options.shots = count.parse().map_err(|_| USAGE)?,
+            }
+        }
+        Ok(options)
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse(std::env::args().skip(1))?;
+    let mut rows = Vec::new();
+    for preset in PRESETS {
+        for speed_m_s in SPEEDS_M_S {
+            rows.push(Row::compute(preset, speed_m_s)?);
+        }
+    }
+    println!("{HEADER}");
+    for (name, faults) in families() {
+        if !name.contains(&options.only) {
+            continue;
+        }
+        for (name, fault) in faults {
+            let tally = Tally::of(&rows, &fault, options.shots, options.seed, options.each);
+            println!("{}", line(&name, &tally));
+        }
+    }
+    Ok(())
+}
+
+/// A line of the table.
+fn line(name: &str, tally: &Tally) -> String {
+    let count = tally.correlations.len().max(1) as f64;
+    let made = tally.correlations.iter().map(|(made, _)| made).sum::<f64>() / count;
+    let stated = tally
+        .correlations
+        .iter()
+        .map(|(_, stated)| stated)
+        .sum::<f64>()
+        / count;
+    let worst = tally
+        .worst
+        .each_ref()
+        .map(|(share, row)| format!("{share:.0}: {row}"));
+    format!(
+        "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {made:.2} | {stated:.2} | {} |",
+        tally.shots,
+        tally.timed,
+        tally.counted,
+        tally.all.cells(),
+        tally.of_counted.cells(),
+        tally.all.returns(),
+        tally.means.squares(),
+        tally.exponents.squares(),
+        worst.join(" | "),
+    )
+}
+
+/// Kinds of records: a name to choose them by, and each with what is done to it.
+fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
+    let at = |noise_db: f64| Fault {
+        noise_db,
+        ..Fault::default()
+    };
+    let each = |levels: &[f64], of: &dyn Fn(f64) -> (String, Fault)| -> Vec<(String, Fault)> {
+        levels.iter().map(|level| of(*level)).collect()
+    };
+    let mut families = vec![
+        (
+            "noise",
+            each(&[20.0, 30.0, 40.0, 60.0, 80.0], &|db| {
+                (format!("{db} dB"), at(db))
+            }),
+        ),
+        (
+            "speeds",
+            each(&[30.0, 40.0, 60.0], &|db| {
+                let name = format!("speeds differ by 3 mm/s, {db} dB");
+                (
+                    name,
+                    Fault {
+                        speeds_differ: true,
+                        ..at(db)
+                    },
+                )
+            }),
+        ),
+        (
+            "crosstalk",
+            each(&[40.0, 60.0], &|db| {
+                let name = format!("two channels, crosstalk of 10 %, {db} dB");
+                (
+                    name,
+                    Fault {
+                        separate: true,
+                        crosstalk: 0.1,
+                        ..at(db)
+                    },
+                )
+            }),
+        ),
+        (
+            "no return",
+            each(&[20.0, 30.0, 40.0, 60.0], &|db| {
+                (
+                    format!("return cut out, {db} dB"),
+                    Fault {
+                        without_return: true,
+                        ..at(db)
+                    },
+                )
+            }),
+        ),
+    ];
+    let mut precursors = Vec::new();
+    for lead_s in [60e-6, 80e-6] {
+        precursors.extend(each(&[40.0, 60.0], &|db| {
+            let name = format!("precursors of 5 %, {:.0} µs before, {db} dB", 1e6 * lead_s);
+            (
+                name,
+                Fault {
+                    precursor: (0.05, lead_s),
+                    ..at(db)
+                },
+            )
+        }));
+    }
+    families.push(("precursors", precursors));
+    let mut filtered = Vec::new();
+    for order in [1, 2] {
+        for corrected in [false, true] {
+            filtered.extend(each(&[40.0, 60.0], &|db| {
+                let how = if corrected { "taken out" } else { "left" };
+                let low_pass = Some(Bandwidth {
+                    corner_hz: 50e3,
+                    order,
+                });
+                let name = format!("low-pass of 50 kHz, order {order}, {how}, {db} dB");
+                (
+                    name,
+                    Fault {
+                        low_pass,
+                        corrected,
+                        ..at(db)
+                    },
+                )
+            }));
+        }
+    }
+    families.push(("low-pass", filtered));
+    let clips = [
+        ("hard", HARD),
+        ("tanh", TANH),
+        ("short knee", SHORT_KNEE),
+        ("knee", KNEE),
+    ];
+    for (kind, clip) in clips {
+        let mut clipped = Vec::new();
+        for share in [0.95, 0.9, 0.83, 0.75, 0.6] {
+            clipped.extend(each(&[30.0, 40.0, 60.0, 80.0], &|db| {
+                let name = format!("clipped, {kind}, at {share}, {db} dB");
+                (
+                    name,
+                    Fault {
+                        clip: Some((clip, share)),
+                        ..at(db)
+                    },
+                )
+            }));
+        }
+        families.push((kind, clipped));
+    }
+    families
+}

@@ -1,0 +1,238 @@
+//! Errors made beside errors stated, of shots, means and power laws.
+
+use crate::fault::{Fault, record, volts};
+use crate::row::Row;
+use hertzchain_measure::{Curves, Grouping, Shot};
+use hertzchain_signal::{
+    Channels, Estimate, Measuring, PowerLaw, coverage, measure, power_law_both_errors,
+};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// Shots that make one mean.
+const SERIES: u64 = 20;
+const WITHIN: f64 = 1.96;
+
+/// Errors of incident and reflected times over the stated ones.
+#[derive(Default)]
+pub struct Pulls([Vec<f64>; 2]);
+
+/// What came of one kind of records.
+#[derive(Default)]
+pub struct Tally {
+    pub shots: u64,
+    /// Shots with times, and those of them that count in means.
+    pub timed: usize,
+    pub counted: usize,
+    pub all: Pulls,
+    /// Of shots that count.
+    pub of_counted: Pulls,
+    pub means: Pulls,
+    pub exponents: Pulls,
+    /// Products of pulls of both means, and their stated correlations.
+    pub correlations: Vec<(f64, f64)>,
+    /// Coverage of the worst row of those with 10 shots or more that count.
+    pub worst: [(f64, String); 2],
+}
+
+impl Pulls {
+    fn extend(&mut self, other: &Self) {
+        for (own, other) in self.0.iter_mut().zip(&other.0) {
+            own.extend(other);
+        }
+    }
+
+    /// Per cent within 1.96 and root mean square, of either time.
+    pub fn cells(&self) -> String {
+        let cell = |pulls: &Vec<f64>| match coverage(pulls, WITHIN) {
+            Some(of) => format!("{:.1} | {:.2}", 100.0 * of.share, of.scale),
+            None => "– | –".to_owned(),
+        };
+        self.0.each_ref().map(cell).join(" | ")
+    }
+
+    /// Sum of squares and count, of either time.
+    pub fn squares(&self) -> String {
+        let cell = |pulls: &Vec<f64>| {
+            let sum: f64 = pulls.iter().map(|pull| pull * pull).sum();
+            format!("{sum:.0} of {}", pulls.len())
+        };
+        self.0.each_ref().map(cell).join(" | ")
+    }
+
+    /// How many reflected times there are.
+    pub fn returns(&self) -> usize {
+        self.0[1].len()
+    }
+}
+
+impl Tally {
+    /// Of so many shots of each row.
+    pub fn of(rows: &[Row], fault: &Fault, shots: u64, seed: u64, each: bool) -> Self {
+        let mut tally = Self {
+            worst: [(100.0, String::new()), (100.0, String::new())],
+            ..Self::default()
+        };
+        let mut series: Vec<Vec<Shot>> = Vec::new();
+        for (number, row) in rows.iter().enumerate() {
+            let volts = volts(row, fault);
+            let mut own = Vec::new();
+            let (mut all, mut counted) = (Pulls::default(), Pulls::default());
+            for shot in 0..shots {
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                rng.set_stream(shot + shots * number as u64);
+                let shot = shot_of(row, &volts, fault, &mut rng);
+                tally.shots += 1;
+                let counts = !shot.is_dubious();
+                if let Ok(flight) = &shot.flight {
+                    tally.timed += 1;
+                    tally.counted += usize::from(counts);
+                    let slower = shot
+                        .speed_m_s
+                        .map_or(1.0, |speed| speed.value / row.speed_m_s);
+                    let slower = slower.powf(-0.2);
+                    let times = [Some(flight.incident_s), flight.reflected_s];
+                    for (which, time) in times.into_iter().enumerate() {
+                        let Some(time) = time else { continue };
+                        let pull = (time.value - slower * row.flights_s()[which]) / time.sigma;
+                        all.0[which].push(pull);
+                        if counts {
+                            counted.0[which].push(pull);
+                        }
+                    }
+                }
+                own.push(shot);
+            }
+            if each {
+                println!(
+                    "|   {} {} | | {} | {} | {} | {}",
+                    row.preset,
+                    row.speed_m_s,
+                    all.0[0].len(),
+                    counted.0[0].len(),
+                    all.cells(),
+                    counted.cells()
+                );
+            }
+            tally.note_worst(row, &counted);
+            tally.all.extend(&all);
+            tally.of_counted.extend(&counted);
+            for (number, chunk) in own.chunks(SERIES as usize).enumerate() {
+                if series.len() <= number {
+                    series.push(Vec::new());
+                }
+                series[number].extend(chunk.iter().cloned());
+            }
+        }
+        for shots in &series {
+            tally.reduce(rows, shots);
+        }
+        tally
+    }
+
+    fn note_worst(&mut self, row: &Row, counted: &Pulls) {
+        for (worst, pulls) in self.worst.iter_mut().zip(&counted.0) {
+            if let Some(of) = coverage(pulls, WITHIN).filter(|of| of.count >= 10)
+                && 100.0 * of.share < worst.0
+            {
+                *worst = (
+                    100.0 * of.share,
+                    format!("{} {}", row.preset, row.speed_m_s),
+                );
+            }
+        }
+    }
+
+    /// Means and power laws of one series a row.
+    fn reduce(&mut self, rows: &[Row], shots: &[Shot]) {
+        for case in Curves::of(shots, &Grouping::default()).cases {
+            let truth = |speed_m_s: Estimate| {
+                let near = |a: &&Row, b: &&Row| {
+                    let apart = |row: &&Row| (row.speed_m_s / speed_m_s.value).ln().abs();
+                    apart(a).total_cmp(&apart(b))
+                };
+                let row = rows
+                    .iter()
+                    .filter(|row| row.preset == case.name)
+                    .min_by(near);
+                row.map(|row| {
+                    let slower = (speed_m_s.value / row.speed_m_s).powf(-0.2);
+                    row.flights_s().map(|time| slower * time)
+                })
+            };
+            for row in &case.rows {
+                let Some(true_s) = truth(row.speed_m_s) else {
+                    continue;
+                };
+                let pulls = [0, 1].map(|time| {
+                    let mean =
+                        row.at_mean_speed_s[time].filter(|_| row.shots.0 as u64 == SERIES)?;
+                    Some((mean.value - true_s[time]) / mean.sigma)
+                });
+                for (all, pull) in self.means.0.iter_mut().zip(pulls) {
+                    all.extend(pull);
+                }
+                if let [Some(one), Some(other)] = pulls {
+                    let stated = row.correlation_at_mean_speed.unwrap_or_default();
+                    self.correlations.push((one * other, stated));
+                }
+            }
+            let laws = [&case.laws.incident, &case.laws.reflected];
+            for (which, law) in laws.into_iter().enumerate() {
+                let points = case.rows.iter().filter_map(|row| {
+                    let time = row.at_mean_speed_s[which]?;
+                    Some((row.speed_m_s, time.sigma, truth(row.speed_m_s)?[which]))
+                });
+                let points: Vec<_> = points.collect();
+                let (Ok(law), Some(exact)) = (law, exact(&points)) else {
+                    continue;
+                };
+                let pull = (law.exponent - exact.exponent) / law.exponent_error;
+                self.exponents.0[which].push(pull);
+            }
+        }
+    }
+}
+
+/// The power law through true times, with the weights of measured ones.
+fn exact(points: &[(Estimate, f64, f64)]) -> Option<PowerLaw> {
+    let column = |of: &dyn Fn(&(Estimate, f64, f64)) -> f64| points.iter().map(of).collect();
+    let (speeds, errors): (Vec<f64>, Vec<f64>) = (column(&|p| p.0.value), column(&|p| p.0.sigma));
+    let (times, sigmas): (Vec<f64>, Vec<f64>) = (column(&|p| p.2), column(&|p| p.1));
+    power_law_both_errors(&speeds, &errors, &times, &sigmas).ok()
+}
+
+fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -> Shot {
+    let (samples, speed_m_s) = record(row, volts, fault, rng);
+    let channels = match &samples[..] {
+        [sensor, wall] => Channels::Separate { sensor, wall },
+        one => Channels::Summed(&one[0]),
+    };
+    let measuring = Measuring {
+        bandwidth: fault.low_pass.filter(|_| fault.corrected),
+        ..Measuring::default()
+    };
+    let interval_s = fault.rate_hz.recip();
+    let (flight, doubts) = match measure(channels, interval_s, &measuring) {
+        Ok(shot) => (shot.flight, shot.found.doubts),
+        Err(error) => (Err(error), Vec::new()),
+    };
+    Shot {
+        source: String::new(),
+        file: Default::default(),
+        shot: None,
+        case: row.preset.to_owned(),
+        programmed_speed_m_s: Some(row.speed_m_s),
+        speed_m_s: Some(Estimate {
+            value: speed_m_s,
+            sigma: 1e-9,
+        }),
+        interval_s,
+        flight,
+        doubts,
+        untriggered: false,
+        gaps: None,
+        gap_in_pulse: false,
+        holds_several: false,
+    }
+}
