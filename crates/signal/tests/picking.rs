@@ -148,9 +148,16 @@ fn stated_errors_cover_what_they_say_at_40_db() {
         let found = coverage(&pulls(&method, 0.01), 1.0).unwrap();
         // Four standard deviations of chance, and a tenth for what is first
         // order in the noise only.
-        let off = (found.share - found.expected).abs();
-        assert!(off < 4.0 * found.chance, "{method:?} {found:?}");
-        assert!((found.scale - 1.0).abs() < 0.1, "{method:?} {found:?}");
+        // The default's error holds, besides, what is open of shapes, of which these bells have none.
+        let open = if method == Method::Maximum { 0.1 } else { 0.0 };
+        let off = found.share - found.expected;
+        let chance = 4.0 * found.chance;
+        assert!(
+            (-chance..chance + open).contains(&off),
+            "{method:?} {found:?}"
+        );
+        let scale = 0.9 - open..1.1;
+        assert!(scale.contains(&found.scale), "{method:?} {found:?}");
     }
 }
 
@@ -381,7 +388,7 @@ fn the_local_model_times_maxima_of_skewed_pulses_to_60_ns() {
 }
 
 /// The aim, of both times: what dies away at the wall under the return moves the maximum of the
-/// sum by 36 ns, of which a tenth is left once its likely fall is taken out.
+/// sum by 36 ns, of which less than a third is left once its likely fall is taken out.
 #[test]
 fn on_clean_skewed_pulses_in_one_channel_the_default_times_both_maxima_to_10_ns() {
     for k in 0..10 {

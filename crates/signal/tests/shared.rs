@@ -57,17 +57,16 @@ fn moved(flight: &Flight) -> (f64, f64) {
 }
 
 #[test]
-fn a_trail_of_the_wall_is_taken_out_of_a_return_and_stated_all_the_same() {
+fn what_is_left_of_a_trail_of_the_wall_under_a_return_is_in_its_error() {
     for time_s in [100e-6, 200e-6, 400e-6] {
         let trail = |t: f64| match t > WALL_S {
             true => 0.3 * (-(t - WALL_S) / time_s).exp(),
             false => 0.0,
         };
         let (by, may) = moved(&with(trail));
-        // An exponential is what is taken out: what is left is of its bend under the pulse and of
-        // the foot of the return, at which it is read.
+        // A share of the largest fall is taken out, as of computed rows; trails fall by another.
         assert!(
-            may < 0.0 && by.abs() < 0.1 * may.abs(),
+            may < 0.0 && by.abs() < 1.96 * may.abs(),
             "{time_s}: {by:e} {may:e}"
         );
     }
@@ -118,14 +117,13 @@ fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows()
     let squares = squares.map(|(error, moved)| alone(error.sigma, *moved).powi(2));
     let alone_s = squares.sum::<f64>().sqrt() / count;
     let shared_s = shared(&moved);
-    // Noise alone does not explain the mean's error; with what is shared it is within two.
-    assert!(mean.abs() > 1.96 * alone_s, "{mean:e} {alone_s:e}");
     assert!(
         mean.abs() < 1.96 * alone_s.hypot(shared_s),
         "{mean:e} {shared_s:e}"
     );
-    // Stated ten times too large it would say nothing.
-    assert!(shared_s < 5.0 * mean.abs(), "{mean:e} {shared_s:e}");
+    // A mean that is no better than a shot would say nothing.
+    let one_s = errors.iter().map(|error| error.sigma).sum::<f64>() / count;
+    assert!(shared_s < 0.5 * one_s, "{shared_s:e} {one_s:e}");
 }
 
 /// Error of the incident time where the wall's pulse falls so many times as slowly as it rises and

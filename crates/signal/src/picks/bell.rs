@@ -6,9 +6,12 @@ use super::local_model::{Top, finish};
 use super::normal::{Descent, MOST, Normal, descend};
 use super::polynomial::{Polynomial, powers};
 use super::{Moved, Picked, Sight};
-use crate::Pulse;
+use crate::{Place, Pulse};
 
-/// Full width of the fit in widths of the steeper flank: down to a third of the maximum.
+/// Full width of the fit to a whole pulse in widths of the steeper flank: down to two fifths of the
+/// maximum, above the kink with which the rise begins in fast dry shots.
+const WHOLE_WIDTH: f64 = 1.1;
+/// The same where a clipped top is looked for: down to a third of the maximum.
 pub(super) const WIDTH: f64 = 1.2;
 /// Degree of the logarithm: pulses of computed dry and wet rows between 0.1 and
 /// 1.2 m/s are followed to 30 ns.
@@ -21,9 +24,20 @@ const SHAPE: usize = 3;
 pub(super) const LEVEL: usize = MOST - 1;
 /// How much of a clipped bell may be cut off, as a logarithm: half of its height and more.
 pub(super) const CUT_OFF: f64 = 0.4;
+/// Mean coefficients, from the first beyond a Gaussian's on, and their standard deviation over the
+/// usual width of incident, wall's and reflected pulses: of computed rows, dry and wet, from 0.06 to
+/// 2.4 m/s, whose own deviations are 0.07 to 0.27, 0 to 0.11 and 0.06 to 0.34.
+const SHAPES: [([f64; MOST - SHAPE], f64); 3] = [
+    ([0.11, -0.22, -0.21, 0.22, 0.19, -0.17, -0.06, 0.05], 0.25),
+    ([0.07, -0.02, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0], 0.17),
+    ([-0.03, -0.26, 0.01, 0.07, 0.0, 0.04, 0.0, -0.03], 0.23),
+];
+/// One deviation, more, of the coefficients of incident pulses together: from slow shots to fast dry ones,
+/// whose rise begins with a kink.
+const KINK: [f64; MOST - SHAPE] = [0.26, 0.0, -0.43, 0.0, 0.35, 0.0, -0.1, 0.0];
 /// What bells leave of computed pulses without noise, as a share of the height, at the top and in
 /// flanks that are fitted farther down: up to 2.5 m/s their rise begins with a kink.
-const INEXACT: (f64, f64) = (2e-4, 4e-4);
+const INEXACT: (f64, f64) = (1.6e-4, 4e-4);
 /// Deviations by which the squares that a fit leaves may exceed those of noise.
 const ADEQUATE: f64 = 3.0;
 /// Shares of the window that are tried, in this order, where a bell leaves more than noise.
@@ -35,17 +49,17 @@ const SOFT: f64 = 0.3;
 /// Time in samples, by y = exp(Σ c_k u^k) with u from −1 to 1 across the fit.
 ///
 /// The logarithm of a bell is nearly a parabola, so few coefficients tell much.
-/// Those beyond it are taken to be 0 ± 1 before the samples are looked at: noise
+/// Those beyond it are taken to be what computed rows have before the samples are looked at: noise
 /// leaves them there, a strong signal moves them. So one model goes all the way from smooth to
 /// close, and the stated error holds what it does not know of the shape.
 /// Where more is left than noise, the error grows by as much.
 pub(super) fn pick(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
     let begun = pulse.at as f64;
-    let half = 0.5 * WIDTH * pulse.steep_width_samples();
+    let half = 0.5 * WHOLE_WIDTH * pulse.steep_width_samples();
     let tries = NARROWER.iter().map(|share| {
         let window = Window {
             half: (share * half).max(4.0),
-            thought: thought(*share, 1.0),
+            thought: Thought::of_whole(pulse, *share),
         };
         Some(widened(about(sight, pulse, begun, &window)?, *share))
     });
@@ -65,7 +79,7 @@ pub(super) fn from_flanks(sight: &Sight<'_>, pulse: &Pulse) -> Option<Picked> {
             let whole = flanks.pulse(&pulse);
             let half = (share * flanks.half(&pulse)).max(4.0);
             let widths = half / whole.width_samples / (0.5 * WIDTH);
-            let thought = thought(widths, even);
+            let thought = Thought::of_flanks(widths, even);
             let found = about(sight, &whole, flanks.at, &Window { half, thought })?;
             Some(widened(found, *share))
         })
@@ -104,25 +118,78 @@ fn adequate(tries: impl Iterator<Item = Option<(Picked, bool)>>) -> Option<Picke
 struct Window {
     /// Samples from the middle to either end.
     half: f64,
-    /// How large coefficients may be.
-    thought: [f64; MOST],
+    thought: Thought,
 }
 
-/// How large each coefficient may be over so many times the usual width, over which it is 1;
-/// even ones beyond a Gaussian's by another factor.
-fn thought(widths: f64, even: f64) -> [f64; MOST] {
-    let mut thought = powers(widths);
-    thought
-        .iter_mut()
-        .skip(SHAPE + 1)
-        .step_by(2)
-        .for_each(|one| *one *= even);
-    thought
+/// Mean and standard deviation of each coefficient beyond a Gaussian's before the samples are
+/// looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Thought {
+    mean: [f64; MOST],
+    deviation: [f64; MOST],
+    /// One deviation, more, of all of them together.
+    together: [f64; MOST],
+}
+
+impl Thought {
+    /// Of a whole pulse over a share of the usual width. One that trails is of no usual shape, and
+    /// its coefficients may be as large as those of any.
+    fn of_whole(pulse: &Pulse, share: f64) -> Self {
+        let (means, usual) = SHAPES[pulse.place as usize];
+        let deviation = usual + (1.0 - usual) * pulse.trailing();
+        let powers = powers(share);
+        let scaled = |of: [f64; MOST - SHAPE]| -> [f64; MOST] {
+            std::array::from_fn(|k| k.checked_sub(SHAPE).map_or(0.0, |i| of[i] * powers[k]))
+        };
+        let kink = if pulse.place == Place::Passing {
+            KINK
+        } else {
+            [0.0; MOST - SHAPE]
+        };
+        Self {
+            mean: scaled(means),
+            deviation: powers.map(|power| deviation * power),
+            together: scaled(kink),
+        }
+    }
+
+    /// Of a pulse of unknown shape over so many times the usual width, over which coefficients are
+    /// 0 ± 1; even ones times another factor.
+    pub(super) fn of_flanks(widths: f64, even: f64) -> Self {
+        let mut deviation = powers(widths);
+        let even_ones = deviation.iter_mut().skip(SHAPE + 1).step_by(2);
+        even_ones.for_each(|one| *one *= even);
+        Self {
+            mean: [0.0; MOST],
+            deviation,
+            together: [0.0; MOST],
+        }
+    }
+
+    /// Row k of the inverse root of the covariance: by it, coefficients less their means are
+    /// independent and of deviation 1. Of D² + t tᵀ it is (1 − γ v vᵀ) D⁻¹, with D⁻¹ t = |D⁻¹ t| v.
+    fn row(&self, k: usize) -> [f64; MOST] {
+        let over = |j: usize| self.together[j] / self.deviation[j];
+        let squared: f64 = (SHAPE..MOST).map(|j| over(j).powi(2)).sum();
+        let share = match squared > 0.0 {
+            true => (1.0 - (1.0 + squared).sqrt().recip()) / squared,
+            false => 0.0,
+        };
+        std::array::from_fn(|j| {
+            let own = f64::from(u8::from(j == k));
+            (own - share * over(k) * over(j)) / self.deviation[j]
+        })
+    }
+}
+
+/// Σ a_k b_k over coefficients beyond a Gaussian's.
+fn along_shape(a: &[f64; MOST], b: &[f64; MOST]) -> f64 {
+    a.iter().zip(b).skip(SHAPE).map(|(a, b)| a * b).sum()
 }
 
 /// The bell's maximum, looked for from `begun` on.
 fn about(sight: &Sight<'_>, pulse: &Pulse, begun: f64, window: &Window) -> Option<(Picked, bool)> {
-    let noise = sight.broad_noise(pulse).max(inexact(pulse));
+    let noise = sight.broad_noise(pulse).hypot(inexact(pulse));
     let mut centre = begun;
     for _ in 0..4 {
         let (fit, u) = fit(sight, pulse, centre, window, noise)?;
@@ -155,23 +222,28 @@ fn picked(
     pulse: &Pulse,
     fit: &Polynomial,
     u: f64,
-    thought: &[f64; MOST],
+    thought: &Thought,
 ) -> Option<(Picked, bool)> {
     let height = fit.course(u).value.exp();
     let before = Slope::top(fit, sight.inverse, u)?;
     let slope = Slope::of(fit, sight.inverse, before);
-    let noise = sight.noise(pulse).max(inexact(pulse));
-    let modelled = sight.broad_noise(pulse).max(inexact(pulse));
+    let inexact = inexact(pulse);
+    let noise = sight.noise(pulse).hypot(inexact);
+    let modelled = sight.broad_noise(pulse).hypot(inexact);
     let beyond = (fit.left / noise).powi(2) > 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt();
     let excess = if beyond { fit.left / noise } else { 1.0 };
+    let slope_variance = fit.solution.variance(&slope.row);
+    // What bells leave of a pulse is the same in all of its shots.
+    let of_inexact = (inexact / modelled).powi(2) * slope_variance;
+    let open = open_variance(fit, &slope.row, modelled, thought) + of_inexact;
     let top = Top {
         noise: excess * modelled,
         height,
         height_share: height * fit.value_variance(u).sqrt(),
-        slope_share: height * fit.solution.variance(&slope.row).sqrt(),
+        slope_share: height * slope_variance.sqrt(),
         bend: height * slope.bend,
         bend_share: height * fit.bend_variance(u).sqrt(),
-        open_share: height * open_variance(fit, &slope.row, modelled, thought).sqrt(),
+        open_share: height * open.min(slope_variance).sqrt(),
         reach: reach(fit, u, excess * modelled),
     };
     Some((finish(sight, pulse, fit, before, &top), !beyond))
@@ -196,11 +268,10 @@ fn reach(fit: &Polynomial, u: f64, noise: f64) -> f64 {
 
 /// Variance of a slope, for unit noise, by coefficients that may be other than the 0 they
 /// are thought to be: C P C with C the covariance and P what is thought beforehand.
-fn open_variance(fit: &Polynomial, slope: &[f64; MOST], noise: f64, thought: &[f64; MOST]) -> f64 {
+fn open_variance(fit: &Polynomial, slope: &[f64; MOST], noise: f64, thought: &Thought) -> f64 {
     let along = fit.solution.covariance_with(slope);
-    let open = along.iter().zip(thought).skip(SHAPE);
-    open.map(|(covariance, thought)| (noise * covariance / thought).powi(2))
-        .sum()
+    let open = (SHAPE..MOST).map(|k| along_shape(&along, &thought.row(k)));
+    open.map(|open| (noise * open).powi(2)).sum()
 }
 
 /// The bell's logarithm about a centre, and where its maximum is.
@@ -244,7 +315,7 @@ pub(super) struct Data {
     pub(super) degree: usize,
     pub(super) noise: f64,
     /// How large coefficients may be.
-    pub(super) thought: [f64; MOST],
+    pub(super) thought: Thought,
     /// Whether the bell ends at a level, which then stands in the last coefficient's place.
     pub(super) capped: bool,
 }
@@ -302,11 +373,11 @@ impl Data {
             squares += miss * miss;
         }
         let terms = if self.capped { LEVEL } else { MOST };
-        for (k, coefficient) in bell.iter().enumerate().take(terms).skip(SHAPE) {
-            let mut row = [0.0; MOST];
-            let weight = self.noise / self.thought[k];
-            row[k] = weight;
-            let miss = -weight * coefficient;
+        let off: [f64; MOST] = std::array::from_fn(|k| bell[k] - self.thought.mean[k]);
+        for k in SHAPE..terms {
+            let row = self.thought.row(k).map(|x| self.noise * x);
+            let miss = -along_shape(&row, &off);
+            let row = std::array::from_fn(|j| if j < SHAPE || j >= terms { 0.0 } else { row[j] });
             normal.add(&row, miss);
             squares += miss * miss;
         }
@@ -332,7 +403,7 @@ impl Data {
         solution.values = descent.model;
         // What the samples, not the thought beforehand, determine.
         let known: f64 = (SHAPE..=self.degree)
-            .map(|k| (self.noise / self.thought[k]).powi(2) * solution.inverse[k][k])
+            .map(|k| solution.variance(&self.thought.row(k)) * self.noise.powi(2))
             .sum();
         let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
         let squares: f64 = self

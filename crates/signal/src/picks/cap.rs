@@ -1,7 +1,7 @@
 //! Whether a pulse's top is flat because an amplifier clipped it before noise was added.
 
 use super::Sight;
-use super::bell::{CUT_OFF, DEGREE, Data, LEVEL, WIDTH};
+use super::bell::{CUT_OFF, DEGREE, Data, LEVEL, Thought, WIDTH};
 use super::normal::{Descent, MOST};
 use crate::Pulse;
 use std::f64::consts::{LN_2, TAU};
@@ -92,7 +92,7 @@ fn samples(sight: &Sight<'_>, centre: f64, half: f64, noise: f64) -> Option<Data
             true => noise / (together as f64).sqrt(),
             false => noise.max(0.5 * sight.upright.step),
         },
-        thought: [1.0; MOST],
+        thought: Thought::of_flanks(1.0, 1.0),
         capped: false,
     };
     (data.points.len() > MOST).then_some(data)

@@ -26,8 +26,8 @@ use crate::{Channels, Estimate, Found, Place, Pulse, Rails, Upright};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
     /// Time of the maximum of a bell whose logarithm is a polynomial of degree 10,
-    /// fitted over 1.2 widths of the steeper flank. Coefficients beyond a Gaussian's are 0 ± 1
-    /// before the samples speak, so noise does not bend it.
+    /// fitted over 1.1 widths of the steeper flank. Coefficients beyond a Gaussian's are those of
+    /// computed rows ± 0.2 before the samples are looked at, so noise does not bend it.
     ///
     /// *Bias:* none for symmetric pulses; of skewed ones, less than the stated
     /// error, which holds what the shape leaves open. Where noise hides the bell's
