@@ -83,7 +83,7 @@ pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use reference::Reference;
 pub use schema::schema;
 pub use spec::{
-    Actuator, Amplifier, Campaign, Channels, Factor, Laying, Liquid, LowPass, LowPassKind, Method,
-    Photogate, Recorder, Rig, RigPart, RigPartKind, SectionSpec, Solver, Trigger,
+    Actuator, Amplifier, Campaign, Channels, Factor, KINDS, Laying, Liquid, LowPass, LowPassKind,
+    Method, ORDERS, Photogate, Recorder, Rig, RigPart, RigPartKind, SectionSpec, Solver, Trigger,
 };
 pub use value::Units;

@@ -5,7 +5,7 @@ use crate::several::{Content, content};
 use crate::speeds::Speeds;
 use crate::{Example, Level, Refused, Shot, ShotList};
 use hertzchain_records::{Parts, ReadOptions, Record, read};
-use hertzchain_signal::{Bandwidth, Doubt, Measuring};
+use hertzchain_signal::{Bandwidth, Doubt, Measuring, Method};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +28,8 @@ pub struct Options {
     pub measuring: Measuring,
     /// Whether the droop of such a high-pass stays in the recording.
     pub keep_droop: bool,
+    /// Whether maxima stay as they are behind the low-pass that a recording states.
+    pub keep_low_pass: bool,
     /// Speeds and cases of files.
     pub list: Option<ShotList>,
     /// Standard error of speeds in m/s where nobody else tells one.
@@ -209,6 +211,17 @@ pub(crate) fn told_high_pass_hz(record: &Record, options: &Options) -> Option<f6
     record.high_pass_hz.filter(|hz| nobody_says && *hz > 0.0)
 }
 
+/// The amplifier's low-pass that maxima are corrected for because the recording states it.
+pub(crate) fn stated_bandwidth(record: &Record, options: &Options) -> Option<Bandwidth> {
+    let measuring = &options.measuring;
+    let asked = measuring.bandwidth.is_some() || options.keep_low_pass;
+    let low_pass = record.low_pass.filter(|_| !asked)?;
+    (measuring.method == Method::Maximum).then_some(Bandwidth {
+        corner_hz: low_pass.corner_hz,
+        order: low_pass.order,
+    })
+}
+
 /// Every channel of a record in V.
 fn volts(record: &Record) -> Vec<Vec<f64>> {
     let channels = record.channels.iter();
@@ -225,6 +238,18 @@ impl Measurement {
                 &format!(
                     "states that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
                      corrected; --ac-coupling states another corner, 0 leaves the droop"
+                ),
+                &record.file,
+            );
+        }
+        if let Some(bandwidth) = stated_bandwidth(record, options) {
+            self.bandwidth.get_or_insert(bandwidth);
+            let Bandwidth { corner_hz, order } = bandwidth;
+            self.note(
+                &format!(
+                    "states that its amplifier had a low-pass of {corner_hz} Hz, order {order}, \
+                     which maxima are corrected for; --low-pass states another corner, 0 leaves \
+                     times as they are"
                 ),
                 &record.file,
             );

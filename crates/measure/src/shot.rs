@@ -1,7 +1,7 @@
 //! One measured shot.
 
 use crate::Options;
-use crate::run::told_high_pass_hz;
+use crate::run::{stated_bandwidth, told_high_pass_hz};
 use hertzchain_records::Record;
 use hertzchain_signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
@@ -57,6 +57,9 @@ impl Shot {
                 ..measuring.finding
             },
             high_pass_s: measuring.high_pass_s.or(told_s),
+            bandwidth: measuring
+                .bandwidth
+                .or_else(|| stated_bandwidth(record, options)),
             ..measuring.clone()
         };
         let measured = hertzchain_signal::measure(channels, record.interval_s, &measuring);

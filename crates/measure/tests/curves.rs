@@ -5,7 +5,7 @@ use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
 };
-use hertzchain_signal::{Doubt, Flight, Measuring, SignalError, alone};
+use hertzchain_signal::{Bandwidth, Doubt, Flight, Measuring, SignalError, alone};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -164,6 +164,61 @@ fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_opti
         assert_eq!(told, 0);
         assert_ne!(flights, unasked.1);
     }
+}
+
+#[test]
+fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_say_more() {
+    let folder = folder("low-pass");
+    let stated = |order: &'static str, kind: &'static str| {
+        let stated = [
+            ("low_pass_hz", "20000"),
+            ("low_pass_order", order),
+            ("low_pass_kind", kind),
+        ];
+        [told_series(
+            &folder,
+            &format!("{order}-{kind}"),
+            0.5,
+            9000.0,
+            &stated,
+        )]
+    };
+    let flights = |files: &[PathBuf], options: &Options| {
+        let measured = measure(files, options, &());
+        let notes = measured.notes.iter();
+        let noted = notes.filter(|note| note.text.contains("low-pass of 20000 Hz"));
+        let noted = noted.count();
+        let flights = measured.shots.into_iter().map(|shot| shot.flight.unwrap());
+        (noted, measured.bandwidth, flights.collect::<Vec<Flight>>())
+    };
+    let given = |corner_hz: f64, order| Options {
+        measuring: Measuring {
+            bandwidth: Some(Bandwidth { corner_hz, order }),
+            ..Measuring::default()
+        },
+        ..Options::default()
+    };
+    let kept = Options {
+        keep_low_pass: true,
+        ..Options::default()
+    };
+    for (order, kind, poles) in [("first", "bessel", 1), ("second", "butterworth", 2)] {
+        let files = stated(order, kind);
+        let unasked = flights(&files, &Options::default());
+        let of_options = flights(&files, &given(20e3, poles));
+        assert_eq!((unasked.0, of_options.0), (1, 0));
+        assert_eq!((unasked.1, &unasked.2), (of_options.1, &of_options.2));
+        for other in [given(40e3, poles), kept.clone()] {
+            let (noted, _, flights) = flights(&files, &other);
+            assert_eq!(noted, 0);
+            assert_ne!(flights, unasked.2);
+        }
+    }
+    // Bessel's two poles are not taken out.
+    let files = stated("second", "bessel");
+    let bessel = flights(&files, &Options::default());
+    assert_eq!(bessel, flights(&files, &kept));
+    assert_eq!(bessel.1, None);
 }
 
 #[test]

@@ -37,7 +37,7 @@ pub use input::{peek, remove_copies, seekable, text};
 pub use options::{Parts, ReadOptions, Rows};
 pub use plain::{no_formula, without_controls};
 pub use read::{Records, read};
-pub use record::{Channel, Record, Samples};
+pub use record::{Channel, LowPass, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
 pub use table::Table;
 pub use whole::{Files, remove_left_behind, write_whole};

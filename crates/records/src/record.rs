@@ -31,6 +31,8 @@ pub struct Record {
     pub case: Option<String>,
     /// Corner of the amplifier's high-pass in Hz, 0 for none, if the file says.
     pub high_pass_hz: Option<f64>,
+    /// The amplifier's low-pass, if the file states one.
+    pub low_pass: Option<LowPass>,
     /// Samples before the trigger, if the file says.
     pub pretrigger: Option<usize>,
     /// Whether the trigger fired, if the file says; if not, the recorder gave up waiting.
@@ -42,6 +44,15 @@ pub struct Record {
     pub gaps: Vec<Range<usize>>,
     /// What was taken for granted while it was read, as it is told to people.
     pub notes: Vec<String>,
+}
+
+/// An amplifier's low-pass: of one pole, or a Butterworth filter of two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPass {
+    /// Its corner in Hz.
+    pub corner_hz: f64,
+    /// 1 or 2.
+    pub order: usize,
 }
 
 impl Record {
@@ -65,6 +76,7 @@ impl Record {
             speed_error_m_s: None,
             case: None,
             high_pass_hz: None,
+            low_pass: None,
             pretrigger: None,
             triggered: None,
             first_sample: 0,

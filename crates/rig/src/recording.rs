@@ -107,7 +107,7 @@ pub(crate) fn verify(
 
 fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
     let campaign = plan.experiment.campaign();
-    let recorder = &campaign.recorder;
+    let (recorder, amplifier) = (&campaign.recorder, &campaign.amplifier);
     let text = |name: &str, value: f64| (name.to_owned(), value.to_string());
     SeriesInfo {
         channels: match recorder.channels {
@@ -132,7 +132,16 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
             text("sensor_bead", plan.experiment.sensor_bead() as f64),
             text("taps", campaign.taps as f64),
             text("tap_speed_m_s", campaign.tap_speed_m_s),
-            text("high_pass_hz", campaign.amplifier.high_pass_hz),
+            text("high_pass_hz", amplifier.high_pass_hz),
+            text("low_pass_hz", amplifier.low_pass_hz),
+            (
+                "low_pass_order".to_owned(),
+                experiment::ORDERS[amplifier.order as usize].to_owned(),
+            ),
+            (
+                "low_pass_kind".to_owned(),
+                experiment::KINDS[amplifier.kind as usize].to_owned(),
+            ),
         ],
     }
 }

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print;
 use hertzchain_measure::{
-    Curves, Measurement, Note, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
+    Curves, Measurement, Note, Options, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
 };
 use hertzchain_signal::Bandwidth;
 use hertzchain_verbs::arguments::measure::Measure as Arguments;
@@ -26,7 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
-    note_low_pass(measured.bandwidth, arguments.picking.low_pass);
+    note_low_pass(&measured, &options, arguments.picking.low_pass);
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
@@ -83,17 +83,17 @@ fn tell(measured: &Measurement) {
 }
 
 /// Notes whether maxima are those before the amplifier's low-pass, unless the user left it as it is
-/// by a corner of 0.
-fn note_low_pass(corrected: Option<Bandwidth>, asked_hz: Option<f64>) {
-    match (corrected, asked_hz) {
+/// by a corner of 0, or notes on files that state it say so.
+fn note_low_pass(measured: &Measurement, options: &Options, asked_hz: Option<f64>) {
+    match (options.measuring.bandwidth, asked_hz) {
         (Some(Bandwidth { corner_hz, order }), _) => print::note(&format!(
             "note: maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
         )),
-        (None, Some(_)) => {}
-        (None, None) => print::note(
+        (None, None) if measured.bandwidth.is_none() => print::note(
             "note: times are not corrected for the amplifier's low-pass: its corner is not stated \
              (--low-pass, --rig)",
         ),
+        _ => {}
     }
 }
 

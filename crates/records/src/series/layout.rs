@@ -40,3 +40,5 @@ pub(super) const EXPERIMENT: &str = "experiment";
 pub(super) const SPEED_ERROR: &str = "measured_speed_error_m_s";
 /// Corner of the amplifier's high-pass in Hz; written if the rig tells one.
 pub(super) const HIGH_PASS: &str = "high_pass_hz";
+/// Corner of its low-pass in Hz, its order in words and its kind; written if the rig states them.
+pub(super) const LOW_PASS: [&str; 3] = ["low_pass_hz", "low_pass_order", "low_pass_kind"];

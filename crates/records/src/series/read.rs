@@ -7,7 +7,7 @@ use crate::hdf5::{damaged, dataset};
 use crate::interval::interval_s;
 use crate::options::ReadOptions;
 use crate::read::Raw;
-use crate::record::{Channel, Record, Samples};
+use crate::record::{Channel, LowPass, Record, Samples};
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::path::{Path, PathBuf};
 
@@ -49,6 +49,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
         pretrigger: number(layout::PRETRIGGER)? as usize,
         case: attribute_text(open, layout::CASE),
         speed_error_m_s: told(open, layout::SPEED_ERROR),
+        low_pass: low_pass(open),
         high_pass_hz: told(open, layout::HIGH_PASS).filter(|hz| hz.is_finite() && *hz >= 0.0),
         numbers: column(open, layout::SHOT, shots).map_err(foreign)?,
         speeds: column(open, layout::MEASURED, shots).map_err(foreign)?,
@@ -71,6 +72,7 @@ struct Shelf {
     case: Option<String>,
     speed_error_m_s: Option<f64>,
     high_pass_hz: Option<f64>,
+    low_pass: Option<LowPass>,
     numbers: Vec<i64>,
     speeds: Vec<f64>,
     programmed: Vec<f64>,
@@ -103,6 +105,7 @@ impl Shelf {
             triggered: self.triggered.get(row).map(|fired| *fired != 0),
             case: self.case.clone(),
             high_pass_hz: self.high_pass_hz,
+            low_pass: self.low_pass,
             pretrigger: Some(self.pretrigger),
             ..Record::new(source, &self.file, self.interval_s, channels)
         })
@@ -118,6 +121,21 @@ impl Shelf {
             },
         })
     }
+}
+
+/// The amplifier's low-pass, if it is one of those that [`LowPass`] has.
+fn low_pass(open: &H5File) -> Option<LowPass> {
+    let [corner, order, kind] = layout::LOW_PASS;
+    let order = match (
+        &*attribute_text(open, order)?,
+        &*attribute_text(open, kind)?,
+    ) {
+        ("first", _) => 1,
+        ("second", "butterworth") => 2,
+        _ => return None,
+    };
+    let corner_hz = told(open, corner).filter(|hz| hz.is_finite() && *hz > 0.0)?;
+    Some(LowPass { corner_hz, order })
 }
 
 /// The channels of a file, with their names: one, or one a sensor.

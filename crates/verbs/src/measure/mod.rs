@@ -91,6 +91,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let high_pass_hz = ac_coupling_hz(&arguments.picking, rig.as_ref());
     Ok(Options {
         keep_droop: high_pass_hz == Some(0.0),
+        keep_low_pass: arguments.picking.low_pass == Some(0.0),
         reading: ReadOptions {
             rate_hz: reading.rate,
             trust_rate: reading.trust_rate,
