@@ -62,10 +62,69 @@ impl Sizes {
     }
 }
 
-/// Row number `at` of a seed.
-pub fn row(seed: u64, at: u64) -> Row {
+/// Rows of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// Strikers of 1/1000 to 1/10 of bead 1.
+    Light,
+    /// Strikers of 10 to 1000 times bead 1.
+    Heavy,
+    /// Beads by turns, or all unlike.
+    Split,
+    /// Under a push.
+    Loaded,
+    /// With soft contacts from some bead on.
+    Soft,
+}
+
+impl Family {
+    /// By its name.
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [
+            Self::Light,
+            Self::Heavy,
+            Self::Split,
+            Self::Loaded,
+            Self::Soft,
+        ];
+        all.into_iter()
+            .find(|it| format!("{it:?}").to_lowercase() == name)
+    }
+
+    /// Makes a row one of these.
+    fn shape(self, chance: &mut Chance, row: &mut Row, sizes: &Sizes) {
+        let count = row.beads.len();
+        match self {
+            Self::Light => row.striker.mass_kg = row.beads[0].mass_kg * chance.decades(1e-3, 0.1),
+            Self::Heavy => row.striker.mass_kg = row.beads[0].mass_kg * chance.decades(10.0, 1e3),
+            Self::Split => {}
+            Self::Loaded => {
+                row.gaps.clear();
+                let push = |chance: &mut Chance| Push {
+                    force_n: sizes.force_n * chance.decades(1e-4, 3.0),
+                    stiffness_n_m: 0.0,
+                };
+                row.push.get_or_insert_with(|| push(chance));
+            }
+            Self::Soft => {
+                let first = 1 + chance.below(count);
+                let soft = Law::ElasticPower {
+                    stiffness: chance.decades(1e-4, 1e-1) * sizes.force_n
+                        / sizes.overlap_m.powf(1.5),
+                    exponent: 1.5,
+                };
+                row.sections.retain(|(from, _)| *from < first);
+                row.sections.push((first, vec![soft]));
+            }
+        }
+    }
+}
+
+/// Row number `at` of a seed, of a family or any.
+pub fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
     let mut chance = Chance::new(seed, at);
-    let count = chance.decades(1.0, 101.0) as usize;
+    let fewest = if family.is_some() { 3.0 } else { 1.0 };
+    let count = chance.decades(fewest, 101.0) as usize;
     let speed_m_s = chance.decades(0.03, 3.0);
     let young_pa = chance.decades(1e9, 3e11);
     let mut materials = vec![material(&mut chance, young_pa)];
@@ -83,9 +142,13 @@ pub fn row(seed: u64, at: u64) -> Row {
         mass_kg: 4.0 / 3.0 * PI * radius_m.powi(3) * densities[material],
         material,
     };
-    let beads = beads(&mut chance, count, materials.len(), |scale, material| {
-        ball(radius_m * scale, material)
-    });
+    let is_split = family == Some(Family::Split);
+    let beads = beads(
+        &mut chance,
+        (count, is_split),
+        materials.len(),
+        |scale, material| ball(radius_m * scale, material),
+    );
     let striker = striker(&mut chance, &beads[0]);
     let sizes = Sizes::new(&beads[0], &materials[beads[0].material], speed_m_s);
     for material in &mut materials {
@@ -116,6 +179,9 @@ pub fn row(seed: u64, at: u64) -> Row {
         sensor: (count / 2).clamp(1, 7).min(1 + chance.below(count)),
     };
     surroundings(&mut chance, &mut row, &sizes);
+    if let Some(family) = family {
+        family.shape(&mut chance, &mut row, &sizes);
+    }
     row
 }
 
@@ -135,13 +201,17 @@ fn damping(chance: &mut Chance) -> f64 {
 /// Equal beads, dimers, tapers, rows with an intruder, and beads at random.
 fn beads(
     chance: &mut Chance,
-    count: usize,
+    (count, is_split): (usize, bool),
     materials: usize,
     ball: impl Fn(f64, usize) -> Ball,
 ) -> Vec<Ball> {
     let other = materials - 1;
     let ratio = chance.decades(0.15, 4.0);
-    match chance.below(5) {
+    let kind = match is_split {
+        true => [1, 4][chance.below(2)],
+        false => chance.below(5),
+    };
+    match kind {
         0 => vec![ball(1.0, 0); count],
         1 => {
             let cell = [ball(1.0, 0), ball(ratio, other)];

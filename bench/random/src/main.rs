@@ -4,6 +4,7 @@
 //! a method and code of its own, asks the program about it in several ways, and prints what differs.
 //! Files of rows with a finding are kept.
 
+mod arrival;
 mod compare;
 mod draw;
 mod motion;
@@ -14,9 +15,11 @@ mod row;
 #[cfg(test)]
 mod tests;
 
-use compare::{Finding, compare, search_ends_s};
+use arrival::Arrival;
+use compare::{Finding, Verdict, compare};
+use draw::Family;
 use program::{Answer, Ask, Silence, ask};
-use reference::Reference;
+use reference::{BEYOND, Reference};
 use row::Row;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -26,8 +29,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 const USAGE: &str = "usage: hertzchain-random [COUNT] [--seed N] [--from N] [--jobs N] \
-     [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] \
-     [--seconds N] [--sample]";
+     [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] [--all] \
+     [--family light|heavy|split|loaded|soft] [--beads MOST] [--seconds N] [--sample] [--maxima]";
 
 /// What is to be done.
 struct Options {
@@ -38,10 +41,17 @@ struct Options {
     program: PathBuf,
     keep: PathBuf,
     only: Option<String>,
+    /// Every row is asked for in all ways, not in four by turns.
+    all: bool,
+    family: Option<Family>,
+    /// Longer rows are left out.
+    beads: usize,
     /// No row is begun after this time.
     limit: Duration,
     /// Print reference numbers for the test of a fixed sample instead.
     sample: bool,
+    /// Print the reference's maxima instead.
+    maxima: bool,
 }
 
 impl Options {
@@ -55,8 +65,12 @@ impl Options {
             program: "target/release/hertzchain".into(),
             keep: "target/random".into(),
             only: None,
+            all: false,
+            family: None,
+            beads: usize::MAX,
             limit: Duration::MAX,
             sample: false,
+            maxima: false,
         };
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| USAGE.to_owned());
@@ -68,7 +82,14 @@ impl Options {
                 "--program" => options.program = value()?.into(),
                 "--keep" => options.keep = value()?.into(),
                 "--only" => options.only = Some(value()?),
+                "--beads" => options.beads = number(value()?)? as usize,
+                "--all" => options.all = true,
+                "--family" => {
+                    options.family =
+                        Some(Family::named(&value()?).ok_or_else(|| USAGE.to_owned())?);
+                }
                 "--seconds" => options.limit = Duration::from_secs(number(value()?)?),
+                "--maxima" => options.maxima = true,
                 "--sample" => options.sample = true,
                 count => options.count = number(count.to_owned())?,
             }
@@ -85,62 +106,98 @@ struct Outcome {
     finding: Option<Finding>,
 }
 
-/// Ways to ask the program about every row.
-fn asks(only: Option<&str>) -> Vec<Ask> {
-    let mut asks = vec![Ask::new("shot", &[]), Ask::new("shot", &["-a", "1e-9"])];
+/// Ways to ask the program about a row: `shot`, and two others by turns.
+fn asks(options: &Options, at: u64) -> Vec<Ask> {
+    let mut others = Vec::new();
     for accuracy in ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"] {
-        asks.push(Ask::new("sweep", &["-a", accuracy]));
+        others.push(Ask::new("sweep", &["-a", accuracy]));
     }
-    asks.retain(|ask| only.is_none_or(|only| ask.name() == only));
-    asks
+    for accuracy in ["1e-9", "1e-3", "1e-8"] {
+        others.push(Ask::new("shot", &["-a", accuracy]));
+    }
+    if options.only.is_none() && !options.all {
+        let turn = at as usize % others.len();
+        others.rotate_left(turn);
+        others.swap(1, 3);
+        others.truncate(2);
+    }
+    others.insert(0, Ask::new("shot", &[]));
+    let only = options.only.as_deref();
+    others.retain(|ask| only.is_none_or(|only| ask.name() == only));
+    others
 }
 
 /// The same shot with durations that cover the window in which its pulses are looked for.
-fn durations(answer: &Answer) -> Vec<Ask> {
+fn durations(options: &Options, at: u64, answer: &Answer) -> Vec<Ask> {
     let Ok(peaks) = &answer.peaks else {
         return Vec::new();
     };
-    let until_s = search_ends_s(peaks);
+    if options.only.is_some() {
+        return Vec::new();
+    }
+    let until_s = peaks.search_ends_s();
     let ask = |share: f64| Ask::new("shot", &["--duration", &format!("{:?} s", share * until_s)]);
-    vec![ask(1.0001), ask(1.3)]
+    let mut asks = [1.0001, 1.3, 3.0].map(ask).to_vec();
+    if !options.all {
+        asks.swap(0, at as usize % 3);
+        asks.truncate(1);
+    }
+    asks
 }
 
-/// Asks in all ways; the reference covers what all of them looked for.
-fn outcomes(options: &Options, row: &Row, file: &Path) -> Vec<Outcome> {
+/// Asks about a row, and compares.
+fn outcomes(options: &Options, (at, row): (u64, &Row), file: &Path) -> Vec<Outcome> {
     let ask = |how: Ask| {
         let said = ask(&options.program, file, row.speed_m_s, &how);
         (how.name(), said)
     };
-    let mut said: Vec<_> = asks(options.only.as_deref()).into_iter().map(ask).collect();
-    if let Some((_, Ok(answer))) = said.first()
-        && options.only.is_none()
-    {
-        said.extend(durations(answer).into_iter().map(ask));
+    let mut said = Vec::new();
+    for how in asks(options, at) {
+        said.push(ask(how));
+        if matches!(said.last(), Some((_, Err(Silence::TooSlow)))) {
+            break;
+        }
+    }
+    if let Some((_, Ok(answer))) = said.first() {
+        said.extend(durations(options, at, answer).into_iter().map(ask));
     }
     let needed = said.iter().filter_map(|(_, said)| {
         let said = said.as_ref().ok()?;
-        Some(said.peaks.as_ref().map_or(said.duration_s, search_ends_s))
+        Some(
+            said.peaks
+                .as_ref()
+                .map_or(said.duration_s, Arrival::search_ends_s),
+        )
     });
-    let until_s = 1.02 * needed.fold(0.0, f64::max);
-    let reference = match until_s > 0.0 {
-        true => Reference::new(row, until_s).ok(),
-        false => None,
+    let until_s = BEYOND * needed.fold(0.0, f64::max);
+    let verdicts = verdicts(row, until_s, &said);
+    let outcome = |((name, said), verdict): ((String, Result<Answer, Silence>), Verdict)| Outcome {
+        name,
+        said,
+        error: verdict.error,
+        finding: verdict.finding,
     };
-    let outcome = |(name, said): (String, Result<Answer, Silence>)| {
-        let verdict = said.as_ref().ok().zip(reference.as_ref());
-        let verdict = verdict.map(|(answer, reference)| compare(answer, reference));
-        let (error, finding) = match verdict {
-            Some(verdict) => (verdict.error, verdict.finding),
-            None => (None, said.is_ok().then_some(Finding::Unresolved)),
+    said.into_iter().zip(verdicts).map(outcome).collect()
+}
+
+/// By a quick reference, and where that differs by one as right as can be.
+fn verdicts(row: &Row, until_s: f64, said: &[(String, Result<Answer, Silence>)]) -> Vec<Verdict> {
+    let all = |mut reference: Reference| -> Vec<Verdict> {
+        let unresolved = until_s > 0.0 && reference.cover(until_s).is_err();
+        let verdict = |(_, said): &(String, Result<Answer, Silence>)| match said {
+            Ok(answer) if !unresolved => compare(answer, &reference),
+            said => Verdict {
+                error: None,
+                finding: said.is_ok().then_some(Finding::Unresolved),
+            },
         };
-        Outcome {
-            name,
-            said,
-            error,
-            finding,
-        }
+        said.iter().map(verdict).collect()
     };
-    said.into_iter().map(outcome).collect()
+    let quick = all(Reference::quick(row));
+    match quick.iter().any(|verdict| verdict.finding.is_some()) {
+        true => all(Reference::tight(row)),
+        false => quick,
+    }
 }
 
 /// Counts by way of asking.
@@ -207,13 +264,16 @@ fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
             if at >= options.from + options.count || begun.elapsed() > options.limit {
                 break;
             }
-            let row = draw::row(options.seed, at);
+            let row = draw::row(options.seed, at, options.family);
+            if row.beads.len() > options.beads {
+                continue;
+            }
             let text = row.toml();
             if let Err(error) = std::fs::write(&file, &text) {
                 eprintln!("error: {}: {error}", file.display());
                 break;
             }
-            let outcomes = outcomes(options, &row, &file);
+            let outcomes = outcomes(options, (at, &row), &file);
             let Ok(mut tallies) = tallies.lock() else {
                 break;
             };
@@ -245,7 +305,7 @@ fn sample(options: &Options) -> std::io::Result<()> {
     let file = options.keep.join("sample.toml");
     println!("seed,row,incident_s,reflected_s");
     for at in options.from..options.from + options.count {
-        let row = draw::row(options.seed, at);
+        let row = draw::row(options.seed, at, options.family);
         if row.beads.len() > SAMPLED {
             continue;
         }
@@ -254,16 +314,42 @@ fn sample(options: &Options) -> std::io::Result<()> {
         let Ok(answer) = ask(&options.program, &file, row.speed_m_s, &how) else {
             continue;
         };
-        let Ok(peaks) = &answer.peaks else { continue };
-        let Ok(reference) = Reference::new(&row, 1.02 * search_ends_s(peaks)) else {
+        let mut reference = Reference::tight(&row);
+        if reference.cover(0.0).is_err() {
+            continue;
+        }
+        let Some(right) = reference.signals().arrival() else {
             continue;
         };
         let agrees = compare(&answer, &reference).finding.is_none();
-        if let (true, Some([incident_s, reflected_s])) = (agrees, reference.flights(peaks)) {
+        if let (true, Some(incident)) = (agrees, right.incident) {
+            let incident_s = right.wall.time_s - incident.time_s;
+            let back = right
+                .reflected
+                .filter(|_| answer.peaks.is_ok_and(|it| it.reflected.is_some()));
+            let reflected_s = back.map_or(f64::NAN, |back| back.time_s - right.wall.time_s);
             println!("{},{at},{incident_s:.12e},{reflected_s:.12e}", options.seed);
         }
     }
     Ok(())
+}
+
+/// Time in s and height in N of the reference's maxima: sensor bead, wall.
+fn print_maxima(options: &Options) {
+    for at in options.from..options.from + options.count {
+        let mut reference = Reference::tight(&draw::row(options.seed, at, options.family));
+        if reference.cover(0.0).is_err() {
+            println!("row {at}: unresolved");
+            continue;
+        }
+        println!("row {at}: {:?}", reference.signals().arrival());
+        let signals = reference.signals();
+        for (name, maxima) in [("sensor", signals.sensor), ("wall", signals.wall)] {
+            for maximum in maxima {
+                println!("{name}\t{:.9e}\t{:.9e}", maximum.time_s, maximum.height_n);
+            }
+        }
+    }
 }
 
 fn main() -> ExitCode {
@@ -274,6 +360,10 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    if options.maxima {
+        print_maxima(&options);
+        return ExitCode::SUCCESS;
+    }
     if options.sample {
         return match sample(&options) {
             Ok(()) => ExitCode::SUCCESS,

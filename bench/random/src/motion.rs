@@ -5,6 +5,7 @@
 //! of signals.
 
 use crate::physics::{Contact, Equations};
+use std::cell::Cell;
 
 /// What a contact does; a plastic one also remembers whether it is on its loading curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +29,10 @@ pub struct Stuck;
 
 /// Substeps of the columns of the extrapolation.
 const SUBSTEPS: [usize; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
-/// Shortest step and most steps before an integration is given up.
+/// Shortest step, and most forces of contacts computed, before an integration is given up: the
+/// latter after some seconds.
 const SHORTEST: f64 = 1e-13;
-const MOST_STEPS: u64 = 3_000_000;
+const MOST_FORCES: u64 = 300_000_000;
 /// Overlaps that are none, over a typical one: so that no contact changes its mode back at once.
 const TINY: f64 = 1e-14;
 /// Maxima below this share of the largest are not looked for.
@@ -50,8 +52,8 @@ pub struct Scales {
 }
 
 /// A row in motion, with the maxima of two signals so far: sensor bead and wall.
-pub struct Motion<'a> {
-    equations: &'a Equations,
+pub struct Motion {
+    equations: Equations,
     scales: Scales,
     sensor: usize,
     time_s: f64,
@@ -61,7 +63,7 @@ pub struct Motion<'a> {
     loading: Vec<bool>,
     largest: Vec<f64>,
     step_s: f64,
-    steps: u64,
+    forces: Cell<u64>,
     before: Option<[[f64; 2]; 2]>,
     pub maxima: [Vec<Maximum>; 2],
     /// Lowest value between each maximum and the one before it.
@@ -70,9 +72,9 @@ pub struct Motion<'a> {
     lowest: [f64; 2],
 }
 
-impl<'a> Motion<'a> {
+impl Motion {
     /// At the striker's touch.
-    pub fn new(equations: &'a Equations, sensor: usize, scales: Scales) -> Self {
+    pub fn new(equations: Equations, sensor: usize, scales: Scales) -> Self {
         let bodies = equations.inverse_mass.len();
         let mut y = vec![0.0; 2 * bodies];
         y[bodies] = scales.speed_m_s;
@@ -83,20 +85,21 @@ impl<'a> Motion<'a> {
         };
         let contacts = &equations.contacts;
         Self {
-            equations,
-            scales,
-            sensor,
-            time_s: 0.0,
-            y,
             mode: contacts.iter().map(open).collect(),
             loading: vec![true; contacts.len()],
             largest: contacts
                 .iter()
                 .map(|contact| rest(contact).max(0.0))
                 .collect(),
+            equations,
+            scales,
+            sensor,
+            time_s: 0.0,
+            y,
             step_s: 1e-4 * scales.time_s,
-            steps: 0,
-            before: None,
+            forces: Cell::new(0),
+            // Before the touch there is no force.
+            before: Some([[0.0; 2]; 2]),
             maxima: [Vec::new(), Vec::new()],
             dips: [Vec::new(), Vec::new()],
             highest: [0.0; 2],
@@ -107,13 +110,17 @@ impl<'a> Motion<'a> {
     /// Goes on until a time.
     pub fn run(&mut self, until_s: f64) -> Result<(), Stuck> {
         while self.time_s < until_s {
-            self.steps += 1;
-            if self.steps > MOST_STEPS {
+            if self.forces.get() > MOST_FORCES {
                 return Err(Stuck);
             }
             self.advance()?;
         }
         Ok(())
+    }
+
+    /// Its scales and accuracy.
+    pub fn scales(&self) -> Scales {
+        self.scales
     }
 
     fn bodies(&self) -> usize {
@@ -136,8 +143,12 @@ impl<'a> Motion<'a> {
         let (d, r) = self.gap(y, c);
         let contact = &self.equations.contacts[c];
         match self.mode[c] {
+            // Ahead of the wave.
+            _ if d <= 0.0 && r == 0.0 => 0.0,
             Mode::Closed => contact.closed(d, r, self.memory(c, d)),
             Mode::Cut => 0.0,
+            // A clipped force never pulls, across a gap neither.
+            Mode::Open if self.equations.clipped => contact.open(r).max(0.0),
             Mode::Open => contact.open(r),
         }
     }
@@ -160,6 +171,7 @@ impl<'a> Motion<'a> {
         if let Some((force_n, stiffness)) = self.equations.spring {
             v_out[1] += (force_n - stiffness * y[1]).max(0.0);
         }
+        self.forces.set(self.forces.get() + bodies as u64);
         for c in 0..bodies - 1 {
             let force = self.force(y, c);
             v_out[c] -= force;
@@ -423,6 +435,7 @@ impl<'a> Motion<'a> {
             let contact = &self.equations.contacts[c];
             let [by_overlap, by_rate] = match self.mode[c] {
                 Mode::Cut => [0.0; 2],
+                Mode::Open if self.equations.clipped && rate < 0.0 => [0.0; 2],
                 mode => contact.slopes(mode == Mode::Open, d, rate, self.memory(c, d)),
             };
             let change = f[bodies + c] - f[bodies + c + 1];

@@ -1,13 +1,15 @@
 //! Runs of the program under test and what they say.
 
+use crate::arrival::{Arrival, PULSES};
 use crate::motion::Maximum;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A run that takes longer is stopped.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// A run that takes longer is stopped: of processor time in s where the system says it, else of
+/// the clock's.
+const PATIENCE_S: f64 = 5.0;
 
 /// One way to ask the program.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,23 +34,18 @@ impl Ask {
     }
 }
 
-/// The three peaks that were picked.
-#[derive(Clone, Copy, Debug)]
-pub struct Peaks {
-    pub incident: Maximum,
-    pub wall: Maximum,
-    pub reflected: Option<Maximum>,
-}
-
 /// What a run said.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    pub peaks: Result<Peaks, String>,
+    /// The peaks, or why there are none.
+    pub peaks: Result<Arrival, String>,
     pub asked: f64,
     pub reached: Option<f64>,
     pub duration_s: f64,
-    pub sensor_maxima: Vec<Maximum>,
-    pub wall_maxima: Vec<Maximum>,
+    /// Of the sensor bead and of the wall.
+    pub maxima: [Vec<Maximum>; 2],
+    /// Of the incident, the wall's and the reflected pulse.
+    pub competing: [Vec<Maximum>; 3],
     pub notes: Vec<String>,
     pub force_passes: f64,
 }
@@ -110,7 +107,7 @@ fn output(command: &mut Command) -> Result<String, Silence> {
         if let Some(status) = child.try_wait().map_err(refused)? {
             break status;
         }
-        if begun.elapsed() > PATIENCE {
+        if processor_s(child.id()).unwrap_or(begun.elapsed().as_secs_f64()) > PATIENCE_S {
             let _ = child.kill();
             let _ = child.wait();
             return Err(Silence::TooSlow);
@@ -128,6 +125,16 @@ fn output(command: &mut Command) -> Result<String, Silence> {
     }
 }
 
+/// Processor time of a process so far, in s: Linux alone has this file.
+fn processor_s(process: u32) -> Option<f64> {
+    let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let after_name = text.rsplit_once(')')?.1;
+    // Its user and system time in hundredths of a second.
+    let mut times = after_name.split_whitespace().skip(11);
+    let hundredths: f64 = times.next()?.parse::<f64>().ok()? + times.next()?.parse::<f64>().ok()?;
+    Some(0.01 * hundredths)
+}
+
 fn maximum(json: &Value) -> Option<Maximum> {
     Some(Maximum {
         time_s: json["time_s"].as_f64()?,
@@ -142,19 +149,21 @@ fn maxima(json: &Value) -> Vec<Maximum> {
 
 fn answer(shot: &Value) -> Answer {
     let passage = &shot["passage"];
-    let peaks = match (maximum(&passage["incident"]), maximum(&passage["wall"])) {
-        (Some(incident), Some(wall)) => {
-            let reflected = maximum(&passage["reflected"]);
-            Ok(Peaks {
-                incident,
-                wall,
-                reflected,
-            })
-        }
-        _ => Err(passage["missing"]
+    let peaks = match maximum(&passage["wall"]) {
+        Some(wall) => Ok(Arrival {
+            incident: maximum(&passage["incident"]),
+            wall,
+            reflected: maximum(&passage["reflected"]),
+        }),
+        None => Err(passage["missing"]
             .as_str()
             .unwrap_or("no reason given")
             .to_owned()),
+    };
+    let competing = |pulse: &str| {
+        let all = passage["competing"].as_array().into_iter().flatten();
+        let of_pulse = all.filter(|it| it["pulse"].as_str() == Some(pulse));
+        of_pulse.filter_map(maximum).collect()
     };
     let notes = shot["notes"].as_array().into_iter().flatten();
     Answer {
@@ -162,8 +171,8 @@ fn answer(shot: &Value) -> Answer {
         asked: shot["accuracy_asked"].as_f64().unwrap_or(f64::NAN),
         reached: shot["accuracy_reached"].as_f64(),
         duration_s: shot["duration_s"].as_f64().unwrap_or(f64::NAN),
-        sensor_maxima: maxima(&shot["sensor_maxima"]),
-        wall_maxima: maxima(&passage["wall_maxima"]),
+        maxima: [&shot["sensor_maxima"], &passage["wall_maxima"]].map(maxima),
+        competing: PULSES.map(competing),
         notes: notes
             .filter_map(|note| Some(note.as_str()?.to_owned()))
             .collect(),

@@ -1,26 +1,31 @@
 //! Maxima of a row's signals by the independent integration, and how right they are.
 
+use crate::arrival::{Signals, largest};
 use crate::motion::{Maximum, Motion, Scales, Stuck};
 use crate::physics::{Contact, Equations};
-use crate::program::Peaks;
 use crate::row::Row;
 
-/// Tolerances of a step: of the reference, and of the run that shows how right it is.
-const TOLERANCES: [f64; 2] = [1e-13, 3e-12];
+/// Tolerances of a step: of the quick reference; of the tight one, and of the run that shows how
+/// right that is.
+const QUICK: f64 = 1e-11;
+const TIGHT: [f64; 2] = [1e-13, 3e-12];
+/// A pulse's height times time is at least this share of the momentum of the lightest body at the
+/// striker's speed: docs/conventions.md.
+const FAINTEST: f64 = 1e-3;
+/// The reference goes on for this many times what is needed.
+pub const BEYOND: f64 = 1.02;
 /// Longest step over the shortest time of the contacts that are watched.
 const LONGEST_STEP: f64 = 0.1;
 
 /// Least height of a maximum that must be listed above the dips beside it, over the largest.
 const PROMINENT: f64 = 1e-2;
 
-/// The maxima of both signals until a time, and the same computed less tightly.
+/// A row's signals by the independent integration.
 pub struct Reference {
-    pub until_s: f64,
-    /// Sensor bead, wall.
-    pub maxima: [Vec<Maximum>; 2],
-    /// Those of them that stand out on both sides.
-    pub prominent: [Vec<Maximum>; 2],
-    looser: [Vec<Maximum>; 2],
+    least_n_s: f64,
+    /// The reference, and where its error is to be known a looser one.
+    runs: Vec<Motion>,
+    prominent: [Vec<Maximum>; 2],
 }
 
 /// Time in s in which two bodies turn round: of a contact, by its elastic terms and their mass.
@@ -55,42 +60,86 @@ fn scales(row: &Row, equations: &Equations, tolerance: f64) -> Scales {
 }
 
 impl Reference {
-    /// Until a time.
-    pub fn new(row: &Row, until_s: f64) -> Result<Self, Stuck> {
-        let equations = Equations::new(row);
-        let run = |tolerance| {
-            let scales = scales(row, &equations, tolerance);
-            let mut motion = Motion::new(&equations, row.sensor, scales);
-            motion.run(until_s).map(|()| motion)
-        };
-        let [tight, loose] = TOLERANCES.map(run);
-        let (tight, loose) = (tight?, loose?);
-        let prominent = [0, 1].map(|at| prominent(&tight.maxima[at], &tight.dips[at]));
-        Ok(Self {
-            until_s,
-            maxima: tight.maxima,
-            prominent,
-            looser: loose.maxima,
-        })
+    /// Of a row, quickly: how right it is remains unknown.
+    pub fn quick(row: &Row) -> Self {
+        Self::with(row, &[QUICK])
     }
 
-    /// Incident and reflected time of flight in s between the maxima nearest to peaks; NaN for the
-    /// latter where none was picked.
-    pub fn flights(&self, peaks: &Peaks) -> Option<[f64; 2]> {
-        let incident_s = nearest(&self.maxima[0], peaks.incident.time_s)?.time_s;
-        let wall_s = nearest(&self.maxima[1], peaks.wall.time_s)?.time_s;
-        let back = peaks
-            .reflected
-            .and_then(|peak| nearest(&self.maxima[0], peak.time_s));
-        Some([
-            wall_s - incident_s,
-            back.map_or(f64::NAN, |back| back.time_s - wall_s),
-        ])
+    /// Of a row, as right as can be, and how right.
+    pub fn tight(row: &Row) -> Self {
+        Self::with(row, &TIGHT)
+    }
+
+    fn with(row: &Row, tolerances: &[f64]) -> Self {
+        let equations = Equations::new(row);
+        let motion = |tolerance: &f64| {
+            let scales = scales(row, &equations, *tolerance);
+            Motion::new(equations.clone(), row.sensor, scales)
+        };
+        let masses = equations.inverse_mass.iter().map(|inverse| inverse.recip());
+        Self {
+            least_n_s: FAINTEST * row.speed_m_s * masses.fold(f64::INFINITY, f64::min),
+            runs: tolerances.iter().map(motion).collect(),
+            prominent: [Vec::new(), Vec::new()],
+        }
+    }
+
+    /// Goes on until a time at least, and until the search for the arrival is over.
+    pub fn cover(&mut self, until_s: f64) -> Result<(), Stuck> {
+        // Without a time, growing ones until there is an arrival.
+        let mut until_s = until_s;
+        if until_s <= 0.0 {
+            return self.until_arrival();
+        }
+        loop {
+            for run in &mut self.runs {
+                run.run(until_s)?;
+            }
+            match self.signals().arrival() {
+                Some(arrival) if arrival.search_ends_s() >= until_s => {
+                    until_s = BEYOND * arrival.search_ends_s();
+                }
+                _ => break,
+            }
+        }
+        let run = &self.runs[0];
+        self.prominent = [0, 1].map(|at| prominent(&run.maxima[at], &run.dips[at]));
+        Ok(())
+    }
+
+    /// Goes on until there is an arrival, and its search is over.
+    fn until_arrival(&mut self) -> Result<(), Stuck> {
+        let mut until_s = self.runs[0].scales().time_s;
+        while self.signals().arrival().is_none() {
+            for run in &mut self.runs {
+                run.run(until_s)?;
+            }
+            until_s *= 2.0;
+        }
+        self.cover(until_s)
+    }
+
+    /// The maxima of both signals.
+    pub fn signals(&self) -> Signals<'_> {
+        let [sensor, wall] = &self.runs[0].maxima;
+        Signals {
+            sensor,
+            wall,
+            least_n_s: self.least_n_s,
+        }
+    }
+
+    /// Those maxima of the sensor bead and of the wall that stand out on both sides.
+    pub fn prominent(&self) -> &[Vec<Maximum>; 2] {
+        &self.prominent
     }
 
     /// How uncertain the time of a maximum of the sensor (0) or wall (1) is, in s.
     pub fn error_s(&self, signal: usize, maximum: &Maximum) -> f64 {
-        let again = nearest(&self.looser[signal], maximum.time_s);
+        let Some(looser) = self.runs.get(1) else {
+            return 0.0;
+        };
+        let again = nearest(&looser.maxima[signal], maximum.time_s);
         again.map_or(f64::INFINITY, |again| (again.time_s - maximum.time_s).abs())
     }
 }
@@ -112,10 +161,4 @@ pub fn nearest(maxima: &[Maximum], time_s: f64) -> Option<Maximum> {
         .iter()
         .copied()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-}
-
-/// The largest maximum of those wanted.
-pub fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
-    let wanted = maxima.iter().copied().filter(|maximum| wanted(maximum));
-    wanted.max_by(|a, b| a.height_n.total_cmp(&b.height_n))
 }

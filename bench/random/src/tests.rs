@@ -1,7 +1,7 @@
 //! The integration against numbers known otherwise.
 
 use crate::draw;
-use crate::reference::{Reference, largest};
+use crate::reference::Reference;
 use crate::row::{Ball, Far, Law, Material, Row};
 use hertzchain_experiment::Experiment;
 use hertzchain_study::{InstructionSet, Plan, Shot, shoot_all, shoot_estimated};
@@ -35,14 +35,14 @@ fn paper(speed_m_s: f64, laws: &[Law]) -> Row {
 
 /// Incident and reflected time of flight in s.
 fn flights(row: &Row) -> [f64; 2] {
-    let reference = Reference::new(row, 4e-3).unwrap();
-    let [sensor, wall] = &reference.maxima;
-    let hit = largest(wall, |_| true).unwrap();
-    let passed = largest(sensor, |maximum| maximum.time_s < hit.time_s).unwrap();
-    let until_s = hit.time_s + 3.0 * (hit.time_s - passed.time_s);
-    let back = |time_s: f64| time_s > hit.time_s && time_s < until_s;
-    let back = largest(sensor, |maximum| back(maximum.time_s)).unwrap();
-    [hit.time_s - passed.time_s, back.time_s - hit.time_s]
+    let mut reference = Reference::tight(row);
+    reference.cover(0.0).unwrap();
+    let arrival = reference.signals().arrival().unwrap();
+    let wall_s = arrival.wall.time_s;
+    [
+        wall_s - arrival.incident.unwrap().time_s,
+        arrival.reflected.unwrap().time_s - wall_s,
+    ]
 }
 
 /// Against docs of the design: ToFs printed to 1e-12 s there.
@@ -100,7 +100,7 @@ fn shots_and_sweeps_of_a_fixed_sample_are_as_wrong_as_they_state_at_most() {
     for line in SAMPLE.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let right_s = [cells[2].parse().unwrap(), cells[3].parse().unwrap()];
-        let row = draw::row(cells[0].parse().unwrap(), cells[1].parse().unwrap());
+        let row = draw::row(cells[0].parse().unwrap(), cells[1].parse().unwrap(), None);
         let experiment = Experiment::from_text("row.toml", &row.toml()).unwrap();
         let plan = Plan::from_experiment(&experiment, None).unwrap().0;
         let shot = shoot_estimated(&plan.clone().with_budget()).unwrap();
