@@ -64,7 +64,8 @@ fn results_of_a_dimensionless_chain_name_no_units() {
     }
     let table = fs::read_to_string(out.join("sweep.csv")).unwrap();
     let names = "speed,tof_incident,tof_reflected,sensor_peak,wall_peak,returning_peak,\
-                 striker_rebound,accuracy_reached,competing_time,competing_peak\n";
+                 striker_rebound,accuracy_reached,competing_time,competing_peak,\
+                 competing_reflected_time,competing_reflected_peak\n";
     assert!(table.starts_with(names), "{table}");
     for name in ["time.npy", "position.npy", "velocity.npy", "force.npy"] {
         assert!(out.join(name).exists(), "{name}");
@@ -177,4 +178,45 @@ fn times_have_the_digits_of_the_accuracy_that_was_reached() {
     // three more.
     assert!(number.starts_with("761.904023"), "{number}");
     assert!((10..=13).contains(&number.len()), "{number}");
+}
+
+#[test]
+fn competing_maxima_and_a_wall_pulse_without_an_incident_one_are_in_tables_and_json() {
+    let (out, file) = folder("competing");
+    let written = |beads: u32, striker: f64| {
+        let striker = format!("speed = 1\nmass = {striker:?}\n");
+        let row = PLAIN
+            .replace("speed = 1\n", &striker)
+            .replace("bead = 2", "bead = 1");
+        fs::write(&file, row.replace("count = 8", &format!("count = {beads}"))).unwrap();
+    };
+    let json = |arguments: &[&str]| serde_json::from_str::<Value>(&good(arguments)).unwrap();
+    // A striker of ten beads presses a single one until after the wall's maximum.
+    written(1, 10.0);
+    let sweep = ["sweep", &file, "--speeds", "1", "--json"];
+    for passage in [
+        &json(&["shot", &file, "--json"])["passage"],
+        &json(&sweep)["points"][0]["passage"],
+    ] {
+        assert!(passage["missing"].is_string(), "{passage}");
+        // Half of 12.1736, when the striker lets go of a row that is elastic.
+        let wall = passage["wall"]["time"].as_f64().unwrap();
+        assert!((wall - 0.5 * 12.1736).abs() < 0.1, "{wall}");
+    }
+    // The train of a heavy one.
+    written(3, 1000.0);
+    let path = out.to_str().unwrap();
+    let swept = json(&["sweep", &file, "--speeds", "1", "--json", "--out", path]);
+    let competing = swept["points"][0]["passage"]["competing"]
+        .as_array()
+        .unwrap();
+    for pulse in ["incident", "wall", "reflected"] {
+        assert!(
+            competing.iter().any(|other| other["pulse"] == pulse),
+            "{pulse}"
+        );
+    }
+    let table = fs::read_to_string(out.join("sweep.csv")).unwrap();
+    let last: Vec<&str> = table.lines().last().unwrap().rsplit(',').take(4).collect();
+    assert!(last.iter().all(|cell| !cell.is_empty()), "{table}");
 }

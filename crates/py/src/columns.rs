@@ -9,14 +9,12 @@ use pyo3::types::{PyDict, PyList};
 type Column = (&'static str, fn(&Shot) -> Option<f64>);
 
 /// In the order in which they are told.
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 16] = [
     ("tof_incident_s", |shot| Some(shot.flight?.incident_s)),
     ("tof_reflected_s", |shot| shot.flight?.reflected_s),
     ("accuracy_reached", |shot| shot.accuracy_reached),
     ("sensor_peak_n", sensor_peak),
-    ("wall_peak_n", |shot| {
-        Some(shot.passage.as_ref().ok()?.wall.value)
-    }),
+    ("wall_peak_n", |shot| Some(shot.wall()?.value)),
     ("returning_peak_n", |shot| {
         Some(shot.passage.as_ref().ok()?.reflected?.value)
     }),
@@ -33,24 +31,16 @@ const COLUMNS: [Column; 14] = [
     ("striker_rebound_m_s", |shot| shot.rebound?.end_m_s),
     ("duration_s", |shot| Some(shot.duration_s)),
     ("competing_time_s", |shot| {
-        Some(
-            shot.passage
-                .as_ref()
-                .ok()?
-                .competing_arrival()?
-                .maximum
-                .time_s,
-        )
+        Some(shot.competing_arrival()?.time_s)
     }),
     ("competing_peak_n", |shot| {
-        Some(
-            shot.passage
-                .as_ref()
-                .ok()?
-                .competing_arrival()?
-                .maximum
-                .value,
-        )
+        Some(shot.competing_arrival()?.value)
+    }),
+    ("competing_reflected_time_s", |shot| {
+        Some(shot.competing_reflected()?.time_s)
+    }),
+    ("competing_reflected_peak_n", |shot| {
+        Some(shot.competing_reflected()?.value)
     }),
 ];
 

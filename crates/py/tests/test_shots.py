@@ -203,3 +203,23 @@ def test_dimensionless_chains_have_no_units():
     assert swept.to_xarray()["tof_incident_s"].attrs["units"] == "1"
     with pytest.raises(hc.OptionError, match="dimensionless"):
         hc.shot(chain, "1 m/s")
+
+
+def test_competing_maxima_and_a_wall_pulse_without_an_incident_one_are_reported():
+    def row(beads, striker):
+        return hc.build(
+            units="dimensionless",
+            striker={"speed": 1.0, "mass": striker},
+            beads=[{"count": beads, "mass": 1.0}],
+            contacts=[{"laws": [{"law": "elastic_hertz", "stiffness": 1.0}]}],
+            sensors={"bead": 1},
+            far_end={"kind": "half-bead"},
+        )
+
+    # A striker of ten beads presses a single one until after the wall's maximum.
+    found = hc.shot(row(1, 10.0))
+    assert found.tof_incident_s is None and found.passage["wall"]["value"] > 3.0
+    # The train of a heavy one.
+    columns = hc.sweep(row(3, 1000.0), [1.0]).columns
+    names = ("competing_time_s", "competing_peak_n", "competing_reflected_time_s", "competing_reflected_peak_n")
+    assert all(columns[name][0] > 0.0 for name in names)

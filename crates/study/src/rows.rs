@@ -6,7 +6,7 @@ use hertzchain_signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty}
 use serde::{Deserialize, Serialize};
 
 /// Columns of a sweep's table; the ends of their names are the units.
-pub const COLUMNS: [&str; 10] = [
+pub const COLUMNS: [&str; 12] = [
     "speed_m_s",
     "tof_incident_s",
     "tof_reflected_s",
@@ -17,6 +17,8 @@ pub const COLUMNS: [&str; 10] = [
     "accuracy_reached",
     "competing_time_s",
     "competing_peak_n",
+    "competing_reflected_time_s",
+    "competing_reflected_peak_n",
 ];
 
 /// One of [`COLUMNS`].
@@ -42,6 +44,10 @@ pub enum Column {
     CompetingTime,
     /// Its height.
     CompetingPeak,
+    /// When the highest maximum is that could be the reflected pulse's peak instead.
+    CompetingReflectedTime,
+    /// Its height.
+    CompetingReflectedPeak,
 }
 
 /// A shot that is none.
@@ -200,18 +206,20 @@ impl Rows {
 /// What is stored of a shot.
 fn cells(speed_m_s: f64, shot: &Shot) -> [Option<f64>; COLUMNS.len()] {
     let seen = shot.passage.as_ref().ok();
-    let competing = seen.and_then(|seen| Some(seen.competing_arrival()?.maximum));
+    let (competing, reflected) = (shot.competing_arrival(), shot.competing_reflected());
     [
         Some(speed_m_s),
         shot.flight.map(|flight| flight.incident_s),
         shot.flight.and_then(|flight| flight.reflected_s),
         sensor_peak(shot),
-        seen.map(|seen| seen.wall.value),
+        shot.wall().map(|wall| wall.value),
         seen.and_then(|seen| Some(seen.reflected?.value)),
         shot.rebound.and_then(|rebound| rebound.end_m_s),
         shot.accuracy_reached,
         competing.map(|maximum| maximum.time_s),
         competing.map(|maximum| maximum.value),
+        reflected.map(|maximum| maximum.time_s),
+        reflected.map(|maximum| maximum.value),
     ]
 }
 

@@ -73,6 +73,34 @@ pub struct Shot {
 }
 
 impl Shot {
+    /// The wall's peak, with or without an incident one.
+    #[must_use]
+    pub fn wall(&self) -> Option<Maximum> {
+        match &self.passage {
+            Ok(passage) => Some(passage.wall),
+            Err(PassageError::NoIncidentPulse { wall }) => Some(*wall),
+            Err(PassageError::NoWallPulse { .. }) => None,
+        }
+    }
+
+    /// The highest maximum, over its pulse's peak, that could be the incident or the
+    /// wall's peak instead.
+    #[must_use]
+    pub fn competing_arrival(&self) -> Option<Maximum> {
+        self.competing(&[Pulse::Incident, Pulse::Wall])
+    }
+
+    /// The same of the reflected pulse.
+    #[must_use]
+    pub fn competing_reflected(&self) -> Option<Maximum> {
+        self.competing(&[Pulse::Reflected])
+    }
+
+    fn competing(&self, pulses: &[Pulse]) -> Option<Maximum> {
+        let passage = self.passage.as_ref().ok()?;
+        passage.highest_competing(pulses).map(|other| other.maximum)
+    }
+
     /// Largest relative difference of two computations of one shot.
     pub(crate) fn change(&self, other: &Self) -> f64 {
         if let Some(change) = self.flights_change(other) {

@@ -152,8 +152,16 @@ fn guarded(
 ) -> Vec<Option<Shot>> {
     let [shots, guards] = [setting, setting.longer(GUARD)].map(|it| fire(plans, loaded, set, &it));
     let alike = |(shot, guard): (Option<Shot>, Option<Shot>)| {
-        let (shot, guard) = (shot?, guard?);
-        (shot.change(&guard) <= shot.accuracy_asked).then_some(shot)
+        let (mut shot, guard) = (shot?, guard?);
+        if shot.change(&guard) > shot.accuracy_asked {
+            return None;
+        }
+        // A shot that ends when the pulse has passed has not seen all maxima that compete.
+        if let (Ok(seen), Ok(all)) = (&mut shot.passage, guard.passage) {
+            seen.competing = all.competing;
+            shot.notes = guard.notes;
+        }
+        Some(shot)
     };
     shots.into_iter().zip(guards).map(alike).collect()
 }

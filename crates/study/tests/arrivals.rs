@@ -148,6 +148,10 @@ fn an_infinite_slope_at_touch_leaves_no_maximum() {
         let shot = shoot(&plan(NO_INCIDENT).with_accuracy(accuracy)).unwrap();
         let missing = matches!(shot.passage, Err(PassageError::NoIncidentPulse { .. }));
         assert!(missing, "{accuracy:e}: {:?}", shot.passage);
+        assert!(
+            shot.wall().is_some_and(|wall| wall.value > 0.0),
+            "the wall's peak alone"
+        );
     }
 }
 

@@ -61,7 +61,10 @@ pub fn shot(shot: &Shot, units: Units, plan: &Plan) -> Json {
 
 fn passage(shot: &Shot, units: Units, plan: &Plan) -> Json {
     match &shot.passage {
-        Err(error) => json!({ "missing": missing::reason(&plan.chain.far, units, error) }),
+        Err(error) => json!({
+            "missing": missing::reason(&plan.chain.far, units, error),
+            "wall": shot.wall().as_ref().map(peak),
+        }),
         Ok(seen) => json!({
             "incident": peak(&seen.incident),
             "wall": peak(&seen.wall),

@@ -18,9 +18,9 @@ pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
                 time(*duration_s)
             )
         }
-        (_, PassageError::NoIncidentPulse { wall_s }) => format!(
+        (_, PassageError::NoIncidentPulse { wall }) => format!(
             "the sensor bead's signal has no maximum before the wall's peak at {}",
-            time(*wall_s)
+            time(wall.time_s)
         ),
     }
 }

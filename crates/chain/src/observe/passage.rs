@@ -11,13 +11,35 @@ pub struct Passages {
     wall: Signal,
     ends_shot: bool,
     until_s: f64,
-    /// How many maxima of the sensor bead and of the wall have been looked at.
-    seen: (usize, usize),
+    /// Which maxima of the sensor bead and of the wall have been looked at.
+    seen: (Seen, Seen),
     /// Largest maximum of the sensor bead among those.
     incoming: Option<Maximum>,
     best: Option<(Option<Maximum>, Maximum)>,
     /// The search is over: what comes later changes no peak.
     over: bool,
+}
+
+/// How many maxima have been looked at, and the last of them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    count: usize,
+    last: Option<Maximum>,
+}
+
+impl Seen {
+    fn add(&mut self, maximum: Maximum) {
+        self.count += 1;
+        self.last = Some(maximum);
+    }
+
+    /// A signal may put a higher maximum in the place of its last: that one is new.
+    fn check(&mut self, maxima: &[Maximum]) {
+        let last = self.count.checked_sub(1).and_then(|at| maxima.get(at));
+        if last != self.last.as_ref() {
+            self.count = self.count.saturating_sub(1);
+        }
+    }
 }
 
 /// The pulse was not seen.
@@ -30,10 +52,10 @@ pub enum PassageError {
         duration_s: f64,
     },
     /// No maximum at the sensor bead before the wall's.
-    #[error("the sensor bead has no maximum before the wall's peak at {wall_s:e} s")]
+    #[error("the sensor bead has no maximum before the wall's peak at {:e} s", wall.time_s)]
     NoIncidentPulse {
-        /// Time of the wall's peak in s.
-        wall_s: f64,
+        /// The wall's peak.
+        wall: Maximum,
     },
 }
 
@@ -119,7 +141,7 @@ const COMPETES: f64 = 0.5;
 /// An earlier one at the sensor bead or the wall from this share on.
 const FORERUNS: f64 = 0.1;
 
-/// A maximum of the wall later than this many times its peak's time is an echo.
+/// A maximum of the wall later than this many times its peak's time, and no larger, is an echo.
 const ECHO: f64 = 2.0;
 
 impl Passage {
@@ -129,12 +151,11 @@ impl Passage {
         self.wall.time_s - self.incident.time_s
     }
 
-    /// The highest maximum, over its pulse's peak, that could be the incident or the
-    /// wall's peak instead.
+    /// The highest maximum, over its pulse's peak, that could be the peak of one of
+    /// these pulses instead.
     #[must_use]
-    pub fn competing_arrival(&self) -> Option<&Competing> {
-        let arrival = |other: &&Competing| other.pulse != Pulse::Reflected;
-        let competing = self.competing.iter().filter(arrival);
+    pub fn highest_competing(&self, pulses: &[Pulse]) -> Option<&Competing> {
+        let competing = (self.competing.iter()).filter(|other| pulses.contains(&other.pulse));
         competing.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
@@ -155,7 +176,7 @@ impl Passages {
             wall: Signal::new(Sensor::Contact(wall_contact)),
             ends_shot,
             until_s: 0.0,
-            seen: (0, 0),
+            seen: (Seen::default(), Seen::default()),
             incoming: None,
             best: None,
             over: false,
@@ -170,7 +191,7 @@ impl Passages {
             wall,
             ends_shot: true,
             until_s,
-            seen: (0, 0),
+            seen: (Seen::default(), Seen::default()),
             incoming: None,
             best: None,
             over: false,
@@ -201,11 +222,12 @@ impl Passages {
     /// enough for a pulse, that none exceeds until the end of its search, and the
     /// largest of the sensor bead before it.
     fn update(&mut self) {
-        while let Some(&peak) = self.wall.maxima().get(self.seen.1) {
+        self.seen.1.check(self.wall.maxima());
+        while let Some(&peak) = self.wall.maxima().get(self.seen.1.count) {
             if self.ends_s().is_some_and(|ends_s| peak.time_s > ends_s) {
                 break;
             }
-            self.seen.1 += 1;
+            self.seen.1.add(peak);
             let highest = self.best.map_or(0.0, |(_, wall)| wall.value);
             if peak.value > highest && self.wall.is_pulse(&peak) {
                 self.look_until(peak.time_s);
@@ -217,9 +239,12 @@ impl Passages {
 
     /// Looks at the sensor bead's maxima before a time.
     fn look_until(&mut self, time_s: f64) {
-        let later = self.sensor.maxima().get(self.seen.0..).unwrap_or_default();
+        self.seen.0.check(self.sensor.maxima());
+        let later = (self.sensor.maxima())
+            .get(self.seen.0.count..)
+            .unwrap_or_default();
         for peak in later.iter().take_while(|peak| peak.time_s < time_s) {
-            self.seen.0 += 1;
+            self.seen.0.add(*peak);
             let highest = self.incoming.map_or(0.0, |incoming| incoming.value);
             if peak.value > highest && self.sensor.is_pulse(peak) {
                 self.incoming = Some(*peak);
@@ -236,8 +261,7 @@ impl Passages {
     fn incident_and_wall(&self) -> Result<(Maximum, Maximum), PassageError> {
         let duration_s = self.until_s;
         let (incident, wall) = self.best.ok_or(PassageError::NoWallPulse { duration_s })?;
-        let wall_s = wall.time_s;
-        let incident = incident.ok_or(PassageError::NoIncidentPulse { wall_s })?;
+        let incident = incident.ok_or(PassageError::NoIncidentPulse { wall })?;
         Ok((incident, wall))
     }
 
@@ -279,12 +303,13 @@ impl Passages {
         let search_ends_s = search_ends_s(Some(incident), wall);
         let searched = self.wall.maxima();
         let searched = &searched[..searched.partition_point(|peak| peak.time_s <= search_ends_s)];
-        let mut competing = competing(Pulse::Incident, &sensor_maxima[..incoming], incident);
-        competing.extend(self::competing(Pulse::Wall, searched, wall));
+        let incoming = &sensor_maxima[..incoming];
+        let mut competing = self.sensor.competing(Pulse::Incident, incoming, incident);
+        competing.extend((self.wall).competing(Pulse::Wall, self.wall.maxima(), wall));
         competing.extend(
-            reflected
-                .iter()
-                .flat_map(|&peak| self::competing(Pulse::Reflected, &returning_maxima, peak)),
+            (reflected.iter()).flat_map(|&peak| {
+                (self.sensor).competing(Pulse::Reflected, &returning_maxima, peak)
+            }),
         );
         Ok(Passage {
             incident,
@@ -337,22 +362,27 @@ fn search_ends_s(incident: Option<Maximum>, wall: Maximum) -> f64 {
     (WALL_WITHIN * wall.time_s).max(wall.time_s + RETURN_WITHIN * way_s)
 }
 
-/// Maxima that could be taken for a pulse's peak.
-fn competing(pulse: Pulse, maxima: &[Maximum], peak: Maximum) -> Vec<Competing> {
-    let one = |&maximum: &Maximum| Competing {
-        pulse,
-        maximum,
-        share: maximum.value / peak.value,
-    };
-    let competes = |other: &Competing| {
-        let earlier = other.maximum.time_s < peak.time_s;
-        let forerunner = earlier && pulse != Pulse::Reflected;
-        // Later than that it has been to the striker.
-        let echo = pulse == Pulse::Wall && other.maximum.time_s > ECHO * peak.time_s;
-        let least = if forerunner { FORERUNS } else { COMPETES };
-        other.share >= least && !echo && other.maximum != peak
-    };
-    maxima.iter().map(one).filter(competes).collect()
+impl Signal {
+    /// Maxima that could be taken for a pulse's peak.
+    fn competing(&self, pulse: Pulse, maxima: &[Maximum], peak: Maximum) -> Vec<Competing> {
+        let one = |&maximum: &Maximum| Competing {
+            pulse,
+            maximum,
+            share: maximum.value / peak.value,
+        };
+        let competes = |other: &Competing| {
+            let earlier = other.maximum.time_s < peak.time_s;
+            let forerunner = earlier && pulse != Pulse::Reflected;
+            // Later than that it has been to the striker, unless it is a larger one: of another
+            // impact, or of beads that follow more slowly.
+            let late = other.maximum.time_s > ECHO * peak.time_s;
+            let echo = pulse == Pulse::Wall && late && other.share <= 1.0;
+            let least = if forerunner { FORERUNS } else { COMPETES };
+            let other_pulse = self.is_pulse(&other.maximum) && other.maximum != peak;
+            other.share >= least && !echo && other_pulse
+        };
+        maxima.iter().map(one).filter(competes).collect()
+    }
 }
 
 /// Whether a maximum of the sensor bead lies in (tw, tw + 3 (tw − t7)].
@@ -445,6 +475,19 @@ mod tests {
         Passages::from_signals(sensor, wall, until_s)
     }
 
+    #[test]
+    fn a_larger_maximum_of_the_wall_after_the_search_competes() {
+        let later = [(10.0, 8.0), (25.0, 7.0), (45.0, 12.0), (50.0, 9.0)];
+        let passage = passages(&[(2.0, 10.0)], &later, 60.0).passage().unwrap();
+        assert_eq!(passage.wall.time_s, 10.0);
+        let competing: Vec<f64> = (passage.competing.iter())
+            .map(|other| other.maximum.time_s)
+            .collect();
+        // That at 25 is later than 2 tw and smaller: an echo.
+        assert_eq!(competing, [45.0, 50.0]);
+        assert_eq!(passage.wall_maxima.len(), 2, "until the end of the search");
+    }
+
     fn wall_s(sensor: &[(f64, f64)], wall: &[(f64, f64)], until_s: f64) -> f64 {
         passages(sensor, wall, until_s).wall_peak_s().unwrap()
     }
@@ -457,7 +500,15 @@ mod tests {
         let none = passages(&sensor[..1], &wall[..1], 40.0).passage();
         assert_eq!(none, Err(PassageError::NoWallPulse { duration_s: 40.0 }));
         let only = passages(&sensor[..1], &wall, 40.0).passage();
-        assert_eq!(only, Err(PassageError::NoIncidentPulse { wall_s: 10.0 }));
+        assert_eq!(
+            only,
+            Err(PassageError::NoIncidentPulse {
+                wall: Maximum {
+                    time_s: 10.0,
+                    value: 2.0
+                }
+            })
+        );
     }
 
     #[test]

@@ -100,6 +100,8 @@ pub struct Signal {
     largest: f64,
     /// Least height times time of a pulse, in N s.
     least_n_s: f64,
+    /// Lowest sample since the latest maximum.
+    lowest: f64,
     /// End of the previous step: time, value, slope.
     before: Option<(f64, f64, f64)>,
 }
@@ -118,7 +120,7 @@ pub(crate) fn least_n_s(system: &System) -> f64 {
     FAINTEST * system.scales().momentum_n_s
 }
 
-/// A force jump smaller than this fraction of the largest value is rounding.
+/// A force jump, or a dip, smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
 
 /// Most stretches of a signal: 59 MB.
@@ -141,6 +143,7 @@ impl Signal {
             maxima: Vec::new(),
             largest: 0.0,
             least_n_s: 0.0,
+            lowest: f64::INFINITY,
             before: None,
         }
     }
@@ -224,12 +227,38 @@ impl Signal {
         }
     }
 
-    /// Keeps a maximum, unless it is rounding on a signal that rests.
+    /// Keeps a maximum, unless it is rounding on a signal that rests; of two without a
+    /// dip between them, which the steps found twice, the higher.
     fn keep(&mut self, maximum: Maximum) {
         let force = !matches!(self.sensor, Sensor::Position(_) | Sensor::Velocity(_));
-        if !force || maximum.value > KEPT * self.largest {
-            self.maxima.push(maximum);
+        if force && maximum.value <= KEPT * self.largest {
+            return;
         }
+        let lowest = std::mem::replace(&mut self.lowest, f64::INFINITY);
+        let floor = JUMP * self.largest;
+        match self.maxima.last_mut() {
+            Some(last) if lowest >= last.value.min(maximum.value) - floor => {
+                if maximum.value > last.value {
+                    *last = maximum;
+                }
+            }
+            _ => self.maxima.push(maximum),
+        }
+    }
+
+    /// Keeps maxima of one step, and its lowest sample since the last of them.
+    fn keep_inside(&mut self, stretch: &Stretch, maxima: Vec<Maximum>) {
+        let mut samples = (0..).zip(stretch.values).peekable();
+        let quarter_s = 0.25 * stretch.length_s;
+        for maximum in maxima {
+            let earlier =
+                |(i, _): &(i32, f64)| stretch.start_s + f64::from(*i) * quarter_s < maximum.time_s;
+            while let Some((_, value)) = samples.next_if(earlier) {
+                self.lowest = self.lowest.min(value);
+            }
+            self.keep(maximum);
+        }
+        self.lowest = samples.fold(self.lowest, |lowest, (_, value)| lowest.min(value));
     }
 
     /// The signal falls to 0: a rise until then ends in a maximum.
@@ -239,6 +268,7 @@ impl Signal {
         {
             self.keep(Maximum { time_s, value });
         }
+        self.lowest = self.lowest.min(0.0);
     }
 
     /// Adds the maxima of one step, and the one between it and the last.
@@ -258,9 +288,8 @@ impl Signal {
                 value: value.max(start),
             });
         }
-        for maximum in interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch) {
-            self.keep(maximum);
-        }
+        let inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
+        self.keep_inside(stretch, inside);
         self.before = Some((stretch.end_s(), end, end_slope));
     }
 }
@@ -373,6 +402,26 @@ mod tests {
             stretches: (0..count).map(stretch).collect(),
             ..Signal::new(Sensor::Contact(0))
         }
+    }
+
+    #[test]
+    fn a_maximum_that_two_steps_find_is_one_and_two_with_a_dip_are_two() {
+        let kept = |values: [f64; 5]| {
+            let stretch = Stretch {
+                start_s: 0.0,
+                length_s: 1.0,
+                values,
+            };
+            let mut signal = Signal {
+                largest: 1.0,
+                ..Signal::new(Sensor::Contact(0))
+            };
+            let maximum = |(time_s, value): (f64, f64)| Maximum { time_s, value };
+            signal.keep_inside(&stretch, [(0.1, 0.9), (0.9, 1.0)].map(maximum).into());
+            signal.maxima.iter().map(|it| it.time_s).collect::<Vec<_>>()
+        };
+        assert_eq!(kept([0.0, 0.9, 0.9, 0.95, 0.5]), [0.9]);
+        assert_eq!(kept([0.0, 0.9, 0.8, 0.95, 0.5]), [0.1, 0.9]);
     }
 
     #[test]

@@ -55,7 +55,9 @@ class Sweep(Flights):
     columns : dict of str to ndarray
         Everything: times of flight, peaks in N, widths in s, pulse speed,
         rebound in m/s, duration in s, and time and height of the highest
-        maximum that could be the arrival instead (``competing_*``).
+        maximum that could be the arrival instead (``competing_time_s``,
+        ``competing_peak_n``), or the reflected pulse's peak
+        (``competing_reflected_*``).
     power_law_incident, power_law_reflected : PowerLaw or None
         None where fewer than two speeds have a time of flight.
     pilots : dict or None

@@ -137,7 +137,8 @@ class Shot:
         Beads a second between sensor bead and wall.
     passage : dict
         Peaks (``time_s``, ``value`` in N), widths in s, maxima that could be a peak
-        instead (``competing``), the end of the search, or why there are none.
+        instead (``competing``), the end of the search; or why there are none (``missing``),
+        with the peak of the wall alone (``wall``) where the sensor bead has none before it.
     sensor_maxima : list of dict
         Maxima of the sensor bead's signal above 5 % of its largest.
     striker_rebound : dict or None
@@ -224,7 +225,7 @@ class Shot:
             "accuracy_reached": self.accuracy_reached,
             "pulse_speed_beads_per_s": self.pulse_speed_beads_per_s,
             "sensor_peak_n": self.passage.get("incident", {}).get("value"),
-            "wall_peak_n": self.passage.get("wall", {}).get("value"),
+            "wall_peak_n": (self.passage.get("wall") or {}).get("value"),
             "returning_peak_n": (self.passage.get("reflected") or {}).get("value"),
             "striker_rebound_m_s": (self.striker_rebound or {}).get("end_m_s"),
             "duration_s": self.duration_s,

@@ -14,7 +14,7 @@ use hertzchain_verbs::table::{self, cell};
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
 
-const SHOWN: [Shown; 8] = [
+const SHOWN: [Shown; 10] = [
     ("speed", "m/s", 1.0, Column::Speed),
     ("incident ToF", "µs", 1e-6, Column::Incident),
     ("reflected ToF", "µs", 1e-6, Column::Reflected),
@@ -23,6 +23,13 @@ const SHOWN: [Shown; 8] = [
     ("rebound", "m/s", 1.0, Column::Rebound),
     ("competing maximum", "µs", 1e-6, Column::CompetingTime),
     ("competing peak", "N", 1.0, Column::CompetingPeak),
+    (
+        "reflected, competing",
+        "µs",
+        1e-6,
+        Column::CompetingReflectedTime,
+    ),
+    ("its peak", "N", 1.0, Column::CompetingReflectedPeak),
 ];
 
 /// Whether no speed has a shot.
