@@ -9,7 +9,7 @@ use hertzchain_verbs::arguments::infer::{Assignment, Measured};
 use hertzchain_verbs::failure;
 pub use hertzchain_verbs::failure::{Failure, of_speed};
 use hertzchain_verbs::given::Given;
-use hertzchain_verbs::inference::{assumed, kept};
+use hertzchain_verbs::inference::{assumed, held_loads, kept};
 use hertzchain_verbs::input::option;
 use std::borrow::Cow;
 use std::io::IsTerminal;
@@ -50,9 +50,9 @@ pub fn print_assumed(data: &Data, measured: &Measured) {
     }
 }
 
-/// Numbers that are kept while their unit changes.
+/// Numbers that are kept while their unit changes, and loads that the model does not have.
 pub fn print_kept(model: &Model, sets: &[Assignment]) {
-    for kept in kept(model, sets) {
+    for kept in kept(model, sets).into_iter().chain(held_loads(model)) {
         note(&format!("warning: {kept}"));
     }
 }

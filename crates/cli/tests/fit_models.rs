@@ -1,6 +1,6 @@
 //! Which model a fit has, which contact its numbers belong to, and what no model explains.
 
-use crate::common::{curve, file, folder, json, run, with_errors};
+use crate::common::{curve, file, folder, json, refused, run, with_errors};
 
 fn text(arguments: &[&str]) -> String {
     String::from_utf8(run(arguments).stdout).unwrap()
@@ -12,12 +12,15 @@ fn a_model_that_is_not_named_is_stated_in_the_first_line_and_in_json() {
     let data = curve(&folder, "dry");
     let fit = ["fit", &data, "--free", "eta"];
     let design = ["design", &data, "--free", "eta", "--picks", "1"];
-    let verbs: [&[&str]; 4] = [&["shot"], &["theory"], &fit, &design];
+    let out = folder.join("shards");
+    let sweep = ["sweep", "--speeds", "0.4,0.5"];
+    let part = ["--shard", "1/2", "--out", out.to_str().unwrap()];
+    let part = [&sweep[..], &part].concat();
+    let verbs: [&[&str]; 6] = [&["shot"], &["theory"], &sweep, &part, &fit, &design];
     for verb in verbs {
-        let errors = if verb.len() > 1 {
-            with_errors(verb)
-        } else {
-            verb.to_vec()
+        let errors = match verb.contains(&data.as_str()) {
+            true => with_errors(verb),
+            false => verb.to_vec(),
         };
         let report = text(&errors);
         let first = report.lines().next().unwrap();
@@ -25,13 +28,35 @@ fn a_model_that_is_not_named_is_stated_in_the_first_line_and_in_json() {
             first.contains("the paper's dry chain is assumed (preset dry"),
             "{verb:?}: {first}"
         );
-        if verb != ["theory"] {
+        if verb != ["theory"] && verb != part {
             let found = json(&[&errors[..], &["--json"]].concat());
             assert_eq!(found["assumed_model"].as_str(), Some(first));
         }
         let named = text(&[&errors[..], &["-p", "dry"]].concat());
         assert!(!named.contains("assumed"), "{named}");
     }
+}
+
+#[test]
+fn a_gauge_states_both_models_that_are_not_named_and_a_campaign_wants_one() {
+    let folder = folder("no-models");
+    let data = curve(&folder, "dry");
+    let gauge = with_errors(&["gauge", &data, "--dry", &data, "--use", "incident"]);
+    let report = text(&gauge);
+    let first = report.lines().next().unwrap();
+    assert!(
+        first.contains("(preset pump") && first.contains("(preset dry"),
+        "{first}"
+    );
+    let wet = text(&[&gauge[..], &["-p", "pump"]].concat());
+    let first = wet.lines().next().unwrap();
+    assert!(
+        !first.contains("(preset pump") && first.contains("(preset dry"),
+        "{first}"
+    );
+    let out = folder.join("records");
+    let why = refused(&["campaign", "--out", out.to_str().unwrap()]);
+    assert!(why.contains("Name an experiment file"), "{why}");
 }
 
 /// Beads of two sizes before a plane.

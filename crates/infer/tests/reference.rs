@@ -3,7 +3,8 @@
 use crate::common::{TRUTH, model, speeds_between};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    CurveProblem, Data, DataRow, Fitting, FreeNumber, Freedom, Predicted, Speeds, fit,
+    Covariance, CurveProblem, Data, DataRow, End, Fitting, FreeNumber, Freedom, Model, Predicted,
+    Problem, Profiling, Speeds, fit, profile,
 };
 use hertzchain_signal::Estimate;
 
@@ -100,6 +101,29 @@ fn a_set_k_and_a_are_those_of_one_contact_and_scale_the_others() {
     }
 }
 
+/// The changed row's times at these speeds, to 0.1 µs, against a model of the row.
+fn measured(row: &Experiment, model: Model, speeds: &[f64]) -> CurveProblem {
+    let truth = times(&changed(row), &[], &[], speeds);
+    let estimate = |value: Option<f64>| value.map(|value| Estimate { value, sigma: 1e-7 });
+    let line = |(at, (speed, of)): (usize, (&f64, &Predicted))| DataRow {
+        line: at as u64 + 2,
+        speed_m_s: Estimate {
+            value: *speed,
+            sigma: 0.0,
+        },
+        values: [estimate(of[0]), estimate(of[1]), None, None],
+        correlation: None,
+        freedom: Freedom::KNOWN,
+    };
+    let data = Data {
+        file: row.name().to_owned(),
+        case: String::new(),
+        rows: speeds.iter().zip(&truth).enumerate().map(line).collect(),
+    };
+    let parameters = model.numbers().parameters(speeds);
+    CurveProblem::new(model, data, parameters).unwrap()
+}
+
 #[test]
 fn a_fit_of_k_and_a_finds_those_of_the_reference_contact() {
     let speeds = speeds_between(0.1, 1.0, 5);
@@ -109,25 +133,7 @@ fn a_fit_of_k_and_a_finds_those_of_the_reference_contact() {
         let own: Vec<f64> = (model.numbers().parameters(&[]).iter())
             .map(|p| p.start)
             .collect();
-        let truth = times(&changed(&row), &[], &[], &speeds);
-        let estimate = |value: Option<f64>| value.map(|value| Estimate { value, sigma: 1e-7 });
-        let line = |(at, (speed, of)): (usize, (&f64, &Predicted))| DataRow {
-            line: at as u64 + 2,
-            speed_m_s: Estimate {
-                value: *speed,
-                sigma: 0.0,
-            },
-            values: [estimate(of[0]), estimate(of[1]), None, None],
-            correlation: None,
-            freedom: Freedom::KNOWN,
-        };
-        let data = Data {
-            file: name.to_owned(),
-            case: String::new(),
-            rows: speeds.iter().zip(&truth).enumerate().map(line).collect(),
-        };
-        let parameters = model.numbers().parameters(&speeds);
-        let problem = CurveProblem::new(model, data, parameters).unwrap();
+        let problem = measured(&row, model, &speeds);
         let best = fit(&problem, &Fitting::default()).unwrap();
         for (at, factor) in [1.04, 1.1 / 1.04].into_iter().enumerate() {
             let ratio = best.point[at] / (factor * own[at]);
@@ -139,5 +145,27 @@ fn a_fit_of_k_and_a_finds_those_of_the_reference_contact() {
                 names[at]
             );
         }
+    }
+}
+
+#[test]
+fn profiles_of_k_and_a_hold_those_of_the_reference_contact() {
+    let speeds = speeds_between(0.1, 1.0, 5);
+    let (name, row) = &rows()[0];
+    let model = model(row, &["K", "A"]).with_accuracy(1e-6);
+    let own = model.numbers().parameters(&[]);
+    let truth = [1.04 * own[0].start, 1.1 / 1.04 * own[1].start];
+    let problem = measured(row, model, &speeds);
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let covariance = Covariance::new(problem.parameters(), &best);
+    let profiles = profile(&problem, &best, &covariance, &[0, 1], &Profiling::default());
+    for (at, profile) in profiles.unwrap().iter().enumerate() {
+        let interval = profile.intervals[0];
+        let (End::At(lower), End::At(upper)) = (interval.lower, interval.upper) else {
+            unreachable!("{name}: an open end of {interval:?}")
+        };
+        // Data without noise: the truth is in the middle of 68 %, but for the curves' own errors.
+        let middle = (truth[at] - lower) / (upper - lower);
+        assert!((0.3..0.7).contains(&middle), "{name}: {middle}");
     }
 }

@@ -61,6 +61,21 @@ def test_a_fit_finds_what_made_the_data(dry_data):
     assert pickled(fitted) and all(map(pickled, fitted.parameters.values()))
 
 
+def test_a_model_that_is_not_named_is_stated(dry_data):
+    paper = "the paper's chain is assumed"
+    calls = {
+        "model='dry'": lambda **model: hc.fit(dry_data, free=["eta"], **model),
+        "model='dry')": lambda **model: hc.design(dry_data, free=["eta"], speeds=[0.3], picks=1, **model),
+        "model='pump', dry_model='dry'": lambda **model: hc.gauge(dry_data, dry_data, use="incident", **model),
+    }
+    for absent, call in calls.items():
+        with pytest.warns(hc.ExperimentWarning, match=paper):
+            found = call()
+        stated = found.details["assumed_model"] if hasattr(found, "details") else found.assumed_model
+        assert paper in stated and absent in stated
+    assert hc.fit(dry_data, "dry", free=["eta"]).details["assumed_model"] is None
+
+
 def test_tables_of_pandas_and_sweeps_are_data(dry_data):
     import pandas as pd
 

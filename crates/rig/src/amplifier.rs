@@ -2,7 +2,7 @@
 //!
 //! v = G (S₇ F₇ + S_w F_w), then a high-pass of first order,
 //! H(s) = s/(s + ω_h), then a low-pass, a product of [factors](Factor) of first and second
-//! order. Exact where forces are straight lines between samples: see [`Hold`].
+//! order. A step is exact where forces are straight lines between samples: see [`Hold`].
 
 use crate::hold::Hold;
 use hertzchain_experiment::{Amplifier as Numbers, Factor};
@@ -69,6 +69,20 @@ impl Amplifier {
                 state[*output]
             }
         }
+    }
+
+    /// Voltages at as many samples, at equal times, of forces in N that are smooth between them.
+    pub fn follow(&mut self, count: usize, forces_n: impl Fn(usize) -> [f64; 2]) -> Vec<f64> {
+        let last = count.saturating_sub(1);
+        // Straight lines between samples are h²/12 of the second derivative above the force on
+        // average: taken off the samples, that leaves an error of order h⁴.
+        let one = |at: usize| {
+            let [before, now, after] =
+                [at.saturating_sub(1), at, (at + 1).min(last)].map(&forces_n);
+            let lowered = |of: usize| now[of] - (before[of] - 2.0 * now[of] + after[of]) / 12.0;
+            self.next(lowered(0), lowered(1))
+        };
+        (0..count).map(one).collect()
     }
 
     fn voltage(&self, sensor_n: f64, wall_n: f64) -> f64 {

@@ -142,6 +142,13 @@ impl PulseProblem {
         Ok(self)
     }
 
+    /// The same with a model of another relative accuracy.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.model = self.model.with_accuracy(accuracy);
+        self
+    }
+
     /// Records of which the model, where it starts, has no pulses to compare with, and why.
     #[must_use]
     pub fn left_out(&self) -> &[String] {

@@ -161,8 +161,9 @@ def fit(
 
 def fitted(found: dict[str, Any]) -> Fitted:
     """A fit from what the library tells of it."""
-    if (taken := found.get("assumed")) is not None:
-        warnings.warn(taken, ExperimentWarning, stacklevel=3)
+    for key in ("assumed", "held_loads"):
+        if (taken := found.get(key)) is not None:
+            warnings.warn(taken, ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     columns = {key: [row[key] for row in rows] for key in (rows[0] if rows else {})}
     return Fitted(

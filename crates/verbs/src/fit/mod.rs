@@ -22,7 +22,7 @@ use crate::failure::Failure;
 use crate::inference::{user, wanted};
 use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Problem, Speeds, Started, fit,
+    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started, fit,
 };
 use partial::Remembered;
 
@@ -106,25 +106,8 @@ impl Fitted {
     /// each.
     #[must_use]
     pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
-        let (fit, model) = (&self.inferred.fit, self.problem.model());
-        let finer = (model.accuracy < arguments.modelled.accuracy).then(|| {
-            format!(
-                "Curves were computed to {:.0e} in place of {:.0e}, to which the fit found no minimum",
-                model.accuracy, arguments.modelled.accuracy
-            )
-        });
-        let first = fit.starts.first().map_or(fit.cost, |start| start.cost);
-        let more = (fit.starts.len() > arguments.starts).then(|| {
-            let found = match first > fit.cost + SAME_COST {
-                true => "one of them came to a better one, above",
-                false => "none came to a better one",
-            };
-            format!(
-                "The data reject the minimum that the first start came to, so {} others were tried; {found}",
-                fit.starts.len() - arguments.starts
-            )
-        });
-        finer.into_iter().chain(more).collect()
+        let accuracy = (arguments.modelled.accuracy, self.problem.model().accuracy);
+        unasked(&self.inferred.fit, accuracy, arguments.starts)
     }
 
     /// That several pairs of K and A may give the data, where both are free and two times of
@@ -159,27 +142,47 @@ impl Fitted {
     }
 }
 
-/// Starts of a fit of tables whose first came to a minimum that the data reject, and most free
+/// Starts of a fit whose first came to a minimum that the data reject, and most free
 /// parameters for which they are tried.
 const UNASKED: usize = 8;
 const FEW: usize = 8;
 
 /// The best fit, as asked; where chance can't be why the data are so far from it, the best of
 /// several starts: a minimum may be another than the data's.
-fn best_of_starts(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
-    let first = best(problem, arguments)?;
-    let one = arguments.starts == 1 && !arguments.robust && first.point.len() <= FEW;
-    if !one || !Goodness::new(problem, &first).is_rejected() {
+fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Result<Fit, Failure> {
+    let found = fit(problem, how);
+    wanted()?;
+    let first = found.map_err(user)?;
+    let one = how.starts == 1 && how.loss == Loss::Squares && first.point.len() <= FEW;
+    if !one || !Goodness::beside(nuisances, problem, &first).is_rejected() {
         return Ok(first);
     }
-    let how = Fitting {
-        starts: UNASKED,
-        seed: arguments.seed,
-        ..Fitting::default()
-    };
-    let found = fit(problem, &how);
+    let starts = UNASKED;
+    let found = fit(problem, &Fitting { starts, ..*how });
     wanted()?;
     Ok(found.unwrap_or(first))
+}
+
+/// What was done beyond what was asked for, so that a fit found the minimum, one sentence each:
+/// of the accuracy asked for and of that reached, and of the starts asked for.
+fn unasked(fit: &Fit, (asked, reached): (f64, f64), starts: usize) -> Vec<String> {
+    let finer = (reached < asked).then(|| {
+        format!(
+            "Curves were computed to {reached:.0e} in place of {asked:.0e}, to which the fit found no minimum"
+        )
+    });
+    let first = fit.starts.first().map_or(fit.cost, |start| start.cost);
+    let more = (fit.starts.len() > starts).then(|| {
+        let found = match first > fit.cost + SAME_COST {
+            true => "one of them came to a better one, above",
+            false => "none came to a better one",
+        };
+        format!(
+            "The data reject the minimum that the first start came to, so {} others were tried; {found}",
+            fit.starts.len() - starts
+        )
+    });
+    finer.into_iter().chain(more).collect()
 }
 
 /// Times that a fit without a minimum is repeated with curves ten times as accurate.
@@ -187,18 +190,42 @@ const MOST_FINER: u32 = 2;
 
 /// The same problem with more accurate curves, where a fit of curves found no minimum: their
 /// errors jump where the solver takes another number of steps, and hide what is small.
-fn finer(problem: &CurveProblem, fit: &Fit, times: u32) -> Option<CurveProblem> {
+fn finer<P: Modelled>(problem: &P, fit: &Fit, times: u32) -> Option<P> {
     let more = !fit.ending.converged() && times < MOST_FINER;
-    more.then(|| {
-        problem
-            .clone()
-            .with_accuracy(0.1 * problem.model().accuracy)
-    })
+    more.then(|| problem.computed_to(0.1 * problem.accuracy()))
 }
 
-/// The best fit, as asked.
-fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
-    let how = Fitting {
+/// A problem whose curves can be computed more accurately.
+trait Modelled: Problem + Clone {
+    /// The model's accuracy.
+    fn accuracy(&self) -> f64;
+    /// The same problem at another accuracy.
+    fn computed_to(&self, accuracy: f64) -> Self;
+}
+
+impl Modelled for CurveProblem {
+    fn accuracy(&self) -> f64 {
+        self.model().accuracy
+    }
+
+    fn computed_to(&self, accuracy: f64) -> Self {
+        self.clone().with_accuracy(accuracy)
+    }
+}
+
+impl Modelled for PulseProblem {
+    fn accuracy(&self) -> f64 {
+        self.model().accuracy
+    }
+
+    fn computed_to(&self, accuracy: f64) -> Self {
+        self.clone().with_accuracy(accuracy)
+    }
+}
+
+/// How a fit was asked for.
+fn asked(arguments: &Arguments) -> Fitting {
+    Fitting {
         loss: match arguments.robust {
             true => Loss::Huber { scale: OUTLIER },
             false => Loss::Squares,
@@ -206,10 +233,7 @@ fn best(problem: &dyn Problem, arguments: &Arguments) -> Result<Fit, Failure> {
         starts: arguments.starts,
         seed: arguments.seed,
         ..Fitting::default()
-    };
-    let found = fit(problem, &how);
-    wanted()?;
-    found.map_err(user)
+    }
 }
 
 /// Fits a curve, tells the uncertainty as the method asks, and compares with
@@ -226,7 +250,7 @@ pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Fa
 fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<Fitted, Failure> {
     let own = (None, times);
     let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, arguments)?;
+    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
     if let Some(finer) = finer(&problem, &fit, times) {
         kept.sound()?;
         return attempted(finer, times + 1, arguments);
@@ -251,7 +275,7 @@ pub fn fitted_elsewhere(
 ) -> Result<Fitted, Failure> {
     heeded::of_table(arguments)?;
     let kept = Remembered::new(computed, || problem.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, arguments)?;
+    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(
         (computed, &kept),

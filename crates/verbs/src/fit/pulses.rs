@@ -1,7 +1,9 @@
 //! Whole pulses of recordings to parameters.
 
 use super::partial::Remembered;
-use super::{Curves, Inferred, best, heeded, inferred, joined, limits, more};
+use super::{
+    Curves, Inferred, asked, best_of_starts, finer, heeded, inferred, joined, limits, more, unasked,
+};
 use crate::arguments::infer::{Filter, Fit as Arguments};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
@@ -168,16 +170,8 @@ fn respond() -> Respond {
             gain_v_c: 1.0,
             ..*numbers
         };
-        let mut amplifier = Amplifier::new(&plain, interval_s);
-        // Straight lines between samples are h²/12 of the second derivative above the signal on
-        // average: without that the error goes as h⁴.
-        let of = |at: usize| signal.get(at).or(signal.last()).copied().unwrap_or(0.0);
-        let lowered = |(at, force): (usize, &f64)| {
-            let (before, after) = (of(at.saturating_sub(1)), of(at + 1));
-            force - (before - 2.0 * force + after) / 12.0
-        };
-        let lowered = signal.iter().enumerate().map(lowered);
-        lowered.map(|force| amplifier.next(force, 0.0)).collect()
+        let force_n = |at: usize| [signal.get(at).copied().unwrap_or_default(), 0.0];
+        Amplifier::new(&plain, interval_s).follow(signal.len(), force_n)
     })
 }
 
@@ -191,8 +185,23 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
     refused.extend(problem.left_out().iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
-    let kept = Remembered::new(&problem, || problem.fingerprint(), arguments)?;
-    let fit = best(&kept, arguments)?;
+    attempted(problem, refused, 0, arguments)
+}
+
+/// The fit, after so many attempts with a less accurate model.
+fn attempted(
+    problem: PulseProblem,
+    refused: Vec<String>,
+    times: u32,
+    arguments: &Arguments,
+) -> Result<Pulsed, Failure> {
+    let own = (None, times);
+    let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
+    let fit = best_of_starts(&kept, problem.nuisance_count(), &asked(arguments))?;
+    if let Some(finer) = finer(&problem, &fit, times) {
+        kept.sound()?;
+        return attempted(finer, refused, times + 1, arguments);
+    }
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);
@@ -217,6 +226,14 @@ pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failu
 }
 
 impl Pulsed {
+    /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
+    /// each.
+    #[must_use]
+    pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
+        let accuracy = (arguments.modelled.accuracy, self.problem.model().accuracy);
+        unasked(&self.inferred.fit, accuracy, arguments.starts)
+    }
+
     /// The amplifier's filters that the model's signals have passed, in words.
     #[must_use]
     pub fn filters(&self) -> String {
@@ -244,8 +261,10 @@ pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
     let own = json!({
         "model": fitted.problem.model().experiment().name(),
         "kept": inference::kept(fitted.problem.model(), &arguments.modelled.set),
+        "held_loads": inference::held_loads(fitted.problem.model()),
         "references": inference::references_json(fitted.problem.model()),
         "filters": fitted.filters(),
+        "unasked": fitted.unasked(arguments),
         "residuals": fitted.problem.residual_count(),
         "fitted_to_single_records": fitted.problem.nuisance_count(),
         "records": records.map(|record| json!({

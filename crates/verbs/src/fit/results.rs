@@ -4,7 +4,7 @@ use super::more::{Curves, More};
 use super::rivals::{Rival, Rivals};
 use super::{Fitted, Inferred, Limit};
 use crate::arguments::infer::Fit as Arguments;
-use crate::inference::{assumed, kept, references_json, widened};
+use crate::inference::{assumed, held_loads, kept, references_json, widened};
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
@@ -18,6 +18,7 @@ pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
         "model_accuracy": fitted.accuracy,
         "assumed": assumed(data, &arguments.measured),
         "kept": kept(fitted.problem.model(), &arguments.modelled.set),
+        "held_loads": held_loads(fitted.problem.model()),
         "references": references_json(fitted.problem.model()),
         "widened": widened(data),
         "instruction_set": fitted.problem.model().set.name(),

@@ -2,7 +2,7 @@
 
 use super::Arguments;
 use super::partial::Remembered;
-use super::{best_of_starts, finer};
+use super::{asked, best_of_starts, finer};
 use crate::arguments::infer::{Against, Assignment, Freed};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, kept, user, wanted};
@@ -113,7 +113,7 @@ fn attempted(
     let told = kept(posed.model(), &arguments.modelled.set);
     let own = (Some(number), times);
     let kept = Remembered::of_attempt(&posed, own, || posed.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, arguments)?;
+    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
     if let Some(finer) = finer(&posed, &fit, times) {
         kept.sound()?;
         return attempted((name, number), finer, without, times + 1, arguments);

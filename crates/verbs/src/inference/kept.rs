@@ -1,9 +1,10 @@
-//! Numbers that are kept while their unit changes with another's value.
+//! Numbers that are kept while their unit changes with another's value, and loads that no number
+//! of the model describes.
 
 use crate::arguments::infer::Assignment;
 use crate::quantity::digits;
 use hertzchain_experiment::{Experiment, Place};
-use hertzchain_infer::Model;
+use hertzchain_infer::{FreeNumber, Model};
 
 /// What it means that a number on which a unit depends, such as the n of F = k δ^n,
 /// is free or set, one sentence for each number in that unit.
@@ -32,6 +33,38 @@ pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
     }
     told
 }
+
+/// That friction holds other loads on a pushed row than the model's equilibrium has, and how much
+/// they may differ; nothing where the push is free.
+#[must_use]
+pub fn held_loads(model: &Model) -> Option<String> {
+    let experiment = model.experiment();
+    let (chain, _) = experiment.chain(None).ok()?;
+    let mass_kg: f64 = chain.beads.iter().map(|bead| bead.mass_kg).sum();
+    let weight_n = chain.gravity_m_s2 * mass_kg;
+    let push_n = chain.push.force_n();
+    let load_n = push_n + weight_n * chain.incline_rad.sin();
+    let held_n = experiment.friction_coefficient() * weight_n * chain.incline_rad.cos();
+    let free = model.numbers().as_slice().iter();
+    let is_free = free.map(FreeNumber::path).any(|path| path == Some(PUSH));
+    if is_free || load_n <= 0.0 || held_n <= 0.0 {
+        return None;
+    }
+    let free = match push_n > 0.0 {
+        true => "Free the load with them (--free preload), or measure",
+        false => "Measure",
+    };
+    Some(format!(
+        "the model's row is loaded with {} N at the wall and its track has friction: where the row was tapped or shot \
+         before, friction holds up to {} N more or less than the model's equilibrium, which the wave does not know, and \
+         fitted numbers may be off by more than their errors. {free} a row that was laid compact",
+        digits(load_n, 2),
+        digits(held_n, 2)
+    ))
+}
+
+/// The push on bead 1 in the experiment file.
+const PUSH: &str = "near_end.force";
 
 /// What a Young modulus still does where a stiffness that would follow from it has a
 /// number of its own.

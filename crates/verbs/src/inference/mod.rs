@@ -4,7 +4,7 @@ mod kept;
 mod known;
 mod reference;
 
-pub use kept::kept;
+pub use kept::{held_loads, kept};
 pub use known::is_meant;
 pub use reference::{references, references_json};
 

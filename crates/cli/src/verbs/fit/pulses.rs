@@ -25,12 +25,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let fitted = with_notes(threads, || fitted(recorded, arguments))??;
     print_kept(fitted.problem.model(), &arguments.modelled.set);
     let mut all = json(&fitted, arguments);
-    show(arguments, &mut all, || text(&fitted))?;
+    show(arguments, &mut all, || text(&fitted, arguments))?;
     folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
 }
 
 /// Everything that is to be said.
-fn text(fitted: &Pulsed) -> String {
+fn text(fitted: &Pulsed, arguments: &Arguments) -> String {
     let records = fitted.problem.records();
     let noise = records.iter().flat_map(|record| &record.sigma_v);
     let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
@@ -48,6 +48,7 @@ fn text(fitted: &Pulsed) -> String {
         fitted.filters()
     );
     text += &report::described(&fitted.inferred);
+    text += &lines(fitted.unasked(arguments));
     text += &report::determined(&fitted.inferred, &advice);
     text += &report::more(&fitted.inferred);
     text += &report::beware(&fitted.inferred);

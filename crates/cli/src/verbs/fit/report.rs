@@ -32,9 +32,7 @@ pub fn text(fitted: &Fitted, arguments: &Arguments) -> String {
     );
     text += &described(&fitted.inferred);
     text += &accuracy(fitted);
-    for unasked in fitted.unasked(arguments) {
-        text += &format!("{unasked}\n");
-    }
+    text += &lines(fitted.unasked(arguments));
     text += &widened(data).map_or(String::new(), |told| format!("{told}\n"));
     let advice = fitted.advice.as_ref();
     text += &determined(&fitted.inferred, &|| {

@@ -3,8 +3,10 @@
 use super::Arguments;
 use crate::failure::Failure;
 use crate::print::{self, print};
+use crate::words::lines;
 use hertzchain_shards::ShardsError;
 use hertzchain_study::{Column, Part, Run, RunError, Shard};
+use hertzchain_verbs::input::assumed;
 use std::path::Path;
 use std::time::Instant;
 
@@ -40,8 +42,9 @@ pub fn run(
         true => "there already".to_owned(),
         false => format!("computed in {:.1} s", begun.elapsed().as_secs_f64()),
     };
+    let assumed = lines(assumed(&arguments.input).into_iter().collect());
     print(&format!(
-        "Shard {shard} of {}\n{shots} shots, {what}: {}\n",
+        "{assumed}Shard {shard} of {}\n{shots} shots, {what}: {}\n",
         done.part.about,
         done.path.display()
     ))
