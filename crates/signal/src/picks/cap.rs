@@ -11,6 +11,10 @@ use std::f64::consts::{LN_2, TAU};
 const CURVATURE: (f64, f64) = (0.85, 0.25);
 /// From this curvature on a pulse of which a whole bell leaves no more than noise is not clipped.
 const ROUND: f64 = 0.7;
+/// Curvature below which a top is rounded off by an amplifier, and deviations by which it is lower.
+const FLAT: (f64, f64) = (0.5, 2.5);
+/// Share of its height from which on such a pulse is clipped.
+const ROUNDED: f64 = 0.65;
 /// Range of the curvature of a clipped bell in the same unit.
 const CURVATURES: f64 = 2.5;
 /// Logarithm of the odds that a pulse is not clipped before its samples are looked at.
@@ -36,31 +40,50 @@ pub(crate) fn clipped_top(sight: &Sight<'_>, pulse: &Pulse) -> Option<(usize, us
         return None;
     }
     let (centre, half) = stretch(sight, pulse);
-    let mut data = samples(sight, centre, half, broad)?;
+    let data = samples(sight, centre, half, broad)?;
     let mut bell = [0.0; MOST];
     bell[0] = pulse.height.ln();
     bell[2] = -LN_2 * WIDTH * WIDTH;
     let whole = data.descend(bell)?;
     let curvature = whole.model[2] / bell[2];
+    let error = curvature_error(&whole, data.noise, bell[2])?;
+    // The halves of a pulse that begins to trail are no one bell's, and its curvature is of neither.
+    let rounded = curvature + FLAT.1 * error < FLAT.0 && pulse.trailing() < 0.5;
     let left = whole.left / data.noise.powi(2);
     let count = data.points.len() as f64;
     if curvature > ROUND && left < count + 2.0 * (2.0 * count).sqrt() {
         return None;
     }
+    let (first, last) = match flat_from(data, &whole, bell, pulse) {
+        Some(us) => us,
+        None if rounded => return Some(sight.run_above(pulse, ROUNDED * pulse.height)),
+        None => return None,
+    };
+    let sample = |u: f64| (centre + half * u).round().max(0.0) as usize;
+    Some((sample(first), sample(last)))
+}
+
+/// Where a bell that ends at a level does so, if it is likelier than the whole one.
+fn flat_from(
+    mut data: Data,
+    whole: &Descent<[f64; MOST]>,
+    mut bell: [f64; MOST],
+    pulse: &Pulse,
+) -> Option<(f64, f64)> {
+    let count = data.points.len() as f64;
     data.capped = true;
     bell[LEVEL] = pulse.height;
     let capped = best_capped(&data, bell)?;
     let least = whole.left.min(capped.left) / count;
     let noise = data.noise.max(least.sqrt());
-    let of_whole = evidence(&whole, noise) + expected(&whole, noise, bell[2])?;
+    let of_whole = evidence(whole, noise) + expected(whole, noise, bell[2])?;
     let range = pulse.height * CURVATURES * 0.5 * CUT_OFF;
     let of_capped = evidence(&capped, noise) - range.ln();
     let on_top = data.points.iter().map(|(u, _)| *u);
     let mut on_top = on_top.filter(|u| data.is_capped(&capped.model, *u));
     let first = on_top.next()?;
     let last = on_top.next_back().unwrap_or(first);
-    let sample = |u: f64| (centre + half * u).round().max(0.0) as usize;
-    (of_capped - of_whole > UNCLIPPED).then(|| (sample(first), sample(last)))
+    (of_capped - of_whole > UNCLIPPED).then_some((first, last))
 }
 
 /// Middle of a pulse between its flanks, and how far from there bells are fitted.
@@ -117,10 +140,15 @@ fn evidence(found: &Descent<[f64; MOST]>, noise: f64) -> f64 {
     -0.5 * (found.left / variance + determinant - parameters * (TAU * variance).ln())
 }
 
+/// Standard error of a whole bell's curvature over that of a Gaussian as wide.
+fn curvature_error(whole: &Descent<[f64; MOST]>, noise: f64, gaussian: f64) -> Option<f64> {
+    Some(noise * whole.normal.solve()?.inverse[2][2].sqrt() / gaussian.abs())
+}
+
 /// Logarithm of the probability of a whole bell's curvature, given that of a Gaussian as wide.
 fn expected(whole: &Descent<[f64; MOST]>, noise: f64, gaussian: f64) -> Option<f64> {
     let (mean, spread) = CURVATURE;
-    let error = noise * whole.normal.solve()?.inverse[2][2].sqrt() / gaussian;
+    let error = curvature_error(whole, noise, gaussian)?;
     let variance = spread * spread + error * error;
     let off = whole.model[2] / gaussian - mean;
     Some(-0.5 * (off * off / variance + (TAU * variance).ln()))
