@@ -28,6 +28,7 @@ mod flight;
 mod following;
 mod gun;
 mod long_work;
+mod other_picks;
 mod plan;
 mod rows;
 mod run;

@@ -3,10 +3,9 @@
 use crate::error::StudyError;
 use crate::flight::{Flight, relative};
 use crate::gun::{Check, Gun};
+use crate::other_picks::OtherPick;
 use crate::plan::Plan;
-use hertzchain_chain::observe::{
-    Competing, Maximum, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, Stretch, Trace,
-};
+use hertzchain_chain::observe::{Competing, Maximum, Passage, PassageError, Pulse, Trace};
 use hertzchain_chain::wave::{Budget, Work};
 
 /// The striker's velocity after the impact, negative away from the chain.
@@ -55,7 +54,7 @@ pub struct Shot {
     pub accuracy_asked: f64,
     /// A bound on the relative error of the times of flight (of the sensor's largest
     /// peak time or the final velocities, where there are none), from runs that are
-    /// looser or tighter, or from half the fixed step: [`shoot_estimated`],
+    /// looser or tighter, or from twice or half the fixed step: [`shoot_estimated`],
     /// [`shoot_checked`]; `None` from [`shoot`]. In an ensemble, always, from the
     /// changes to steps 1.3 and 1.69 times as long. `work` does not count those shots.
     pub accuracy_reached: Option<f64>,
@@ -65,9 +64,8 @@ pub struct Shot {
     pub tolerance: Option<f64>,
     /// Step of a fixed-step solver in s.
     pub step_s: Option<f64>,
-    /// Relative error of a time of flight if a maximum is hidden where a signal
-    /// that is above the peak picked hardly falls.
-    pub(crate) hidden: Option<f64>,
+    /// Maxima that errors of heights could make a pulse's peak instead.
+    pub(crate) other_picks: Vec<OtherPick>,
     /// What a reader of the numbers must know.
     pub notes: Vec<String>,
 }
@@ -109,6 +107,20 @@ impl Shot {
         match (highest(&self.sensor_maxima), highest(&other.sensor_maxima)) {
             (Some(one), Some(two)) => relative(one.time_s, two.time_s),
             _ => velocity_change(&self.velocity_m_s, &other.velocity_m_s),
+        }
+    }
+
+    /// Largest difference of the heights of incident and wall peak over the higher; infinite
+    /// where one computation has none.
+    pub(crate) fn height_change(&self, other: &Self) -> f64 {
+        match (&self.passage, &other.passage) {
+            (Ok(one), Ok(two)) => {
+                let incident = (one.incident.value - two.incident.value).abs();
+                let wall = (one.wall.value - two.wall.value).abs();
+                incident.max(wall) / one.incident.value.max(one.wall.value)
+            }
+            (Err(_), Err(_)) => 0.0,
+            _ => f64::INFINITY,
         }
     }
 
@@ -154,8 +166,8 @@ pub fn shoot(plan: &Plan) -> Result<Shot, StudyError> {
 /// Runs a shot with an estimate of its error.
 ///
 /// With an energy budget, which asks for tight steps, two runs for times of flight
-/// alone at looser tolerances estimate it; else one at a tenth of the tolerance, as
-/// [`shoot_checked`]. A shot whose estimate is above the accuracy asked is computed
+/// alone at looser tolerances estimate it; else two at a tenth and a hundredth of the tolerance,
+/// as [`shoot_checked`]; a fixed step by one of twice its length. A shot whose estimate is above the accuracy asked is computed
 /// more tightly.
 ///
 /// # Errors
@@ -203,37 +215,6 @@ pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
     };
     let pulses = [Pulse::Incident, Pulse::Wall, Pulse::Reflected];
     pulses.into_iter().filter_map(note).collect()
-}
-
-/// The error of the reflected time if the sensor bead's signal has a maximum above the
-/// one picked that the accuracy of heights does not show: where the signal is higher
-/// than the peak and changes by less than their error for as long as the shortest
-/// contact lasts.
-pub(crate) fn hidden(
-    seen: &Passages,
-    passage: &Passage,
-    (accuracy, least_s): (f64, f64),
-) -> Option<f64> {
-    let (picked, flight_s) = (passage.reflected?, passage.tof_incident_s());
-    let wall_s = passage.wall.time_s;
-    let end_s = wall_s + RETURN_WITHIN * flight_s;
-    let within = |it: &&Stretch| it.start_s > wall_s && it.end_s() < end_s;
-    let stretches: Vec<&Stretch> = seen.sensor().stretches().iter().filter(within).collect();
-    let largest = stretches.iter().map(|it| it.values[0]);
-    let error = OF_PEAKS * accuracy * largest.fold(passage.incident.value, f64::max);
-    let mut after = stretches.iter();
-    let mut then = after.next()?;
-    let place = stretches.iter().find(|now| {
-        while then.start_s < now.start_s + least_s {
-            match after.next() {
-                Some(next) => then = next,
-                None => return false,
-            }
-        }
-        let [one, two] = [now.values[0], then.values[0]];
-        one.min(two) > picked.value + error && (one - two).abs() < error
-    })?;
-    Some((place.start_s - picked.time_s).abs() / flight_s)
 }
 
 /// Maxima above 5 % of the largest.

@@ -4,7 +4,9 @@
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::{PassageError, Pulse};
 use hertzchain_experiment::Experiment;
-use hertzchain_study::{InstructionSet, Plan, Shot, shoot, shoot_all};
+use hertzchain_study::{
+    InstructionSet, Plan, Shot, Solver, shoot, shoot_all, shoot_estimated, shoot_unjudged,
+};
 
 fn plan(text: &str) -> Plan {
     let experiment = Experiment::from_text("row.toml", text).unwrap();
@@ -233,4 +235,100 @@ fn a_rebound_on_an_incline_belongs_to_its_time() {
     assert!(off < 1e-9, "{off:e}");
     // The stop, pushed by the beads, moves off.
     assert!(trace.columns[1].iter().any(|speed| *speed > 1e-3));
+}
+
+/// Soft and stiff beads by turns behind a heavy soft striker, before a light stop.
+fn light_stop() -> Plan {
+    let bead = |soft: bool| match soft {
+        true => {
+            "radius = \"3.37776006683925 mm\"\nmass = \"0.5103314706397167 g\"\nmaterial = \"a\""
+        }
+        false => {
+            "radius = \"2.0266560401035498 mm\"\nmass = \"0.11023159765817877 g\"\nmaterial = \"b\""
+        }
+    };
+    let beads: String = (0..60)
+        .map(|i| format!("[[beads]]\ncount = 1\n{}\n", bead(i % 2 == 0)))
+        .collect();
+    plan(&format!(
+        "[materials.a]\nyoung_modulus = \"16112853.397792958 Pa\"\npoisson_ratio = 0.05741919740751395\n\
+         shear_viscosity = \"1.8625106312219641 Pa s\"\n\
+         [materials.b]\nyoung_modulus = \"705868590.0032899 Pa\"\npoisson_ratio = 0.22637807056088377\n\
+         shear_viscosity = \"84.37186070091057 Pa s\"\n\
+         [striker]\nspeed = \"1.1493016801900247 m/s\"\nradius = \"6.7555201336785 mm\"\n\
+         mass = \"4.082651765117734 g\"\nmaterial = \"a\"\n{beads}\
+         [[contacts]]\nfrom = 0\nlaws = [\"elastic_hertz\", {{ law = \"damping_linear\", \
+         coefficient = \"0.04203654434674536 N s/m\" }}]\n\
+         [far_end]\nkind = \"stop\"\nmass = \"0.30540512543732044 g\"\n\
+         [track]\nincline = \"5 deg\"\ngravity = \"9.80665 m/s^2\"\n[sensors]\nbead = 7\n"
+    ))
+}
+
+#[test]
+fn a_maximum_that_hardly_rises_is_found_or_called_uncertain_at_any_accuracy() {
+    let plan = light_stop();
+    // By an 80-bit integration, and here at 1e-8.
+    let right_s = 221.162_5e-6;
+    let flights = plan.clone().for_flights();
+    for accuracy in [1e-3, 1e-5] {
+        let at = |plan: &Plan| [plan.clone().with_accuracy(accuracy)];
+        let estimated = shoot_estimated(&at(&plan)[0].clone().with_budget());
+        let fit = shoot_unjudged(&at(&flights), InstructionSet::default()).remove(0);
+        for shot in [estimated, Ok(swept(&at(&flights)[0])), fit] {
+            let shot = shot.unwrap();
+            let back_s = shot.flight.unwrap().reflected_s.unwrap();
+            let off = (back_s / right_s - 1.0).abs();
+            // The maximum is there at any accuracy; a loose shot may call it uncertain.
+            assert!(off <= accuracy, "{accuracy:e}: {off:e}");
+            let stated = shot.accuracy_reached.unwrap_or(accuracy).max(1e-6);
+            assert!(off <= stated, "{accuracy:e}: {off:e} over {stated:e}");
+        }
+    }
+}
+
+#[test]
+fn a_batch_reports_no_return_as_absent_that_the_wave_loop_sees() {
+    // The sensor's signal rises by a thousandth of its peak as a light stop is hit again.
+    let plan = plan(
+        "[materials.m]\nyoung_modulus = \"127.383668807 GPa\"\npoisson_ratio = 0.36411644724938247\n\
+         shear_viscosity = \"13129.845297158148 Pa s\"\n\
+         [striker]\nspeed = \"1.1361404009369593 m/s\"\nradius = \"27.92990137736891 mm\"\n\
+         mass = \"0.735737224526673 kg\"\nmaterial = \"m\"\n\
+         [[beads]]\ncount = 1\nradius = \"27.92990137736891 mm\"\nmass = \"0.735737224526673 kg\"\n\
+         material = \"m\"\n[[contacts]]\nlaws = [\"elastic_hertz\", \"damping_brilliantov_1996\", \
+         \"damping_viscoelastic\"]\n[[gaps]]\ncontact = 1\ngap = \"23.77508402514868 um\"\n\
+         [far_end]\nkind = \"stop\"\nmass = \"44.564641465958586 g\"\n[sensors]\nbead = 1\n",
+    );
+    let flights = plan.clone().for_flights();
+    let right = shoot(&plan.with_accuracy(1e-9)).unwrap().flight.unwrap();
+    for accuracy in [1e-3, 1e-5] {
+        let plans = [flights.clone().with_accuracy(accuracy)];
+        let fit = shoot_unjudged(&plans, InstructionSet::default()).remove(0);
+        for shot in [swept(&plans[0]), fit.unwrap()] {
+            let change = shot.flight.unwrap().change(&right);
+            assert!(change <= accuracy, "{accuracy:e}: {change:e}");
+        }
+    }
+}
+
+#[test]
+fn a_fixed_step_is_estimated_too() {
+    let plan = row(20, 1.0);
+    let right = shoot(&plan.clone().with_accuracy(1e-9))
+        .unwrap()
+        .flight
+        .unwrap();
+    for step_s in [0.02, 0.1] {
+        let step_s = Some(step_s);
+        for solver in [Solver::Rk4 { step_s }, Solver::Verlet { step_s }] {
+            let plan = Plan {
+                solver,
+                ..plan.clone()
+            };
+            let shot = shoot_estimated(&plan).unwrap();
+            let off = shot.flight.unwrap().change(&right);
+            let reached = shot.accuracy_reached.unwrap();
+            assert!(off <= reached, "{solver:?}: {off:e} over {reached:e}");
+        }
+    }
 }

@@ -134,6 +134,8 @@ pub struct Flown {
     /// Largest correction of a velocity by a single step, as a fraction of
     /// the speed that set the chain in motion, at the steps looked at.
     pub correction: f64,
+    /// What the first sensor showed at the largest sample of the second one, the wall.
+    pub at_wall_n: f64,
     /// What it cost.
     pub work: Work,
     /// Bodies looked at, summed over steps: fewer than all where the shots of
@@ -328,7 +330,11 @@ fn fire_block<N: Number<W>, const W: usize>(
             trace.signal(sensor, &extremes[index][at], settings.shapes)
         });
         let signals = signals.collect();
-        keep(at, lane.flown(signals, clock, looked_at));
+        let at_wall_n = match recorder.sensors() {
+            0 => 0.0,
+            _ => lane.passing.at_wall_n(recorder.samples(0, at)),
+        };
+        keep(at, lane.flown(signals, clock, (looked_at, at_wall_n)));
     }
 }
 
@@ -422,7 +428,7 @@ impl Lane {
         system: &System,
     ) {
         let step = block.steps;
-        let early = end != End::Duration && {
+        let early = recorder.sensors() > 1 && {
             let (sensor, wall) = (recorder.samples(0, at), recorder.samples(1, at));
             self.passing.look(sensor, wall, step);
             self.passing.is_over(end, system.scales().silent_force_n)
@@ -460,7 +466,7 @@ impl Lane {
         self,
         signals: Vec<Signal>,
         clock: Clock<'_>,
-        looked_at: u64,
+        (looked_at, at_wall_n): (u64, f64),
     ) -> Result<Flown, EnsembleError> {
         let (step, finished) = match self.state {
             State::Finished { step, early } => (step, early),
@@ -488,6 +494,7 @@ impl Lane {
             velocity_m_s: self.velocity_m_s,
             step_s: clock.step_s,
             correction: self.correction,
+            at_wall_n,
             work: Work {
                 force_passes: step as u64 + 1,
                 steps: step as u64,

@@ -120,6 +120,14 @@ impl Passing {
         self.seen = step;
     }
 
+    /// What the sensor showed at the wall's largest sample; 0 where none was followed.
+    pub fn at_wall_n<N: Number<W>, const W: usize>(&self, sensor: Samples<'_, N, W>) -> f64 {
+        match self.wall.step {
+            0 => 0.0,
+            step => sensor.at(step),
+        }
+    }
+
     /// Step from which on a maximum can be the returned pulse; never before
     /// the wall has seen any.
     fn back(&self) -> f64 {

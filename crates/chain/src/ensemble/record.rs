@@ -39,6 +39,11 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
         }
     }
 
+    /// Number of sensors.
+    pub fn sensors(&self) -> usize {
+        self.sensors.len()
+    }
+
     /// Adds what all sensors show now.
     #[inline(always)]
     pub fn add(&mut self, block: &Block<'_, N, W>) {

@@ -123,6 +123,10 @@ pub(crate) fn least_n_s(system: &System) -> f64 {
 /// A force jump, or a dip, smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
 
+/// Where a force is cut it jumps by less than this many tolerances of a step, because a
+/// step ends near the cut and not at it.
+const OF_CUT: f64 = 0.03;
+
 /// Most stretches of a signal: 59 MB.
 const MOST_STRETCHES: usize = 1 << 20;
 
@@ -219,16 +223,17 @@ impl Signal {
         self.stretches.truncate(kept);
     }
 
-    /// A slope right in sign: near a maximum the samples alone may not be.
+    /// A slope right in sign: near a maximum, and where a contact touches or parts, the
+    /// samples alone may not be.
     fn slope(&self, piece: &Piece<'_>, theta: f64, (slope, off): (f64, f64)) -> f64 {
-        match slope.abs() < off {
+        match slope.abs() < off || piece.is_near_touch(self.sensor, theta) {
             true => piece.signal_rate(self.sensor, theta),
             false => slope,
         }
     }
 
     /// Keeps a maximum, unless it is rounding on a signal that rests; of two without a
-    /// dip between them, which the steps found twice, the higher.
+    /// dip between them, which the steps found twice, the higher, if that is the later.
     fn keep(&mut self, maximum: Maximum) {
         let force = !matches!(self.sensor, Sensor::Position(_) | Sensor::Velocity(_));
         if force && maximum.value <= KEPT * self.largest {
@@ -237,7 +242,8 @@ impl Signal {
         let lowest = std::mem::replace(&mut self.lowest, f64::INFINITY);
         let floor = JUMP * self.largest;
         match self.maxima.last_mut() {
-            Some(last) if lowest >= last.value.min(maximum.value) - floor => {
+            // A falling signal may hardly rise to another maximum, which is one.
+            Some(last) if lowest.min(maximum.value) >= last.value - floor => {
                 if maximum.value > last.value {
                     *last = maximum;
                 }
@@ -277,7 +283,7 @@ impl Signal {
         let [start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
             .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
-        let floor = JUMP * self.largest;
+        let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
         // Before a signal is first seen, and after silence, it was 0.
         let (time_s, value, slope) = self.before.unwrap_or((stretch.start_s, 0.0, 0.0));
         let rises = slope > 0.0 || start > value + floor;
@@ -406,7 +412,7 @@ mod tests {
 
     #[test]
     fn a_maximum_that_two_steps_find_is_one_and_two_with_a_dip_are_two() {
-        let kept = |values: [f64; 5]| {
+        let kept = |values: [f64; 5], heights: [f64; 2]| {
             let stretch = Stretch {
                 start_s: 0.0,
                 length_s: 1.0,
@@ -417,11 +423,16 @@ mod tests {
                 ..Signal::new(Sensor::Contact(0))
             };
             let maximum = |(time_s, value): (f64, f64)| Maximum { time_s, value };
-            signal.keep_inside(&stretch, [(0.1, 0.9), (0.9, 1.0)].map(maximum).into());
+            signal.keep_inside(
+                &stretch,
+                [(0.1, heights[0]), (0.9, heights[1])].map(maximum).into(),
+            );
             signal.maxima.iter().map(|it| it.time_s).collect::<Vec<_>>()
         };
-        assert_eq!(kept([0.0, 0.9, 0.9, 0.95, 0.5]), [0.9]);
-        assert_eq!(kept([0.0, 0.9, 0.8, 0.95, 0.5]), [0.1, 0.9]);
+        assert_eq!(kept([0.0, 0.9, 0.9, 0.95, 0.5], [0.9, 1.0]), [0.9]);
+        assert_eq!(kept([0.0, 0.9, 0.8, 0.95, 0.5], [0.9, 1.0]), [0.1, 0.9]);
+        // One that falls hardly rises to the second.
+        assert_eq!(kept([0.9, 0.8, 0.7, 0.6, 0.5], [0.9, 0.6]), [0.1, 0.9]);
     }
 
     #[test]

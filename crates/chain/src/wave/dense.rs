@@ -28,10 +28,16 @@ pub struct Piece<'a> {
     /// Since when bodies outside the window fly or rest.
     pub(super) asleep_since_s: &'a [f64],
     pub(super) frozen: bool,
+    /// Tolerance of a step, 0 where steps are fixed.
+    pub(super) tolerance: f64,
     /// The long step of slow bodies, if one is under way.
     pub(super) slow: Option<&'a Slow>,
     pub(super) meter: Option<&'a Meter>,
 }
+
+/// A contact touches or parts within this share of a step if its overlap is less than
+/// this share of what its rate makes in a step.
+const NEAR_TOUCH: f64 = 0.05;
 
 impl Piece<'_> {
     /// Time at which the step starts, in s.
@@ -89,6 +95,30 @@ impl Piece<'_> {
         match self.is_slow(contact) {
             true => self.overlap(contact, 0.0).0 < 0.0,
             false => self.state.mode[contact] == Mode::Open,
+        }
+    }
+
+    /// Tolerance of a step where forces are cut, 0 elsewhere.
+    pub(crate) fn cut_tolerance(&self) -> f64 {
+        match self.system.tension {
+            Tension::Clipped => self.tolerance,
+            Tension::Allowed => 0.0,
+        }
+    }
+
+    /// Whether a contact that a sensor sees has just closed, or is about to open, at `theta`:
+    /// the slopes of some laws are infinite there.
+    pub(crate) fn is_near_touch(&self, sensor: Sensor, theta: f64) -> bool {
+        let near = |contact: usize| {
+            let (overlap, rate) = self.overlap(contact, theta);
+            !self.is_open(contact) && overlap.abs() < NEAR_TOUCH * rate.abs() * self.step_s
+        };
+        let wall = self.system.contacts() - 1;
+        match sensor {
+            Sensor::Bead(n) => near(self.before(n)) || near(n),
+            Sensor::Contact(c) => near(c),
+            Sensor::BeadPlusWall(n) => near(self.before(n)) || near(n) || near(wall),
+            Sensor::Position(_) | Sensor::Velocity(_) => false,
         }
     }
 

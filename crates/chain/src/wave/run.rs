@@ -286,6 +286,10 @@ impl<'a> Wave<'a> {
             window: self.window.bodies.clone(),
             asleep_since_s: &self.window.asleep_since_s,
             frozen: self.gates == Gates::Frozen,
+            tolerance: match self.control {
+                Control::Adaptive { tolerance } => tolerance,
+                Control::Fixed { .. } => 0.0,
+            },
             slow: self.slow.active.then_some(&self.slow),
             meter: self.meter.as_ref(),
         }

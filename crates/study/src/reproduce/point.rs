@@ -62,7 +62,7 @@ fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
     let largest = |number: &dyn Fn(&Point) -> Vec<f64>, relative: bool| {
         let pairs = number(&point).into_iter().zip(number(finer));
         let off = pairs.map(|(a, b)| {
-            let off = reached([(a - b).abs(), 0.0], tolerance * b.abs());
+            let off = reached([(a - b).abs(), 0.0], 1.0, tolerance * b.abs());
             off / if relative { b.abs() } else { 1.0 }
         });
         // What neither shot gave is not wrong.
