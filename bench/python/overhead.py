@@ -1,6 +1,6 @@
 """What Python costs: an ensemble from Python and the same from Rust, run by turns.
 
-    cargo build --release --example throughput -p hertzchain-study
+    cargo build --release --example throughput -p hertzchain-sim
     pip install .
     python bench/python/overhead.py target/release/examples/throughput
 

@@ -1,7 +1,7 @@
 //! Records of a computed shot, with noise and what instruments do to it.
 
 use crate::row::{FINE_S, Row};
-use hertzchain_signal::Bandwidth;
+use hertzchain_measure::signal::Bandwidth;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -10,7 +10,7 @@ mod row;
 mod tally;
 
 use fault::{Fault, HARD, KNEE, SHORT_KNEE, TANH};
-use hertzchain_signal::Bandwidth;
+use hertzchain_measure::signal::Bandwidth;
 use row::Row;
 use std::error::Error;
 use tally::Tally;

@@ -1,7 +1,7 @@
 //! Computed forces at both sensors, with the times of their maxima.
 
 use hertzchain_chain::Sensor;
-use hertzchain_study::{Plan, shoot};
+use hertzchain_sim::{Plan, shoot};
 use std::error::Error;
 
 /// Interval in s of computed traces.

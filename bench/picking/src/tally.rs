@@ -2,10 +2,10 @@
 
 use crate::fault::{Fault, record, volts};
 use crate::row::Row;
-use hertzchain_measure::{Curves, Grouping, Shot};
-use hertzchain_signal::{
+use hertzchain_measure::signal::{
     Channels, Estimate, Measuring, PowerLaw, coverage, measure, power_law_both_errors,
 };
+use hertzchain_measure::{Curves, Grouping, Shot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -4,7 +4,7 @@ use crate::draw;
 use crate::reference::Reference;
 use crate::row::{Ball, Far, Law, Material, Row};
 use hertzchain_experiment::Experiment;
-use hertzchain_study::{InstructionSet, Plan, Shot, shoot_all, shoot_estimated};
+use hertzchain_sim::{InstructionSet, Plan, Shot, shoot_all, shoot_estimated};
 
 /// The paper's row of 40 steel balls.
 fn paper(speed_m_s: f64, laws: &[Law]) -> Row {

@@ -4,9 +4,9 @@ use crate::covered::covered;
 use crate::type_size::smallest_type;
 use hertzchain_experiment::Reading;
 use hertzchain_figures::{Figure, paper};
-use hertzchain_study::claims::{Claim, Verdict, claims};
-use hertzchain_study::readings::{Row, Scan};
-use hertzchain_study::reproduce::{Options, PROVENANCE, Reproduction, Silent, reproduce};
+use hertzchain_paper::claims::{Claim, Verdict, claims};
+use hertzchain_paper::readings::{Row, Scan};
+use hertzchain_paper::reproduce::{Options, PROVENANCE, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
 
 const TABLES: [&str; 8] = [

@@ -14,7 +14,7 @@ mod common;
 
 use common::{Truth, speeds_m_s};
 use hertzchain_experiment::preset;
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 use std::error::Error;
 
 /// Speeds of the table.

@@ -2,7 +2,7 @@
 
 use crate::Parameter;
 use crate::problem::{ModelError, Problem, Residuals};
-use hertzchain_study::{Fingerprint, Inputs, count_done};
+use hertzchain_sim::{Fingerprint, Inputs, count_done};
 use std::sync::OnceLock;
 
 /// What became of the points of a batch, in their order.

@@ -2,7 +2,7 @@
 
 use crate::identify::directions_at;
 use crate::{Fit, Problem};
-use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square};
 use std::ops::Range;
 
 /// How well a fit describes its data.

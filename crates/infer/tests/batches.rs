@@ -6,7 +6,7 @@ use hertzchain_infer::{
     Batch, Chain, Covariance, CurveProblem, Fitting, Outcomes, Parameter, Problem, Sampling,
     Spread, fit,
 };
-use hertzchain_study::Fingerprint;
+use hertzchain_sim::Fingerprint;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 type Decay = Curve<fn(&[f64], f64) -> f64>;

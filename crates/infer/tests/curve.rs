@@ -4,7 +4,7 @@ use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::{
     CurveError, CurveProblem, Data, FreeNumber, FreeNumbers, Model, Problem, Selection, Speeds,
 };
-use hertzchain_study::{Plan, shoot};
+use hertzchain_sim::{Plan, shoot};
 
 const SPEEDS_M_S: [f64; 4] = [0.1, 0.25, 0.6, 1.2];
 

@@ -4,7 +4,7 @@ use crate::common::{Noise, Truth, speeds_between};
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, GaugeLaws, Pair, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 

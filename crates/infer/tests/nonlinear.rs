@@ -10,7 +10,7 @@ use hertzchain_infer::{
     Covariance, End, Fit, Fitting, Interval, Parameter, Profile, ProfileError, Profiling, fit,
     profile,
 };
-use hertzchain_signal::{Coverage, coverage};
+use hertzchain_measure::signal::{Coverage, coverage};
 
 /// Residuals (a − 1)/0.3 and (b − a²)/0.01: a narrow, bent valley in which b = a²,
 /// a normal around 1.

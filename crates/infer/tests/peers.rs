@@ -1,13 +1,13 @@
 //! The same problem by SciPy and emcee, in a throw-away Python environment.
 
-#[path = "../../records/tests/common/python.rs"]
+#[path = "../../measure/tests/records/common/python.rs"]
 mod python;
 
 use crate::toys::{Curve, decay, normals, spaced};
 use hertzchain_infer::{
     Chain, Covariance, Fitting, Loss, Parameter, Posterior, Requirements, Sampling, fit,
 };
-use hertzchain_signal::power_law_both_errors;
+use hertzchain_measure::signal::power_law_both_errors;
 use python::Python;
 use std::collections::HashMap;
 use std::path::Path;

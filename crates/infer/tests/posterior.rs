@@ -10,8 +10,8 @@ use hertzchain_infer::{
     Chain, Covariance, Fit, Fitting, ModelError, Parameter, Prior, Problem, Requirements,
     Residuals, Sampling, SamplingError, autocorrelation_time, fit, split_r_hat,
 };
-use hertzchain_signal::coverage;
-use hertzchain_study::Stop;
+use hertzchain_measure::signal::coverage;
+use hertzchain_sim::Stop;
 use std::thread::scope;
 
 fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {

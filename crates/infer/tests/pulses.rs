@@ -6,8 +6,8 @@ use hertzchain_experiment::preset;
 use hertzchain_infer::{
     Covariance, Fitting, Goodness, Problem, PulseProblem, Pulses, RecordError, Respond, fit,
 };
-use hertzchain_signal::Estimate;
-use hertzchain_study::{Plan, shoot};
+use hertzchain_measure::signal::Estimate;
+use hertzchain_sim::{Plan, shoot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -6,7 +6,7 @@ use hertzchain_infer::{
     Covariance, CurveProblem, Data, DataRow, End, Fitting, FreeNumber, Freedom, Model, Predicted,
     Problem, Profiling, Speeds, fit, profile,
 };
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// Steel and a softer, more viscous bronze.
 const MATERIALS: &str = "[materials.steel]\nyoung_modulus = \"200 GPa\"\npoisson_ratio = 0.3\n\

@@ -6,7 +6,7 @@ use hertzchain_infer::{
     Covariance, Criteria, Data, Fitting, Goodness, Identifiability, Observable, Predicted, Problem,
     Surrogate, fit,
 };
-use hertzchain_signal::coverage;
+use hertzchain_measure::signal::coverage;
 
 const SPEEDS: usize = 12;
 

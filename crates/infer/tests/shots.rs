@@ -4,7 +4,7 @@ use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
     Covariance, Data, DataError, Defaults, Fitting, Parameter, Scatter, Selection, fit, widening,
 };
-use hertzchain_signal::coverage;
+use hertzchain_measure::signal::coverage;
 
 const SHOTS: usize = 20;
 const POINTS: usize = 25;

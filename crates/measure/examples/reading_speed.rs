@@ -6,7 +6,7 @@
 //! both times of flight of every shot; tells also the most memory that was needed meanwhile.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
-#[path = "../../signal/tests/common/mod.rs"]
+#[path = "../tests/signal/common/mod.rs"]
 mod common;
 
 use common::Scene;

@@ -1,6 +1,6 @@
 //! Pulses of one speed, of which a shot's noise leaves open which maximum is the largest.
 
-use hertzchain_signal::{Estimate, Flight, Place};
+use crate::signal::{Estimate, Flight, Place};
 
 /// Chance above which a maximum is not known to be the largest: three standard errors.
 const OPEN: f64 = 1.35e-3;

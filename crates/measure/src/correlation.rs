@@ -1,7 +1,7 @@
 //! Correlation of the errors of incident and reflected times of flight, which share the wall's pick.
 
 use crate::SpeedRow;
-use hertzchain_signal::{Estimate, Flight, Ratio};
+use crate::signal::{Estimate, Flight, Ratio};
 
 /// Covariance of two means over shots, and what is known of each shot alone.
 #[derive(Clone, Copy, Debug)]

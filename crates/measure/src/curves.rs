@@ -4,7 +4,7 @@ use crate::Shot;
 use crate::alike::settled;
 use crate::correlation::{Pairs, correlation, of_ratios, shared_s2};
 use crate::lost::{At, Lost, lost};
-use hertzchain_signal::{
+use crate::signal::{
     Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
     power_law_both_errors, ratios_at_common, shared, summary,
 };

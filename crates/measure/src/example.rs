@@ -1,7 +1,7 @@
 //! One shot's samples, kept to be looked at.
 
 use crate::Shot;
-use hertzchain_records::Record;
+use crate::records::Record;
 
 /// A shot with its samples.
 #[derive(Clone, Debug, PartialEq)]

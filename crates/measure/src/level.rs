@@ -1,8 +1,8 @@
 //! Shots cut out of a recording where it passes a level.
 
 use crate::Refused;
-use hertzchain_records::{Channel, Record, RecordError, Samples};
-use hertzchain_signal::{Cutter, Segment, Trigger, median};
+use crate::records::{Channel, Record, RecordError, Samples};
+use crate::signal::{Cutter, Segment, Trigger, median};
 use std::collections::VecDeque;
 
 /// A level trigger, as an oscilloscope has it.

@@ -4,7 +4,10 @@
 //! [`Curves::of`] reduces the shots to means a speed, ratios of wet to dry chains
 //! and power laws. [`ShotList`] gives shots the speeds that their files lack.
 //! Nothing here knows of chains: how many beads there are and where the sensor
-//! sits are plain numbers in [`hertzchain_signal::Finding`].
+//! sits are plain numbers in [`hertzchain_measure::signal::Finding`].
+
+pub mod records;
+pub mod signal;
 
 mod alike;
 mod correlation;
@@ -23,7 +26,6 @@ mod table;
 pub use alike::settled;
 pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};
 pub use example::Example;
-pub use hertzchain_records as records;
 pub use level::Level;
 pub use list::{ListError, ShotList};
 pub use lost::Lost;

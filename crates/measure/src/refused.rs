@@ -1,7 +1,7 @@
 //! What of the recordings could not be measured.
 
-use hertzchain_records::RecordError;
-use hertzchain_signal::SignalError;
+use crate::records::RecordError;
+use crate::signal::SignalError;
 use std::path::PathBuf;
 
 /// Why a record, or a whole recording, was not measured.

@@ -1,11 +1,11 @@
 //! Recordings into shots, over threads, in the order in which they came.
 
 use crate::level::AtLevel;
+use crate::records::{Parts, ReadOptions, Record, read};
 use crate::several::{Content, content};
+use crate::signal::{Bandwidth, Doubt, Measuring, Method};
 use crate::speeds::Speeds;
 use crate::{Example, Level, Refused, Shot, ShotList};
-use hertzchain_records::{Parts, ReadOptions, Record, read};
-use hertzchain_signal::{Bandwidth, Doubt, Measuring, Method};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 

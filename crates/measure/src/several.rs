@@ -1,6 +1,6 @@
 //! Several shots in one record: told apart where that is plain.
 
-use hertzchain_signal::median;
+use crate::signal::median;
 
 /// Samples that are looked at together.
 const BLOCK: usize = 32;

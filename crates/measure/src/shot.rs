@@ -1,9 +1,9 @@
 //! One measured shot.
 
 use crate::Options;
+use crate::records::Record;
 use crate::run::{stated_bandwidth, told_high_pass_hz};
-use hertzchain_records::Record;
-use hertzchain_signal::{
+use crate::signal::{
     Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
 };
 use std::f64::consts::TAU;
@@ -62,7 +62,7 @@ impl Shot {
                 .or_else(|| stated_bandwidth(record, options)),
             ..measuring.clone()
         };
-        let measured = hertzchain_signal::measure(channels, record.interval_s, &measuring);
+        let measured = crate::signal::measure(channels, record.interval_s, &measuring);
         let (flight, doubts) = match measured {
             Ok(Measured { found, flight }) => {
                 let relative = record.interval_error_s / record.interval_s;

@@ -1,7 +1,7 @@
 //! Speeds that a file tells of its shots in order, dealt once all of them are cut out.
 
+use crate::records::{Parts, Record};
 use crate::{Measurement, Options, Refused, Shot};
-use hertzchain_records::{Parts, Record};
 use std::path::{Path, PathBuf};
 
 /// Files that tell speeds of shots which had yet to be cut out, with the speeds in m/s.

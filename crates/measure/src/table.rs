@@ -1,8 +1,8 @@
 //! Results as CSV, in SI.
 
+use crate::records::no_formula;
+use crate::signal::{Estimate, Flight, Picked, PowerLaw, Ratio, Summary};
 use crate::{Case, Curves, Lost, Shot, SpeedRow};
-use hertzchain_records::no_formula;
-use hertzchain_signal::{Estimate, Flight, Picked, PowerLaw, Ratio, Summary};
 use std::io::{self, Write};
 use std::iter::once;
 

@@ -1,7 +1,7 @@
 //! Shots of one speed tell together which fragment of their returns is the largest.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use hertzchain_signal::{Channels, Flight, Measuring, Shape, measure};
+use hertzchain_measure::signal::{Channels, Flight, Measuring, Shape, measure};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

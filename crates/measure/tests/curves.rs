@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+use hertzchain_measure::signal::{Bandwidth, Doubt, Flight, Measuring, SignalError, alone};
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
 };
-use hertzchain_signal::{Bandwidth, Doubt, Flight, Measuring, SignalError, alone};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Many shots as columns of numbers.
 
-use hertzchain_study::{Odd, Shot};
+use hertzchain_sim::{Odd, Shot};
 use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

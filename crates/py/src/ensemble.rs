@@ -5,15 +5,15 @@ use crate::experiment::Experiment;
 use crate::failure::{Failed, of_path};
 use crate::job::Job;
 use crate::sweep::{Asked, judges, representative};
+use hertzchain::arguments::{How, parsed};
+use hertzchain::failure::{Failure, of_speed};
+use hertzchain::input;
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Warning;
-use hertzchain_study::{
+use hertzchain_sim::{
     InstructionSet, Judges, Odd, Plan, Shot, Stop, StudyError, Tuned, parted, piece, shoot_all,
     shoot_tuned, shoot_unjudged, stopped,
 };
-use hertzchain_verbs::arguments::{How, parsed};
-use hertzchain_verbs::failure::{Failure, of_speed};
-use hertzchain_verbs::input;
 use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,9 +1,9 @@
 //! Experiments: read, looked into, changed, pickled.
 
 use crate::failure::{Failed, of_file, of_path};
+use hertzchain::failure::Failure;
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Units;
-use hertzchain_verbs::failure::Failure;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

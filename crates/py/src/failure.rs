@@ -1,8 +1,8 @@
 //! Failures as Python's exceptions, with the reports of the command line.
 
+use hertzchain::failure::{self, Failure};
 use hertzchain_experiment::{Finding, Mistakes, OpenError, PathError};
 use hertzchain_measure::records::without_controls as plain;
-use hertzchain_verbs::failure::{self, Failure};
 use miette::Diagnostic;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

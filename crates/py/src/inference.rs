@@ -4,14 +4,14 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
+use hertzchain::arguments::infer::{Design, Fit, Gauge, Measured};
+use hertzchain::arguments::parsed;
+use hertzchain::failure::Failure;
+use hertzchain::fit::pulses;
+use hertzchain::inference::{changed, in_case, model, parsed as data, problem, user};
+use hertzchain::{design as designing, fit as fitting, gauge as gauging};
 use hertzchain_infer::gauge::{Chains, known_oils, oils};
 use hertzchain_infer::{CurveProblem, Data};
-use hertzchain_verbs::arguments::infer::{Design, Fit, Gauge, Measured};
-use hertzchain_verbs::arguments::parsed;
-use hertzchain_verbs::failure::Failure;
-use hertzchain_verbs::fit::pulses;
-use hertzchain_verbs::inference::{changed, in_case, model, parsed as data, problem, user};
-use hertzchain_verbs::{design as designing, fit as fitting, gauge as gauging};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -68,7 +68,7 @@ fn found<'py>(
 /// Whether a file is a table of curves; what else can be read is a recording.
 #[pyfunction]
 pub fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<bool> {
-    let found = hertzchain_verbs::inference::is_table(&path, with_options_of_recordings);
+    let found = hertzchain::inference::is_table(&path, with_options_of_recordings);
     Ok(found.map_err(Failed::from)?)
 }
 

@@ -1,7 +1,7 @@
 //! Long calls: without Python's lock, with progress, to be broken off.
 
-use hertzchain_study::Stop;
-use hertzchain_verbs::failure::Failure;
+use hertzchain::failure::Failure;
+use hertzchain_sim::Stop;
 use pyo3::prelude::*;
 use std::fmt::Display;
 use std::panic::resume_unwind;

@@ -1,10 +1,10 @@
 //! Force laws written in Python, through the interface of all laws.
 
+use hertzchain::failure::Failure;
 use hertzchain_chain::laws::{Closed, Columns, Contacts, Law, LawError, LawInfo, Nature};
 use hertzchain_chain::material::Pair;
 use hertzchain_chain::{Chain, InstructionSet, Section};
-use hertzchain_study::Stop;
-use hertzchain_verbs::failure::Failure;
+use hertzchain_sim::Stop;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::fmt;

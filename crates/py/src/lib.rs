@@ -1,6 +1,6 @@
 //! hertzchain for Python: all of its bindings.
 //!
-//! Thin: what a verb does is in `hertzchain_verbs` and below; here arguments
+//! Thin: what a verb does is in `hertzchain` and below; here arguments
 //! become Rust's, results become arrays and dicts, and Python's lock is let go
 //! while anything is computed. The package around this module is in `python/`.
 

@@ -4,14 +4,14 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
+use hertzchain::arguments::measure::Measure;
+use hertzchain::arguments::parsed;
+use hertzchain::failure::Failure;
+use hertzchain::inference::wanted;
+use hertzchain::measure as measuring;
 use hertzchain_measure::{Curves, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
-use hertzchain_rig::{Plan, RigError};
-use hertzchain_study::{Stop, stopped};
-use hertzchain_verbs::arguments::measure::Measure;
-use hertzchain_verbs::arguments::parsed;
-use hertzchain_verbs::failure::Failure;
-use hertzchain_verbs::inference::wanted;
-use hertzchain_verbs::measure as measuring;
+use hertzchain_sim::rig::{Plan, RigError};
+use hertzchain_sim::{Stop, stopped};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -46,18 +46,18 @@ pub fn campaign<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let part = shard.parse();
-    let part = part.map_err(|error: hertzchain_rig::ShardError| {
+    let part = part.map_err(|error: hertzchain_sim::rig::ShardError| {
         Failed::from(Failure::User(error.to_string()))
     })?;
     let (done, seed, warnings) = Job::pooled(progress, threads).run(py, |stop| {
         let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
-        let warnings = hertzchain_rig::outlook(&plan).map_err(failure)?;
-        let watch = |progress: hertzchain_rig::Progress| {
+        let warnings = hertzchain_sim::rig::outlook(&plan).map_err(failure)?;
+        let watch = |progress: hertzchain_sim::rig::Progress| {
             if progress.fired > 0 {
                 stop.count(1);
             }
         };
-        let done = hertzchain_rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
+        let done = hertzchain_sim::rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
         Ok((done, plan.seed, warnings))
     })?;
     let told = PyDict::new(py);

@@ -6,11 +6,11 @@ use crate::experiment::Experiment;
 use crate::failure::{Failed, of_path};
 use crate::job::Job;
 use crate::sweep::{Asked, judges, representative};
-use hertzchain_shards::ShardsError;
-use hertzchain_study::{COLUMNS, How, RunError, Shard};
-use hertzchain_verbs::arguments::{How as Options, parsed};
-use hertzchain_verbs::failure::Failure;
-use hertzchain_verbs::input;
+use hertzchain::arguments::{How as Options, parsed};
+use hertzchain::failure::Failure;
+use hertzchain::input;
+use hertzchain_sim::shards::ShardsError;
+use hertzchain_sim::{COLUMNS, How, RunError, Shard};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// A sweep or an ensemble with everything that its numbers follow from.
 #[pyclass(frozen, module = "hertzchain._hertzchain")]
 pub struct Run {
-    inner: hertzchain_study::Run,
+    inner: hertzchain_sim::Run,
     experiment: Experiment,
     speeds_m_s: Vec<f64>,
     names: Vec<String>,
@@ -47,7 +47,7 @@ fn run(
     speeds_m_s: &[f64],
     numbers: &[(String, Vec<f64>)],
     asked: &Asked,
-) -> Result<hertzchain_study::Run, Failure> {
+) -> Result<hertzchain_sim::Run, Failure> {
     let options: Options = parsed("sweep", &asked.options)?;
     let plan = representative(experiment, &options)?;
     let how = How {
@@ -60,7 +60,7 @@ fn run(
         judges: judges(&asked.judges)?,
         set: input::instruction_set()?,
     };
-    let whole = hertzchain_study::Run::new(&experiment.inner, speeds_m_s.to_vec(), how);
+    let whole = hertzchain_sim::Run::new(&experiment.inner, speeds_m_s.to_vec(), how);
     numbers
         .iter()
         .try_fold(whole.map_err(refused)?, |run, (name, values)| {
@@ -149,7 +149,7 @@ pub fn shard<'py>(
     let part = Shard::new(number, of);
     let part = part.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
     Job::pooled(progress, threads).run(py, |stop| {
-        let done = hertzchain_shards::run(&run.inner, part, &folder, &|| stop.count(1));
+        let done = hertzchain_sim::shards::run(&run.inner, part, &folder, &|| stop.count(1));
         Ok(done.map_err(failure)?.kept)
     })
 }
@@ -158,7 +158,7 @@ pub fn shard<'py>(
 #[pyfunction]
 pub fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let whole = Job::alone().run(py, |_| {
-        hertzchain_shards::gather(&[Path::new(&folder)]).map_err(failure)
+        hertzchain_sim::shards::gather(&[Path::new(&folder)]).map_err(failure)
     })?;
     let columns = PyDict::new(py);
     for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {

@@ -5,13 +5,13 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
+use hertzchain::arguments::{How, parsed};
+use hertzchain::failure::Failure;
+use hertzchain::{input, json as results};
 use hertzchain_experiment::Experiment as Known;
-use hertzchain_study::{
+use hertzchain_sim::{
     Column, Judges, Plan, Point, Rows, Settings, Tuned, parse_speeds, sweep_each,
 };
-use hertzchain_verbs::arguments::{How, parsed};
-use hertzchain_verbs::failure::Failure;
-use hertzchain_verbs::{input, json as results};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -4,12 +4,12 @@ use crate::experiment::Experiment;
 use crate::failure::{Failed, finding};
 use crate::job::Job;
 use crate::json;
+use hertzchain::failure::Failure;
+use hertzchain::given::Given;
+use hertzchain::{input, json as results};
 use hertzchain_chain::Chain;
 use hertzchain_experiment as experiment;
-use hertzchain_study::{Group, StudyError, describe, describe_theory};
-use hertzchain_verbs::failure::Failure;
-use hertzchain_verbs::given::Given;
-use hertzchain_verbs::{input, json as results};
+use hertzchain_sim::{Group, StudyError, describe, describe_theory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -64,8 +64,8 @@ pub fn theory<'py>(
 #[pyfunction]
 #[pyo3(signature = (name))]
 pub fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
-    let infos = hertzchain_verbs::laws::infos(name).map_err(Failed::from)?;
-    json::object(py, &hertzchain_verbs::laws::json(&infos))
+    let infos = hertzchain::laws::infos(name).map_err(Failed::from)?;
+    json::object(py, &hertzchain::laws::json(&infos))
 }
 
 /// The vector instructions with which ensembles are computed here.

@@ -21,7 +21,7 @@ from hertzchain import _hertzchain as _native
 from hertzchain import distributed
 from hertzchain._posing import csv
 
-RIG = ROOT / "crates/rig/tests/small.toml"
+RIG = ROOT / "crates/sim/tests/small.toml"
 SPEEDS = np.linspace(0.1, 1.0, 120)
 MODULI = np.array([[200e9], [213e9]])
 

@@ -147,7 +147,7 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
 
 
 def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
-    rig = ROOT / "crates/rig/tests/small.toml"
+    rig = ROOT / "crates/sim/tests/small.toml"
     row = hc.load(rig)
     hc.campaign(row, tmp_path / "records")
     options = ("--case", "dry", "--free", "steel.eta,sensor_gain", "--most-shots", "2", "--out", tmp_path / "out")

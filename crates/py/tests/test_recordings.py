@@ -10,7 +10,7 @@ from conftest import ROOT, pickled, program
 
 import hertzchain as hc
 
-SMALL = ROOT / "crates/rig/tests/small.toml"
+SMALL = ROOT / "crates/sim/tests/small.toml"
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from test_inference import noisy
 import hertzchain as hc
 from hertzchain import distributed
 
-RIG = ROOT / "crates/rig/tests/small.toml"
+RIG = ROOT / "crates/sim/tests/small.toml"
 SPEEDS = np.array([0.2, 0.5, 1.0])
 # Of no computation: what goes in, what goes wrong, and parts of what is told.
 NO_RESULTS = {

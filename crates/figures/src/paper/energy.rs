@@ -3,7 +3,7 @@
 use super::{US, label};
 use crate::{Chart, Colour, Dash, Figure, Legend, Series};
 use hertzchain_chain::wave::Budget;
-use hertzchain_study::reproduce::Film;
+use hertzchain_paper::reproduce::Film;
 
 /// A panel of stacked shares for each shot, and what the budgets miss.
 pub(super) fn figure(films: &[Film]) -> Figure {

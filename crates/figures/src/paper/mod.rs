@@ -14,7 +14,7 @@ mod times;
 pub use rig::rig;
 
 use crate::{Colour, Figure, FigureError, Marker};
-use hertzchain_study::reproduce::{ReproduceError, Reproduction};
+use hertzchain_paper::reproduce::{ReproduceError, Reproduction};
 
 /// A picture that can't be made.
 #[derive(Debug, thiserror::Error)]

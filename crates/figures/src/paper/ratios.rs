@@ -2,8 +2,8 @@
 
 use super::{label, look};
 use crate::{Chart, Dash, Figure, Series};
-use hertzchain_study::claims::Evidence;
-use hertzchain_study::reproduce::OILS;
+use hertzchain_paper::claims::Evidence;
+use hertzchain_paper::reproduce::OILS;
 
 /// Three ratios against speed with a line at 1.
 pub(super) fn figure(evidence: &Evidence) -> Figure {

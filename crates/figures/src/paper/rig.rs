@@ -5,7 +5,7 @@ use super::PaperError;
 use crate::{FarEnd, Figure, RigDrawing};
 use hertzchain_chain::{Bead, Chain, FarEnd as ChainEnd, Push, Start};
 use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
-use hertzchain_study::reproduce::{Cases, ReproduceError};
+use hertzchain_paper::reproduce::{Cases, ReproduceError};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
 pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {

@@ -2,7 +2,7 @@
 
 use super::{US, label, scaled};
 use crate::{Chart, Colour, Figure, Legend, Marker, Series};
-use hertzchain_study::reproduce::SignalShot;
+use hertzchain_paper::reproduce::SignalShot;
 
 /// Names and symbols of the three pulses.
 const PULSES: [(&str, Marker, Colour); 3] = [

@@ -2,7 +2,7 @@
 
 use super::{US, label};
 use crate::{Chart, ColourMap, Figure, HeatMap};
-use hertzchain_study::reproduce::Film;
+use hertzchain_paper::reproduce::Film;
 
 /// One map a shot, the wave running from below to the wall above and back.
 pub(super) fn figure(films: &[Film]) -> Figure {

@@ -2,7 +2,7 @@
 
 use super::{US, scaled};
 use crate::{Chart, Colour, Dash, Figure, Marker, Series};
-use hertzchain_study::claims::{Branch, Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S};
+use hertzchain_paper::claims::{Branch, Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S};
 
 /// Incident and reflected ToF with the log–log inset.
 pub(super) fn figure(evidence: &Evidence) -> Figure {

@@ -4,7 +4,7 @@ use super::CrossValidation;
 use super::cross_validation::mean_and_error;
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::{Fit, Loss};
-use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square};
 
 /// Criteria of one model: small is good, and only differences between models of
 /// the same data mean something.

@@ -10,7 +10,7 @@ use crate::free::Form;
 use crate::identify::{Determined, Scaled, sized};
 use crate::least_squares::{JUMPING, jacobian_at};
 use crate::{Fit, ModelError, Parameter, Prior, Problem};
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// What could be done where data leave combinations of the parameters open.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use crate::linear::norm;
 use crate::{Candidate, Fit, ModelError};
 use hertzchain_experiment::reading::PreloadReading;
 use hertzchain_experiment::{Experiment, Mistakes, PathError};
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// What a way to measure asks of the rig, beyond another speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

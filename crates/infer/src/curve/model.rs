@@ -4,7 +4,7 @@ use crate::Parameter;
 use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Amplifier, Experiment, Mistakes, PathError};
-use hertzchain_study::{
+use hertzchain_sim::{
     Inputs, InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
 };
 use rayon::prelude::*;

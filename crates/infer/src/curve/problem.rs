@@ -7,7 +7,7 @@ use super::whiten::{Errors, whiten};
 use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Problem, Residuals, Response};
 use crate::{Parameter, ParameterError};
-use hertzchain_study::{Fingerprint, Inputs};
+use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Relative distance of the speeds around each row's, where there are too
 /// few rows to tell a slope.

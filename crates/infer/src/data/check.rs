@@ -1,7 +1,7 @@
 //! What a cell's number must be.
 
 use super::Observable;
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// Faster than any striker: speeds of chains are in m/s.
 const MOST_SPEED_M_S: f64 = 50.0;

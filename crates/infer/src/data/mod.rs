@@ -12,7 +12,7 @@ pub(crate) use read::with_plain_ends;
 pub use read::{Defaults, Scatter, Selection};
 pub use shots::{FEWEST_SHOTS, Freedom, widening};
 
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// A measured number of a row that a model can predict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

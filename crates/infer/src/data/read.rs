@@ -3,7 +3,7 @@
 use super::columns::{Column, Columns, Measured};
 use super::{Data, DataError, DataRow, Freedom, Observable, Place, check};
 use csv::{ReaderBuilder, StringRecord, Trim};
-use hertzchain_signal::Estimate;
+use hertzchain_measure::signal::Estimate;
 
 /// Standard errors for tables that have no columns of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

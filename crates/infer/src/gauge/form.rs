@@ -15,7 +15,7 @@ use crate::free::{FreeNumber, FreeNumbers};
 use crate::{
     Covariance, Fit, FitError, Fitting, Goodness, Identifiability, Model, Parameter, Problem, fit,
 };
-use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square};
 
 /// Numbers of both laws: ln K₀ (K₀ in N/m^{3/2}), k, ln A₀ (A₀ in s), a.
 pub const LAWS: usize = 4;

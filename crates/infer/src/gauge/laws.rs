@@ -1,7 +1,7 @@
 //! Power laws through K and A of the wet contacts.
 
 use super::contacts::{Pair, WetRow};
-use hertzchain_signal::{FitError, PowerLaw, power_law};
+use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
 
 /// A power law of speed through values that share a part of their errors.
 #[derive(Clone, Debug, PartialEq)]

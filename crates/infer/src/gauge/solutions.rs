@@ -5,7 +5,7 @@ use super::contacts::Free;
 use super::scan::Scan;
 use crate::linear::{combine, dot, least_squares};
 use crate::{Covariance, FitError, Fitting, Problem, fit};
-use hertzchain_signal::ChiSquare;
+use hertzchain_measure::signal::ChiSquare;
 
 /// K and A that fit a row.
 pub(super) struct Solution {

@@ -5,7 +5,7 @@ use super::{CONTACT, Gauge, GaugeError};
 use crate::curve::{CurveProblem, Joint, Part, Supply};
 use crate::free::{FreeNumber, FreeNumbers};
 use crate::{Covariance, Fitting, Parameter, Problem, fit, largest_residual};
-use hertzchain_signal::{ChiSquare, Estimate, chi_square};
+use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square};
 
 /// How far the wet data are from what an oil would give.
 #[derive(Clone, Debug, PartialEq)]

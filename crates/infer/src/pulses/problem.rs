@@ -7,7 +7,7 @@ use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Parameter, ParameterError};
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::Amplifier;
-use hertzchain_study::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
+use hertzchain_sim::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! One shot's samples, ready to be fitted.
 
-use hertzchain_signal::{
+use hertzchain_measure::signal::{
     Channels, Doubt, Estimate, Flight, Measuring, Polarity, SignalError, Upright, measure, upright,
     without_spikes,
 };

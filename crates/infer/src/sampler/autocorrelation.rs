@@ -1,6 +1,6 @@
 //! How many steps a chain takes to forget.
 
-use hertzchain_study::stopped;
+use hertzchain_sim::stopped;
 
 /// Integrated autocorrelation time of several chains together.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::converged::mean;
 use super::{Chain, Diagnosis, Requirements, Unconverged};
-use hertzchain_study::stopped;
+use hertzchain_sim::stopped;
 
 /// A posterior distribution, from a chain that has converged.
 #[derive(Clone, Debug, PartialEq)]

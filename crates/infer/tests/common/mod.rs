@@ -10,8 +10,8 @@ use hertzchain_infer::{
     CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Freedom, Model, Observable, Predicted,
     Speeds,
 };
-use hertzchain_signal::Estimate;
-use hertzchain_study::{Plan, Solver, shoot};
+use hertzchain_measure::signal::Estimate;
+use hertzchain_sim::{Plan, Solver, shoot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

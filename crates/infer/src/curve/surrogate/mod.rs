@@ -16,7 +16,7 @@ use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, Parameter};
 use grid::Grid;
-use hertzchain_study::count_done;
+use hertzchain_sim::count_done;
 use polynomial::Polynomial;
 use rayon::prelude::*;
 

@@ -1,0 +1,257 @@
+//! `design`: what to measure next.
+
+use crate::arguments::infer::{Design as Arguments, Push, WayKind};
+use crate::csv::{Cell, Csv};
+use crate::failure::Failure;
+use crate::inference::{references_json, user};
+use hertzchain_infer::{
+    Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
+    Goodness, Identifiability, Kind, Problem, design, fit, titled, ways, wrong_speed,
+};
+use hertzchain_sim::parse_speeds;
+use serde_json::{Value, json};
+
+/// What could be measured, and what it would tell.
+pub struct Designed {
+    /// How well the model follows the data so far: the ranking is the model's.
+    pub goodness: Goodness,
+    /// What could be measured.
+    pub candidates: Vec<Candidate>,
+    /// What each would tell.
+    pub design: Design,
+    /// What is tightened, by name.
+    pub names: Vec<String>,
+    /// Their units.
+    pub units: Vec<String>,
+    /// Combinations of the parameters that the data so far leave open, in words.
+    pub undetermined: Vec<String>,
+    /// What would settle them, if there are any.
+    pub advice: Vec<String>,
+}
+
+/// Speeds that could be measured.
+///
+/// # Errors
+/// A list that is none, or a speed that no striker has.
+pub fn speeds(data: &Data, arguments: &Arguments) -> Result<Vec<f64>, Failure> {
+    let Some(text) = &arguments.speeds else {
+        return Ok(usual_speeds(&data.speeds_m_s()));
+    };
+    let speeds = parse_speeds(text).map_err(user)?;
+    match speeds.iter().find_map(|speed| wrong_speed(*speed)) {
+        None => Ok(speeds),
+        Some(wrong) => Err(Failure::User(format!("--speeds {text}: {wrong}"))),
+    }
+}
+
+/// A few speeds over the range of the data and a little beyond.
+fn usual_speeds(speeds: &[f64]) -> Vec<f64> {
+    let first = speeds.first().copied().unwrap_or(0.1) * 0.8;
+    let last = speeds.last().copied().unwrap_or(1.0) * 1.25;
+    let steps = 7;
+    let speed = |at: i32| first * (last / first).powf(f64::from(at) / f64::from(steps));
+    // Three digits are as near as a striker is set.
+    let rounded = |speed: f64| format!("{speed:.3}").parse().unwrap_or(speed);
+    (0..=steps).map(|at| rounded(speed(at))).collect()
+}
+
+/// Places of the named parameters; all of them where none is named.
+///
+/// # Errors
+/// A parameter that is not free.
+pub fn targets(problem: &CurveProblem, arguments: &Arguments) -> Result<Vec<usize>, Failure> {
+    let names: Vec<&str> = problem
+        .parameters()
+        .iter()
+        .map(|p| p.name.as_str())
+        .collect();
+    if arguments.target.is_empty() {
+        return Ok((0..names.len()).collect());
+    }
+    let place = |target: &String| {
+        let at = names.iter().position(|name| name == target);
+        at.ok_or_else(|| {
+            Failure::User(format!(
+                "--target {target} is not free; free are {}",
+                names.join(", ")
+            ))
+        })
+    };
+    arguments.target.iter().map(place).collect()
+}
+
+/// What the options say could be done otherwise.
+fn choices(arguments: &Arguments) -> Choices {
+    let mut choices = Choices {
+        preloads_n: Vec::new(),
+        sensor_beads: arguments.sensors.clone(),
+        ..Choices::default()
+    };
+    for push in &arguments.preloads {
+        if let Push::Of(force_n) = push {
+            choices.preloads_n.push(*force_n);
+        }
+    }
+    for cost in &arguments.costs {
+        choices.costs[kind(cost.of) as usize] = cost.value;
+    }
+    choices
+}
+
+fn kind(of: WayKind) -> Kind {
+    match of {
+        WayKind::Incident => Kind::Incident,
+        WayKind::Reflected => Kind::Reflected,
+        WayKind::Ratio => Kind::Ratio,
+        WayKind::Sensor => Kind::Sensor,
+        WayKind::Preload => Kind::Preload,
+    }
+}
+
+/// Fits, and ranks candidates by what they would tell of the targets.
+///
+/// # Errors
+/// What is in the way of the fit or of a candidate's curve.
+pub fn designed(
+    problem: &CurveProblem,
+    targets: &[usize],
+    speeds: &[f64],
+    arguments: &Arguments,
+) -> Result<Designed, Failure> {
+    let fit = fit(problem, &Fitting::default()).map_err(user)?;
+    let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
+    let errors = ExpectedErrors::like(problem.data());
+    let candidates = problem
+        .candidates(&fit, &ways, speeds, &errors)
+        .map_err(user)?;
+    let picks = arguments.picks;
+    let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
+    let aims = found.aims.iter().enumerate();
+    let (names, units) = aims.map(|(at, aim)| called(problem, at, aim)).unzip();
+    let label = |at: usize| problem.residual_label(at);
+    let identified = Identifiability::new(problem.parameters(), &fit, label);
+    let advice = match identified.confused.is_empty() {
+        true => Vec::new(),
+        false => problem.would_separate(&fit).words(),
+    };
+    let open = identified.confused.into_iter();
+    Ok(Designed {
+        goodness: Goodness::new(problem, &fit),
+        advice,
+        candidates,
+        design: found,
+        names,
+        units,
+        undetermined: open.map(|confusion| confusion.words).collect(),
+    })
+}
+
+/// What an aim, the `at`th, is called, and its unit.
+fn called(problem: &CurveProblem, at: usize, aim: &Aim) -> (String, String) {
+    match aim {
+        Aim::Parameter(k) => {
+            let parameter = &problem.parameters()[*k];
+            (parameter.name.clone(), parameter.unit.clone())
+        }
+        Aim::Combination(_) => (format!("combination {}", at + 1), String::new()),
+    }
+}
+
+impl Designed {
+    /// What can't be tightened, and what is in its place, one sentence a line.
+    #[must_use]
+    pub fn hopeless(&self, problem: &CurveProblem) -> Vec<String> {
+        let open = self.design.open.iter().map(|words| {
+            format!("Nothing that could be measured determines this combination: {words}")
+        });
+        let mut told: Vec<String> = open.collect();
+        let names = self.design.hopeless.iter();
+        let names: Vec<&str> = names
+            .map(|k| problem.parameters()[*k].name.as_str())
+            .collect();
+        if !names.is_empty() {
+            let which = match names[..] {
+                [one] => one.to_owned(),
+                _ => format!("none of {}", names.join(", ")),
+            };
+            let can = if names.len() > 1 { "can" } else { "can't" };
+            told.push(format!("So {which} {can} be tightened by itself"));
+        }
+        for (name, aim) in self.names.iter().zip(&self.design.aims) {
+            if let Aim::Combination(words) = aim {
+                told.push(format!(
+                    "Ranked is what tightens {name}, {words}, in shares of the parameters' sizes"
+                ));
+            }
+        }
+        told
+    }
+}
+
+/// Everything, in SI.
+#[must_use]
+pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
+    let (candidates, found) = (&designed.candidates, &designed.design);
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let one = |expected: &Expected| {
+        json!({
+            "measure": candidates[expected.candidate].name,
+            "standard_errors": expected.after.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+            "information_nats": expected.gain,
+            "cost": candidates[expected.candidate].cost,
+            "information_over_cost": expected.gain_per_cost,
+        })
+    };
+    json!({
+        "references": references_json(problem.model()),
+        "follows_data": !designed.goodness.is_rejected(),
+        "parameters": designed.names,
+        "units": designed.units,
+        "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+        "ranked": found.ranked.iter().map(one).collect::<Value>(),
+        "series": found.greedy.iter().map(one).collect::<Value>(),
+        "undetermined": designed.undetermined,
+        "hopeless": designed.hopeless(problem),
+    })
+}
+
+/// Every table: files' names and what stands in them.
+#[must_use]
+pub fn tables(designed: &Designed) -> Vec<(&'static str, String)> {
+    let found = &designed.design;
+    vec![
+        ("design.csv", ranked(designed, &found.ranked)),
+        ("series.csv", ranked(designed, &found.greedy)),
+        ("now.csv", now(designed)),
+    ]
+}
+
+/// One line a candidate, best first.
+fn ranked(designed: &Designed, ranked: &[Expected]) -> String {
+    let names = designed.names.iter().zip(&designed.units);
+    let names = names.map(|(name, unit)| titled(&format!("{name}_error"), unit));
+    let titles = std::iter::once("measure".to_owned()).chain(names);
+    let told = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
+    let table = Csv::new(titles.chain(told));
+    let line = |expected: &Expected| {
+        let name = Cell::from(designed.candidates[expected.candidate].name.clone());
+        let after = expected.after.iter().map(|sd| Cell::from(*sd));
+        let cells = std::iter::once(name).chain(after);
+        let cost = designed.candidates[expected.candidate].cost;
+        let told = [expected.gain, cost, expected.gain_per_cost].map(Cell::from);
+        cells.chain(told).collect::<Vec<_>>()
+    };
+    table.with_all(ranked, line).text()
+}
+
+/// One line a parameter or combination that is to be tightened: its standard error so far.
+fn now(designed: &Designed) -> String {
+    let line = |((name, unit), sd): ((&String, &String), &f64)| -> [Cell; 3] {
+        [name.clone().into(), unit.clone().into(), (*sd).into()]
+    };
+    let named = designed.names.iter().zip(&designed.units);
+    let lines = named.zip(&designed.design.before);
+    Csv::new(["name", "unit", "standard_error"])
+        .with_all(lines, line)
+        .text()
+}

@@ -1,0 +1,171 @@
+//! What went wrong, told to people.
+
+use crate::arguments::How;
+use crate::given::has_unit;
+use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
+use hertzchain_infer::SamplingError;
+use hertzchain_sim::{StudyError, parse_speed};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
+
+/// Why a verb failed.
+#[derive(Debug)]
+pub enum Failure {
+    /// Mistakes in an experiment file.
+    Mistakes(Mistakes),
+    /// Another mistake of the user.
+    User(String),
+    /// Our fault, or the machine's.
+    Ours(String),
+    /// Nobody reads the output any more: no failure at all.
+    BrokenPipe,
+}
+
+impl From<Mistakes> for Failure {
+    fn from(mistakes: Mistakes) -> Self {
+        Self::Mistakes(mistakes)
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        Self::User(error.to_string())
+    }
+}
+
+impl From<SamplingError> for Failure {
+    fn from(error: SamplingError) -> Self {
+        Self::User(error.to_string())
+    }
+}
+
+impl Failure {
+    /// What kept a shot from being computed, at the place in the experiment
+    /// that has to do with it; what the command line asks for has no place.
+    #[must_use]
+    pub fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
+        let asked = how.solver.is_some() || how.step.is_some() || how.accuracy.is_some();
+        match &error {
+            _ if asked => error.into(),
+            StudyError::Solve(why) => experiment.unsolved(why).into(),
+            StudyError::NotConverged { .. } | StudyError::TooManySteps { .. } => {
+                experiment.unreached(&error.to_string()).into()
+            }
+            _ => error.into(),
+        }
+    }
+
+    /// Mistakes at a speed that an option gave: what would underline the speed
+    /// in the file is told of the option instead.
+    #[must_use]
+    pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
+        match of_speed(&mistakes) {
+            Some(text) => Self::User(format!("{option}: {text}")),
+            None => mistakes.into(),
+        }
+    }
+
+    /// What people are told, with marks in colour or plain.
+    #[must_use]
+    pub fn report(&self, colour: bool) -> String {
+        match self {
+            Self::Mistakes(mistakes) => findings(mistakes.findings(), "mistakes", colour),
+            Self::User(text) | Self::Ours(text) => format!("error: {text}\n"),
+            Self::BrokenPipe => String::new(),
+        }
+    }
+}
+
+fn handler(colour: bool) -> GraphicalReportHandler {
+    let theme = match colour {
+        true => GraphicalTheme::unicode(),
+        false => GraphicalTheme::unicode_nocolor(),
+    };
+    GraphicalReportHandler::new_themed(theme).with_links(false)
+}
+
+/// Most reports that anybody reads at once.
+const MOST: usize = 20;
+
+fn findings(findings: &[Finding], kind: &str, colour: bool) -> String {
+    let told = findings.iter().take(MOST);
+    let mut text: String = told.map(|finding| report(finding, colour)).collect();
+    let more = findings.len().saturating_sub(MOST);
+    if more > 0 {
+        text += &format!("… and {more} more {kind}\n");
+    }
+    text
+}
+
+/// Longest line that is shown with something underlined, in bytes; beyond the
+/// renderer's columns there is no place for marks.
+const LONGEST_LINE: usize = 2000;
+
+/// A report that underlines the offending text.
+#[must_use]
+pub fn report(finding: &Finding, colour: bool) -> String {
+    let mut text = String::new();
+    if fits(finding) && handler(colour).render_report(&mut text, finding).is_ok() {
+        return format!("{}\n", text.trim_end());
+    }
+    let kind = match finding.severity() {
+        Some(Severity::Warning) => "warning",
+        _ => "error",
+    };
+    format!("{kind}: {}\n", finding.one_line())
+}
+
+/// Whether all lines that a report would show are of readable length.
+fn fits(finding: &Finding) -> bool {
+    let shown = |label: miette::LabeledSpan| {
+        let source = finding.source_code()?;
+        let context = source.read_span(label.inner(), 1, 1).ok()?;
+        let mut lines = context.data().split(|byte| *byte == b'\n');
+        Some(lines.all(|line| line.len() <= LONGEST_LINE))
+    };
+    let mut labels = finding.labels().into_iter().flatten();
+    labels.all(|label| shown(label) == Some(true))
+}
+
+/// Message, expectation and advice, without a place.
+fn placeless(finding: &Finding) -> String {
+    let help = finding
+        .help()
+        .map_or(String::new(), |help| format!(" ({help})"));
+    format!("{finding}: {}{help}", finding.label())
+}
+
+/// A mistake that is the speed's own, without a place.
+#[must_use]
+pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
+    match mistakes.findings() {
+        [finding] if underlines_speed(finding) => Some(placeless(finding)),
+        _ => None,
+    }
+}
+
+/// A speed beyond all limits is reported at the striker as a whole.
+fn underlines_speed(finding: &Finding) -> bool {
+    let text = finding.text().rsplit('=').next().unwrap_or_default();
+    let asked = text == "[striker]" && finding.to_string().ends_with("was asked for");
+    let text = text.trim().trim_matches('"');
+    // Plain numbers may be anything.
+    asked || (has_unit(text) && parse_speed(text).is_ok())
+}
+
+/// Warnings at a speed that an option gave, as [`Failure::at_option`].
+#[must_use]
+pub fn option_warnings(option: &str, warnings: &[Warning], colour: bool) -> String {
+    let (line, file): (Vec<Warning>, Vec<Warning>) =
+        warnings.iter().cloned().partition(underlines_speed);
+    let mut text = self::warnings(&file, colour);
+    for warning in &line {
+        text += &format!("warning: {option}: {}\n", placeless(warning));
+    }
+    text
+}
+
+/// What is odd about an experiment, each with the odd text underlined.
+#[must_use]
+pub fn warnings(warnings: &[Warning], colour: bool) -> String {
+    findings(warnings, "warnings", colour)
+}

@@ -1,0 +1,441 @@
+//! Whole pulses of recordings to parameters.
+
+use super::partial::Remembered;
+use super::{
+    Curves, Inferred, asked, best_of_starts, finer, heeded, inferred, joined, limits, more, unasked,
+};
+use crate::arguments::infer::{Filter, Fit as Arguments};
+use crate::failure::Failure;
+use crate::inference::{self, user, wanted};
+use crate::measure::{files, list};
+use crate::table::cell;
+use hertzchain_experiment::{Amplifier as Numbers, Experiment};
+use hertzchain_infer::{
+    Covariance, Goodness, Identifiability, Model, Problem, PulseProblem, Pulses, Respond,
+};
+use hertzchain_measure::ShotList;
+use hertzchain_measure::records::{ReadOptions, Record, read};
+use hertzchain_measure::signal::Estimate;
+use hertzchain_sim::rig::Amplifier;
+use serde_json::{Value, json};
+
+/// A fit of recordings.
+pub struct Pulsed {
+    /// What was fitted.
+    pub problem: PulseProblem,
+    /// What came of it.
+    pub inferred: Inferred,
+    /// What was left out, and why.
+    pub refused: Vec<String>,
+}
+
+/// The model of recordings, and those of them that can be fitted.
+pub struct Recorded {
+    model: Model,
+    records: Vec<Pulses>,
+    refused: Vec<String>,
+    respond: Respond,
+}
+
+/// Reads recordings, and the model they are to be held against.
+///
+/// # Errors
+/// Mistakes in the model or in what is free; files that are not there.
+pub fn recorded(arguments: &Arguments) -> Result<Recorded, Failure> {
+    let case = arguments.measured.case.as_deref();
+    let experiment = inference::experiment(&arguments.modelled, case)?;
+    recorded_of(&experiment, arguments)
+}
+
+/// The same where the model's experiment is at hand, in its case and with what is set.
+///
+/// # Errors
+/// As [`recorded`].
+pub fn recorded_of(experiment: &Experiment, arguments: &Arguments) -> Result<Recorded, Failure> {
+    heeded::of_recordings(arguments)?;
+    let experiment = &with_filter(experiment, arguments)?;
+    let model = inference::model(experiment, &arguments.modelled, &arguments.freed)?;
+    let (records, refused) = records(experiment, arguments)?;
+    Ok(Recorded {
+        model,
+        records: spread(records, arguments.recorded.most_shots),
+        refused,
+        respond: respond(),
+    })
+}
+
+/// The experiment with the low-pass that options say.
+fn with_filter(experiment: &Experiment, arguments: &Arguments) -> Result<Experiment, Failure> {
+    let recorded = &arguments.recorded;
+    let name = |value: Option<Filter>| value.map(Filter::names);
+    let (order, kind) = name(recorded.filter).unzip();
+    let changed = experiment.with_low_pass(recorded.low_pass, order, kind.flatten());
+    changed.map_err(user)
+}
+
+/// Refused records that are told one by one.
+pub const TOLD: usize = 5;
+
+/// An error, and what was refused before it.
+fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {
+    let lines: Vec<String> = refused
+        .iter()
+        .take(TOLD)
+        .map(|r| format!("\n  {r}"))
+        .collect();
+    Failure::User(format!(
+        "{error}{}\n(A table of curves, which is no record, begins with a line that names its columns, speed_m_s among them.)",
+        lines.concat()
+    ))
+}
+
+/// Every record that can be fitted, and why others can't.
+fn records(
+    experiment: &Experiment,
+    arguments: &Arguments,
+) -> Result<(Vec<Pulses>, Vec<String>), Failure> {
+    let recorded = &arguments.recorded;
+    let told = recorded.shots.as_deref().map(list).transpose()?;
+    let reading = ReadOptions {
+        rate_hz: recorded.rate,
+        channels: recorded.channel.clone(),
+        ..ReadOptions::default()
+    };
+    let (mut good, mut refused) = (Vec::new(), Vec::new());
+    for file in files(&arguments.data, recorded.shots.as_deref())? {
+        for record in read(&file, &reading) {
+            wanted()?;
+            let record = match record {
+                Ok(record) => record,
+                Err(error) => {
+                    refused.push(error.to_string());
+                    continue;
+                }
+            };
+            let asked = arguments.measured.case.as_deref();
+            let listed = told
+                .as_ref()
+                .and_then(|list| list.case(&record.file, record.shot));
+            let own = listed.or(record.case.as_deref());
+            if asked.is_some_and(|case| own.is_some_and(|own| own != case)) {
+                continue;
+            }
+            let speed = speed(&record, told.as_ref(), experiment, arguments);
+            let volts: Vec<Vec<f64>> = record.channels.iter().map(|c| c.samples.volts()).collect();
+            let speeds = (speed, record.programmed_speed_m_s);
+            match Pulses::of(&record.source, speeds, record.interval_s, &volts) {
+                Ok(pulses) => good.push(pulses),
+                Err(error) => refused.push(error.to_string()),
+            }
+        }
+    }
+    Ok((good, refused))
+}
+
+/// The speed of a record's striker: as the table of shots says, or the record;
+/// its error as either says, or the command line, or the model's photogate.
+fn speed(
+    record: &Record,
+    told: Option<&ShotList>,
+    experiment: &Experiment,
+    arguments: &Arguments,
+) -> Option<Estimate> {
+    let listed = told.and_then(|list| list.speed(&record.file, record.shot));
+    // A record without a speed of its own must not end the look at the table.
+    let recorded = || Some((record.speed_m_s?, record.speed_error_m_s));
+    let (value, error) = listed.or_else(recorded)?;
+    let usual = experiment.campaign().photogate.error_m_s;
+    Some(Estimate {
+        value,
+        sigma: error.or(arguments.measured.speed_error).unwrap_or(usual),
+    })
+}
+
+/// At most so many, spread evenly.
+fn spread(records: Vec<Pulses>, most: usize) -> Vec<Pulses> {
+    let count = records.len();
+    let kept = |at: &usize| at * most / count.max(1) != (at + 1) * most / count.max(1);
+    let all = records.into_iter().enumerate();
+    all.filter(|(at, _)| count <= most || kept(at))
+        .map(|(_, r)| r)
+        .collect()
+}
+
+/// An amplifier's filters.
+fn respond() -> Respond {
+    Respond::new(|numbers, signal, interval_s| {
+        let plain = Numbers {
+            sensitivity_c_n: 1.0,
+            wall_sensitivity_c_n: 1.0,
+            gain_v_c: 1.0,
+            ..*numbers
+        };
+        let force_n = |at: usize| [signal.get(at).copied().unwrap_or_default(), 0.0];
+        Amplifier::new(&plain, interval_s).follow(signal.len(), force_n)
+    })
+}
+
+/// Fits whole pulses and tells the uncertainty as the method asks.
+///
+/// # Errors
+/// What is in the way of a fit; where no record is left, why.
+pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
+    let mut refused = recorded.refused;
+    let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
+    let problem = problem.map_err(|error| none_left(&error, &refused))?;
+    refused.extend(problem.left_out().iter().cloned());
+    let problem = inference::pulses(problem, &arguments.freed)?;
+    attempted(problem, refused, 0, arguments)
+}
+
+/// The fit, after so many attempts with a less accurate model.
+fn attempted(
+    problem: PulseProblem,
+    refused: Vec<String>,
+    times: u32,
+    arguments: &Arguments,
+) -> Result<Pulsed, Failure> {
+    let own = (None, times);
+    let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
+    let fit = best_of_starts(&kept, problem.nuisance_count(), &asked(arguments))?;
+    if let Some(finer) = finer(&problem, &fit, times) {
+        kept.sound()?;
+        return attempted(finer, refused, times + 1, arguments);
+    }
+    let parameters = problem.parameters();
+    let covariance = Covariance::new(parameters, &fit);
+    let label = |at: usize| problem.residual_label(at);
+    let how = Curves::Computed(None);
+    let more = more::more_of((&problem, &kept), (&fit, &covariance), how, arguments)?;
+    let identifiability = Identifiability::new(parameters, &fit, label);
+    let found = Inferred {
+        parameters: parameters.to_vec(),
+        limits: limits::limits(&kept, (&fit, &covariance), &identifiability, &more)?,
+        identifiability,
+        goodness: Goodness::beside(problem.nuisance_count(), &problem, &fit),
+        more,
+        covariance,
+        fit,
+    };
+    kept.sound()?;
+    Ok(Pulsed {
+        problem,
+        inferred: found,
+        refused,
+    })
+}
+
+impl Pulsed {
+    /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
+    /// each.
+    #[must_use]
+    pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
+        let accuracy = (arguments.modelled.accuracy, self.problem.model().accuracy);
+        unasked(&self.inferred.fit, accuracy, arguments.starts)
+    }
+
+    /// The amplifier's filters that the model's signals have passed, in words.
+    #[must_use]
+    pub fn filters(&self) -> String {
+        let model = self.problem.model();
+        let mut amplifier = model.experiment().campaign().amplifier;
+        let mut numbers = model.numbers().as_slice().iter();
+        let free = numbers.find(|number| number.path() == Some(LOW_PASS));
+        let parameters = self.inferred.parameters.iter();
+        let mut fitted = parameters.zip(&self.inferred.fit.point);
+        let fitted = free.and_then(|free| fitted.find(|(p, _)| p.name == free.name()));
+        if let Some((_, corner_hz)) = fitted {
+            amplifier.low_pass_hz = *corner_hz;
+        }
+        amplifier.filters()
+    }
+}
+
+/// The corner of the amplifier's low-pass, where it may be free.
+const LOW_PASS: &str = "campaign.amplifier.low_pass";
+
+/// Everything, to be read by programs and to be repeated.
+#[must_use]
+pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
+    let records = fitted.problem.records().iter();
+    let own = json!({
+        "model": fitted.problem.model().experiment().name(),
+        "kept": inference::kept(fitted.problem.model(), &arguments.modelled.set),
+        "held_loads": inference::held_loads(fitted.problem.model()),
+        "references": inference::references_json(fitted.problem.model()),
+        "filters": fitted.filters(),
+        "unasked": fitted.unasked(arguments),
+        "residuals": fitted.problem.residual_count(),
+        "fitted_to_single_records": fitted.problem.nuisance_count(),
+        "records": records.map(|record| json!({
+            "source": record.source,
+            "speed_m_s": record.speed_m_s.value,
+            "speed_error_m_s": record.speed_m_s.sigma,
+            "samples_in_a_mean": record.width,
+            "error_of_means_v": record.sigma_v,
+        })).collect::<Value>(),
+        "left_out": fitted.refused,
+    });
+    joined(own, inferred(&fitted.inferred, arguments))
+}
+
+/// A record's channel as it was measured and as the fit has it.
+pub struct Shown<'a> {
+    /// The record.
+    pub record: &'a Pulses,
+    /// The channel's number from 0.
+    pub channel: usize,
+    /// Times in s, measured and fitted voltages.
+    pub columns: [Vec<f64>; 3],
+}
+
+/// All records at the best fit.
+///
+/// # Errors
+/// What is in the way of a shot.
+pub fn shown(fitted: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
+    let records = fitted.problem.records().iter().enumerate();
+    let all = records.flat_map(|(at, record)| {
+        (0..record.means_v.len()).map(move |channel| {
+            let point = &fitted.inferred.fit.point;
+            let columns = fitted.problem.picture(point, at, channel).map_err(user)?;
+            Ok(Shown {
+                record,
+                channel,
+                columns,
+            })
+        })
+    });
+    all.collect()
+}
+
+/// One line a mean of samples.
+#[must_use]
+pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
+    let mut text = "source,channel,time_s,measured_V,error_V,fitted_V\n".to_owned();
+    for Shown {
+        record,
+        channel,
+        columns: [times, measured, model],
+    } in shown
+    {
+        let source = record.source.replace('"', "\"\"");
+        for (at, time) in times.iter().enumerate() {
+            let cells = [*time, measured[at], record.sigma_v[*channel], model[at]].map(cell);
+            text += &format!("\"{source}\",{},{}\n", channel + 1, cells.join(","));
+        }
+    }
+    text
+}
+
+/// Every mean of samples beside the fitted one.
+#[must_use]
+pub fn rows_json(shown: &[Shown<'_>]) -> Value {
+    let rows = shown.iter().flat_map(|shown| {
+        let [times, measured, fitted] = &shown.columns;
+        let means = times.iter().zip(measured).zip(fitted);
+        means.map(|((time_s, measured_v), fitted_v)| {
+            json!({
+                "source": shown.record.source,
+                "channel": shown.channel + 1,
+                "time_s": time_s,
+                "measured_v": measured_v,
+                "error_v": shown.record.sigma_v[shown.channel],
+                "fitted_v": fitted_v,
+            })
+        })
+    });
+    rows.collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+mod tests {
+    use super::*;
+    use hertzchain_chain::Sensor;
+    use hertzchain_infer::{Fitting, FreeNumber, FreeNumbers, fit};
+    use hertzchain_sim::{Plan, shoot};
+
+    /// Time between samples in s, and how many times as densely signals are filtered.
+    const INTERVAL_S: f64 = 1e-6;
+    const DENSER: usize = 50;
+
+    /// A shot through an experiment's amplifier, with noise of some 1e-5 of its height: a
+    /// hundredth of what the errors looked for would be.
+    fn recorded(experiment: &Experiment, speed_m_s: f64) -> Pulses {
+        let (plan, _) = Plan::from_experiment(experiment, Some(speed_m_s)).unwrap();
+        let sensors = [
+            Sensor::Bead(plan.sensor_bead),
+            Sensor::Contact(plan.chain.beads.len()),
+        ];
+        let fine_s = INTERVAL_S / DENSER as f64;
+        let mut plan = plan
+            .with_accuracy(1e-8)
+            .watching(sensors.to_vec(), Some(fine_s));
+        plan.duration_s = Some(2.5e-3);
+        let trace = shoot(&plan).unwrap().trace.unwrap();
+        let numbers = experiment.campaign().amplifier;
+        let mut amplifier = Amplifier::new(&numbers, fine_s);
+        let [bead, wall] = &trace.columns[..] else {
+            unreachable!("two sensors")
+        };
+        let signal: Vec<f64> = bead
+            .iter()
+            .zip(wall)
+            .map(|(b, w)| amplifier.next(*b, *w))
+            .collect();
+        let quiet = [0.0; 400];
+        let samples = quiet
+            .iter()
+            .chain(signal.iter().step_by(DENSER))
+            .enumerate();
+        // A fixed sequence without correlation stands for noise.
+        let noise = |at: usize| 2e-5 * ((at * at * 7919 % 1009) as f64 / 504.0 - 1.0);
+        let volts: Vec<f64> = samples.map(|(at, volts)| volts + noise(at)).collect();
+        let speed = Estimate {
+            value: speed_m_s,
+            sigma: 0.0,
+        };
+        Pulses::of("shot", (Some(speed), None), INTERVAL_S, &[volts]).unwrap()
+    }
+
+    fn best_fit(rig: &Experiment, model: &Experiment, free: &[&str]) -> Vec<f64> {
+        let records = vec![recorded(rig, 0.4), recorded(rig, 1.1)];
+        let find = |name: &&str| FreeNumber::find(model, name, None).unwrap();
+        let numbers = FreeNumbers::new(free.iter().map(find).collect()).unwrap();
+        // So that the solver's own errors are below what is looked for.
+        let model = Model::new(model, numbers).unwrap().with_accuracy(1e-7);
+        let problem = PulseProblem::new(model, records, respond()).unwrap();
+        fit(&problem, &Fitting::default()).unwrap().point
+    }
+
+    #[test]
+    fn the_model_s_signals_pass_the_filter_as_recorded_ones_do() {
+        let rig = hertzchain_experiment::preset("dry").unwrap();
+        let amplifier = rig.campaign().amplifier;
+        let gain_v_n = amplifier.gain_v_c * amplifier.sensitivity_c_n;
+        let gain = best_fit(&rig, &rig, &["sensor_gain"])[0] / gain_v_n;
+        // Noise makes 3e-6 of it; sampled at 2 µs before the filter it was 2.5e-4, at 0.25 µs by straight
+        // lines alone 1e-5.
+        assert!((gain - 1.0).abs() < 1e-5, "{gain}");
+    }
+
+    #[test]
+    fn another_order_kind_and_corner_of_the_low_pass_are_options_or_free() {
+        let plain = hertzchain_experiment::preset("dry").unwrap();
+        let rig = plain
+            .with_low_pass(Some(60e3), Some("third"), Some("bessel"))
+            .unwrap();
+        let model = plain
+            .with_low_pass(None, Some("third"), Some("bessel"))
+            .unwrap();
+        let found = best_fit(&rig, &model, &["low_pass", "sensor_gain"]);
+        // The noise leaves the corner open by some 1e-4.
+        assert!((found[0] / 60e3 - 1.0).abs() < 1e-3, "{found:?}");
+        let words = rig.campaign().amplifier.filters();
+        assert_eq!(
+            words,
+            "Bessel low-pass of third order at 60 kHz, high-pass of first order at 0.5 Hz"
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! Numbers of the command line, whose units must suit the experiment's.
+
+use crate::failure::Failure;
+use hertzchain_experiment::Units;
+use hertzchain_experiment::units::{Dimension, parse_quantity};
+use hertzchain_sim::{SpeedError, parse_speed, parse_time};
+
+/// A speed or time as given, before it is known whether the experiment has
+/// units.
+#[derive(Clone, Debug)]
+pub struct Given {
+    text: String,
+    value: f64,
+    has_unit: bool,
+    /// An example with a unit where an SI experiment asks for one.
+    asks_unit: Option<&'static str>,
+}
+
+impl Given {
+    /// A speed; a plain number is in m/s, or dimensionless.
+    pub fn speed(text: &str) -> Result<Self, SpeedError> {
+        Ok(Self {
+            text: text.trim().to_owned(),
+            value: parse_speed(text)?,
+            has_unit: has_unit(text),
+            asks_unit: None,
+        })
+    }
+
+    /// A time; a plain number only suits a dimensionless experiment.
+    pub fn time(text: &str) -> Result<Self, String> {
+        Ok(Self {
+            text: text.trim().to_owned(),
+            value: parse_time(text).map_err(|error| match error {
+                SpeedError::Unit { text, error } => {
+                    format!("`{text}`: {error}; expected a time, such as \"2 ms\"")
+                }
+                other => other.to_string(),
+            })?,
+            has_unit: has_unit(text),
+            asks_unit: Some("2 ms"),
+        })
+    }
+
+    /// The value in SI, or dimensionless.
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// As it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Refuses a unit in a dimensionless experiment, and a time without one
+    /// in SI: between 2 s and 2 ms lies a factor of 1000.
+    pub fn check(&self, option: &str, units: Units) -> Result<(), Failure> {
+        match (units, self.has_unit, self.asks_unit) {
+            (Units::Dimensionless, true, _) => Err(dimensionless(option, &self.text)),
+            (Units::Si, false, Some(example)) => Err(Failure::User(format!(
+                "{option} {} has no unit; expected one, such as \"{example}\"",
+                self.text
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses units in a list of speeds for a dimensionless experiment.
+pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Failure> {
+    let mut parts = speeds.split([',', ':']);
+    match (units, parts.find(|part| has_unit(part))) {
+        (Units::Dimensionless, Some(part)) => Err(dimensionless(option, part.trim())),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a number has a unit.
+#[must_use]
+pub fn has_unit(text: &str) -> bool {
+    parse_quantity(text).is_ok_and(|quantity| quantity.dimension != Dimension::NONE)
+}
+
+fn dimensionless(option: &str, text: &str) -> Failure {
+    Failure::User(format!(
+        "{option} {text} has a unit, but the experiment is dimensionless; expected a plain \
+         number in the file's own units, such as 0.5"
+    ))
+}

@@ -1,0 +1,436 @@
+//! From arguments to a problem of inference.
+
+mod kept;
+mod known;
+mod reference;
+
+pub use kept::{held_loads, kept};
+pub use known::is_meant;
+pub use reference::{references, references_json};
+
+use crate::arguments::Input;
+use crate::arguments::infer::{Assignment, ErrorShots, Freed, Measured, Modelled, What};
+use crate::failure::Failure;
+use crate::input;
+use hertzchain_experiment::{Experiment, PathError, Units};
+use hertzchain_infer::{
+    CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeError, FreeNumber, FreeNumbers, Model,
+    Observable, Problem, PulseProblem, Scatter, Selection,
+};
+use hertzchain_measure::records::{peek, text};
+use hertzchain_sim::{StudyError, stopped};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+/// A mistake of the user's, told as it is.
+pub fn user(error: impl std::fmt::Display) -> Failure {
+    Failure::User(error.to_string())
+}
+
+/// Whether somebody still wants the result: what was broken off on the way tells
+/// nothing.
+///
+/// # Errors
+/// That it was broken off.
+pub fn wanted() -> Result<(), Failure> {
+    match stopped() {
+        true => Err(user(StudyError::Stopped)),
+        false => Ok(()),
+    }
+}
+
+/// A measured curve with what is to be used of it.
+pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
+    data_of(file, measured, measured.case.clone())
+}
+
+/// Whether a file is a table of curves: text whose first line, comments aside, names a column of
+/// speeds. What else can be read is a recording, as is text with any other beginning where options
+/// of recordings are given: an oscilloscope's preamble.
+///
+/// # Errors
+/// A file that can't be read.
+pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, Failure> {
+    let unread = |error: &dyn std::fmt::Display| {
+        Failure::User(format!("{} can't be read: {error}", file.display()))
+    };
+    if file.is_dir() {
+        return Ok(false);
+    }
+    let mut begin = Vec::new();
+    let copy = peek(file).map_err(|error| unread(&error))?;
+    let mut opened = fs::File::open(copy).map_err(|error| unread(&error))?;
+    let probe = opened.by_ref().take(PROBE).read_to_end(&mut begin);
+    probe.map_err(|error| unread(&error))?;
+    let binary = begin.contains(&0) || std::str::from_utf8(&begin).is_err();
+    let text = String::from_utf8_lossy(&begin);
+    let mut lines = text.lines().map(str::trim);
+    let title = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
+    let first = title.unwrap_or_default();
+    let numbers = first
+        .split([',', ';', '\t'])
+        .all(|cell| cell.trim().parse::<f64>().is_ok());
+    let times = first.to_ascii_lowercase().contains("time");
+    let record = times || with_options_of_recordings;
+    Ok(!binary && !numbers && (first.contains(SPEEDS) || !record))
+}
+
+/// Bytes that tell a table from a recording.
+const PROBE: u64 = 4096;
+
+/// The column that makes a table one of curves.
+const SPEEDS: &str = "speed_m_s";
+
+/// The same of another case.
+pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
+    let text = text(file)
+        .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
+    parsed(&file.display().to_string(), &text, measured, case)
+}
+
+/// The same from the text of a table; its name is used in messages.
+///
+/// # Errors
+/// A table that can't be used, by line and column.
+pub fn parsed(
+    name: &str,
+    text: &str,
+    measured: &Measured,
+    case: Option<String>,
+) -> Result<Data, Failure> {
+    let selection = Selection {
+        case,
+        observables: measured.observables.iter().map(|what| of(*what)).collect(),
+        defaults: Defaults {
+            speed_m_s: measured.speed_error,
+            time_s: measured.tof_error,
+            ratio: measured.ratio_error,
+            scatter: scatter(measured),
+        },
+    };
+    Data::parse(name, text, &selection).map_err(user)
+}
+
+fn scatter(measured: &Measured) -> Scatter {
+    match measured.error_shots {
+        None => Scatter::AsTold,
+        Some(ErrorShots::Known) => Scatter::Known,
+        Some(ErrorShots::Of(shots)) => Scatter::Of(shots),
+    }
+}
+
+/// What is assumed of data that do not say all: for warnings.
+#[must_use]
+pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
+    let all = [
+        exact_speeds(data, measured),
+        few_shots(data),
+        uncorrelated(data),
+        not_there(data, measured),
+    ];
+    let all: Vec<String> = all.into_iter().flatten().collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// How standard errors are widened that come from few shots.
+#[must_use]
+pub fn widened(data: &Data) -> Option<String> {
+    let (rows, [least, most]) = data.widened()?;
+    let freedom = match least == most {
+        true => format!("{least:.0}"),
+        false => format!("{least:.0} to {most:.0}"),
+    };
+    Some(format!(
+        "Errors of {rows} of {} speeds come from the scatter of few shots ({freedom} degrees of freedom) and are \
+         widened for that, each by its share of the row",
+        data.rows.len()
+    ))
+}
+
+/// Lines as a warning names them.
+fn which(data: &Data, lines: &[u64]) -> Option<String> {
+    match lines {
+        [] => None,
+        all if all.len() == data.rows.len() => Some("all lines".to_owned()),
+        [one] => Some(format!("line {one}")),
+        several => Some(format!("lines {}", listed(several))),
+    }
+}
+
+fn few_shots(data: &Data) -> Option<String> {
+    let which = which(data, &data.lines_of_few_shots())?;
+    Some(format!(
+        "{}, {which}: errors from the scatter of fewer than {FEWEST_SHOTS} shots are themselves too uncertain to \
+         correct for, and are taken as known: intervals are too narrow by an unknown factor. Shoot more, or take \
+         errors over many rows (--error-shots known says that they are)",
+        data.file
+    ))
+}
+
+fn uncorrelated(data: &Data) -> Option<String> {
+    let which = which(data, &data.lines_without_correlation())?;
+    Some(format!(
+        "{}, {which}: the errors of incident and reflected times are taken as independent. Both times share the wall's \
+         pick, so they usually are not: add a column `tof_correlation`, as `hertzchain measure` writes it (0 for \
+         independent errors)",
+        data.file
+    ))
+}
+
+/// Numbers that --use names and the table does not have. Of the times that are taken where
+/// --use is not given, a table may have one.
+fn not_there(data: &Data, measured: &Measured) -> Option<String> {
+    if measured.observables == [What::Incident, What::Reflected] {
+        return None;
+    }
+    let wanted = measured.observables.iter().map(|what| of(*what));
+    let missing = wanted.filter(|of| !data.has(*of));
+    let missing: Vec<String> = missing.map(|of| format!("`{}`", of.column())).collect();
+    (!missing.is_empty()).then(|| {
+        format!(
+            "{}: --use asks for {}, of which the table has no value: nothing of it is used. Add a column of this title \
+             with its errors, as `hertzchain measure` writes them, or leave it out of --use",
+            data.file,
+            missing.join(" and ")
+        )
+    })
+}
+
+fn exact_speeds(data: &Data, measured: &Measured) -> Option<String> {
+    if measured.speed_error == Some(0.0) {
+        return None;
+    }
+    let which = which(data, &data.lines_of_exact_speeds())?;
+    Some(format!(
+        "{}, {which}: speeds without an error, or with one of 0, are taken as exactly known; standard \
+         errors are too small if they are not. Add a column `speed_error_m_s` or --speed-error \
+         (--speed-error 0 says that they are exact)",
+        data.file
+    ))
+}
+
+/// Numbers with commas, the first dozen of them.
+fn listed(lines: &[u64]) -> String {
+    let shown = lines.iter().take(LISTED).map(u64::to_string);
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    match lines.len().saturating_sub(LISTED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+/// Lines that a warning names.
+const LISTED: usize = 12;
+
+fn of(what: What) -> Observable {
+    match what {
+        What::Incident => Observable::Incident,
+        What::Reflected => Observable::Reflected,
+        What::WallRatio => Observable::WallOverPassing,
+        What::ReturningRatio => Observable::ReturningOverPassing,
+    }
+}
+
+/// A model's experiment, in the case of this name if it has one.
+pub fn opened(
+    file: Option<&Path>,
+    preset: &Option<String>,
+    case: &str,
+) -> Result<Experiment, Failure> {
+    opened_or((file, preset), USUAL, case)
+}
+
+/// The preset where no model is named.
+const USUAL: &str = "dry";
+
+/// That a model which was not named is the paper's dry chain: the first line of what comes of it.
+#[must_use]
+pub fn assumed_model(modelled: &Modelled) -> Option<String> {
+    let is_named = modelled.model.is_some() || modelled.preset.is_some();
+    let options = "--model FILE or --preset NAME";
+    (!is_named).then(|| input::assumed_preset("model", "dry chain", USUAL, options))
+}
+
+/// The same with a preset where neither is named.
+pub fn opened_or(
+    (file, preset): (Option<&Path>, &Option<String>),
+    usual: &str,
+    case: &str,
+) -> Result<Experiment, Failure> {
+    let input = Input {
+        file: file.map(Path::to_owned),
+        preset: preset.clone(),
+    };
+    in_case(input::open_or(&input, usual)?, case)
+}
+
+/// An experiment as a model, in the case of this name if it has one.
+///
+/// # Errors
+/// A case that has mistakes, or an experiment without units.
+pub fn in_case(mut experiment: Experiment, case: &str) -> Result<Experiment, Failure> {
+    let cases = experiment.cases();
+    match experiment.case(case) {
+        Some(chosen) => experiment = chosen?,
+        None if case.is_empty() || cases.is_empty() => {}
+        None => {
+            return Err(Failure::User(format!(
+                "{} has no case `{case}`; its cases are {}",
+                experiment.name(),
+                cases.join(", ")
+            )));
+        }
+    }
+    match experiment.units() {
+        Units::Si => Ok(experiment),
+        Units::Dimensionless => Err(Failure::User(
+            "times of flight in s need a model in SI units; this one is dimensionless".to_owned(),
+        )),
+    }
+}
+
+/// The model's experiment, with what is set and in its case.
+pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
+    let experiment = opened(
+        modelled.model.as_deref(),
+        &modelled.preset,
+        case.unwrap_or_default(),
+    )?;
+    changed(experiment, &modelled.set)
+}
+
+/// An experiment with numbers set.
+///
+/// # Errors
+/// A name or a value that does not fit.
+pub fn changed(mut experiment: Experiment, sets: &[Assignment]) -> Result<Experiment, Failure> {
+    for set in sets {
+        let changed = experiment.set_text(&[(&set.name, &set.text)]);
+        experiment = changed.map_err(|error| match error {
+            PathError::Mistakes(mistakes) => mistakes.into(),
+            PathError::Unknown { .. } => unknown(&experiment, &set.name, &error),
+            other => Failure::User(format!("--set {}: {other}", set.name)),
+        })?;
+    }
+    Ok(experiment)
+}
+
+/// That a number to be set is not there; of a short name that --free knows, its path.
+fn unknown(experiment: &Experiment, name: &str, error: &PathError) -> Failure {
+    let found = FreeNumber::find(experiment, name, Some(1.0));
+    let why = match found.as_ref().map(FreeNumber::path) {
+        Ok(Some(path)) => format!(
+            "--set takes paths of the experiment file, and `{name}` is a short name of --free: write --set {path}=VALUE"
+        ),
+        Ok(None) => format!("`{name}` is no number of the experiment file: --free alone knows it"),
+        Err(FreeError::Ambiguous { .. }) => format!(
+            "--set takes paths of the experiment file, and `{name}` is a short name of --free for several of its numbers: \
+             `hertzchain schema` lists what paths there are"
+        ),
+        Err(_) => error.to_string(),
+    };
+    Failure::User(format!("--set {name}: {why}"))
+}
+
+/// A model with its free numbers.
+pub fn model(
+    experiment: &Experiment,
+    modelled: &Modelled,
+    freed: &Freed,
+) -> Result<Model, Failure> {
+    let number = |name: &String| {
+        let plain = name.split(':').next().unwrap_or_default().trim();
+        let start = freed.start.iter().find(|start| start.name == plain);
+        // The unit is not known before the number is: it is looked at below.
+        let start = start.and_then(|start| known::any_number(&start.text));
+        FreeNumber::find(experiment, name, start)
+    };
+    let numbers: Result<Vec<_>, FreeError> = freed.free.iter().map(number).collect();
+    let numbers = FreeNumbers::new(numbers.map_err(user)?).map_err(user)?;
+    let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy);
+    model.set = input::instruction_set()?;
+    Ok(model)
+}
+
+/// Data against a model with what is known of its parameters.
+pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, Failure> {
+    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    known::apply(freed, &mut parameters)?;
+    CurveProblem::new(model, data, parameters).map_err(user)
+}
+
+/// Recordings against a model with what is known of its parameters.
+pub fn pulses(problem: PulseProblem, freed: &Freed) -> Result<PulseProblem, Failure> {
+    let mut parameters = problem.parameters().to_vec();
+    known::apply(freed, &mut parameters)?;
+    problem.with_parameters(parameters).map_err(user)
+}
+
+/// As many threads as asked for.
+pub fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build();
+    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+mod tests {
+    use super::*;
+    use crate::arguments::infer::Fit;
+    use crate::arguments::parsed as arguments;
+
+    fn fit(more: &[&str]) -> Fit {
+        let begin = ["data.csv", "--preset=dry", "--free=eta"];
+        let words = begin.iter().chain(more).map(|word| (*word).to_owned());
+        arguments("fit", &words.collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn a_number_that_use_names_and_the_table_has_not_is_told() {
+        let text =
+            "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.3,1e-3,7e-4,1e-7\n";
+        let told = |words: &[&str]| {
+            let measured = fit(words).measured;
+            let data = parsed("a.csv", text, &measured, None).unwrap();
+            assumed(&data, &measured)
+        };
+        let why = told(&["--use=incident,returning-ratio"]).unwrap();
+        let column = Observable::ReturningOverPassing.column();
+        assert!(
+            why.starts_with(&format!("a.csv: --use asks for `{column}`")),
+            "{why}"
+        );
+        // Nobody asked for reflected times by name.
+        assert_eq!(told(&[]), None);
+        assert_eq!(told(&["--use=incident"]), None);
+    }
+
+    #[test]
+    fn a_short_name_that_is_set_is_told_with_its_path() {
+        for (name, words) in [
+            (
+                "B",
+                "write --set contacts[0].laws.damping_cubic.coefficient=VALUE",
+            ),
+            ("eta", "write --set materials.aisi316.shear_viscosity=VALUE"),
+            ("wall_gain", "--free alone knows it"),
+            ("nothing", "there is no number `nothing`"),
+        ] {
+            let set = format!("--set={name}=50");
+            let modelled = fit(&[&set]).modelled;
+            let Err(Failure::User(why)) = experiment(&modelled, None) else {
+                unreachable!("{name} was set")
+            };
+            assert!(
+                why.starts_with(&format!("--set {name}: ")) && why.contains(words),
+                "{why}"
+            );
+        }
+        let path = ["--set=damping_cubic.coefficient=50 kg s/m^2"];
+        assert!(experiment(&fit(&path).modelled, None).is_ok());
+    }
+}

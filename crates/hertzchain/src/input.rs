@@ -1,0 +1,159 @@
+//! From arguments to an experiment and a plan.
+
+use crate::arguments::{How, Input, Pick, Solver};
+use crate::failure::Failure;
+use crate::given::Given;
+use crate::quantity::Style;
+use hertzchain_chain::System;
+use hertzchain_experiment::{Experiment, Mistakes, OpenError, Units, longest_duration_s, preset};
+use hertzchain_sim as study;
+use hertzchain_sim::{InstructionSet, Plan};
+use std::path::Path;
+
+/// The preset that is used when no experiment is named.
+const USUAL: &str = "dry";
+
+/// Opens the file or the preset; the paper's dry chain where neither is named.
+pub fn open(input: &Input) -> Result<Experiment, Failure> {
+    open_or(input, USUAL)
+}
+
+/// The same with another preset where neither is named.
+pub fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure> {
+    match (&input.file, &input.preset) {
+        (Some(file), _) => open_file(file),
+        (None, name) => {
+            preset(name.as_deref().unwrap_or(usual)).map_err(|e| Failure::User(e.to_string()))
+        }
+    }
+}
+
+/// That an experiment which was not named is the paper's dry chain: the first line of what
+/// comes of it.
+#[must_use]
+pub fn assumed(input: &Input) -> Option<String> {
+    let is_named = input.file.is_some() || input.preset.is_some();
+    (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
+}
+
+/// That something which was not named is a chain of the paper.
+pub(crate) fn assumed_preset(what: &str, chain: &str, preset: &str, options: &str) -> String {
+    format!(
+        "No {what} is named: the paper's {chain} is assumed (preset {preset}; name one by {options})"
+    )
+}
+
+fn open_file(file: &Path) -> Result<Experiment, Failure> {
+    Experiment::open(file).map_err(|error| match error {
+        OpenError::Mistakes(mistakes) => mistakes.into(),
+        OpenError::Unreadable { .. } => {
+            let meant = file
+                .to_str()
+                .filter(|name| !file.exists() && preset(name).is_ok());
+            let hint = meant.map_or(String::new(), |name| {
+                format!("; did you mean --preset {name}?")
+            });
+            Failure::User(format!("{error}{hint}"))
+        }
+    })
+}
+
+/// The speed asked for, if it suits the experiment's units.
+pub fn speed(given: Option<&Given>, experiment: &Experiment) -> Result<Option<f64>, Failure> {
+    given.map_or(Ok(()), |given| given.check("--speed", experiment.units()))?;
+    Ok(given.map(Given::value))
+}
+
+/// What an experiment gives at a speed; a speed of the command line that does
+/// not do is told as such.
+pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result<T, Failure> {
+    result.map_err(|mistakes| match given {
+        Some(given) => Failure::at_option(&option(given), mistakes),
+        None => mistakes.into(),
+    })
+}
+
+/// The option by which a speed was given.
+#[must_use]
+pub fn option(given: &Given) -> String {
+    format!("--speed {}", given.text())
+}
+
+/// Refuses times that do not suit the experiment's units.
+pub fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
+    for (option, given) in [("--step", &how.step), ("--duration", &how.duration)] {
+        if let Some(given) = given {
+            given.check(option, experiment.units())?;
+        }
+    }
+    Ok(())
+}
+
+/// The environment variable that chooses vector instructions.
+pub const INSTRUCTION_SET: &str = "HERTZCHAIN_INSTRUCTION_SET";
+
+/// Vector instructions: the best this machine has, or those asked for.
+pub fn instruction_set() -> Result<InstructionSet, Failure> {
+    let Some(name) = std::env::var_os(INSTRUCTION_SET).filter(|name| !name.is_empty()) else {
+        return Ok(InstructionSet::default());
+    };
+    let name = name.to_string_lossy();
+    InstructionSet::named(&name).ok_or_else(|| {
+        let sets = InstructionSet::available();
+        let names: Vec<&str> = sets.into_iter().map(InstructionSet::name).collect();
+        Failure::User(format!(
+            "{INSTRUCTION_SET} is `{name}`, which is none of this machine's sets, as they are written: {}",
+            names.join(", ")
+        ))
+    })
+}
+
+/// Puts what the command line says in place of what the experiment says.
+pub fn adjust(how: &How, plan: &mut Plan) {
+    plan.accuracy = how.accuracy.unwrap_or(plan.accuracy);
+    let step = how.step.as_ref().map(Given::value);
+    let duration = how.duration.as_ref().map(Given::value);
+    plan.duration_s = duration.or(plan.duration_s);
+    if let Some(pick) = how.pick {
+        plan.pick = match pick {
+            Pick::Peak => study::Pick::Peak,
+            Pick::Flank10 => study::Pick::Flank(0.1),
+            Pick::Flank50 => study::Pick::Flank(0.5),
+            Pick::CrossCorrelation => study::Pick::CrossCorrelation,
+        };
+    }
+    plan.solver = match (how.solver, plan.solver) {
+        (Some(Solver::Adaptive), _) => study::Solver::Adaptive,
+        (Some(Solver::Rk4), _) => study::Solver::Rk4 { step_s: step },
+        (Some(Solver::Verlet), _) => study::Solver::Verlet { step_s: step },
+        (None, study::Solver::Rk4 { step_s }) => study::Solver::Rk4 {
+            step_s: step.or(step_s),
+        },
+        (None, study::Solver::Verlet { step_s }) => study::Solver::Verlet {
+            step_s: step.or(step_s),
+        },
+        (None, study::Solver::Adaptive) => study::Solver::Adaptive,
+    };
+}
+
+/// Refuses a step for a solver that chooses its own, and a duration without end.
+pub fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
+    if how.step.is_some() && plan.solver == study::Solver::Adaptive {
+        return Err(Failure::User(
+            "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),
+        ));
+    }
+    let longest_s = System::new(&plan.chain).map_or(f64::INFINITY, |it| longest_duration_s(&it));
+    match how
+        .duration
+        .as_ref()
+        .filter(|given| given.value() > longest_s)
+    {
+        Some(given) => Err(Failure::User(format!(
+            "--duration {}: expected at most {}: contacts take some ten steps each, and a billion steps take hours",
+            given.text(),
+            Style { digits: 3, units }.quantity(longest_s, "s")
+        ))),
+        None => Ok(()),
+    }
+}

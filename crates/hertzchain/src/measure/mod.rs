@@ -1,0 +1,308 @@
+//! `measure`: which recordings, how read, how picked.
+
+mod results;
+
+pub use results::{json, write_json};
+
+use crate::arguments::Input;
+use crate::arguments::infer::Filter;
+use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
+use crate::failure::Failure;
+use crate::input;
+use hertzchain_experiment::{self as experiment, Experiment};
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
+use hertzchain_measure::signal::{
+    Bandwidth, Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
+};
+use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, Shot, ShotList};
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Order of one run of the low-pass.
+const ORDER: usize = 4;
+
+/// The power of a cosine that pulses of Hertz contacts come nearest to.
+const POWER: f64 = 6.0;
+
+/// Full width of its fit, in full widths at half maximum.
+const FITTED_WIDTHS: f64 = 2.0;
+
+/// Files, and those of folders in order of their names; the table of shots may
+/// lie among them.
+///
+/// # Errors
+/// A folder without recordings.
+pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
+    let mut files = Vec::new();
+    for path in given {
+        match path.is_dir() {
+            true => files.extend(inside(path)?),
+            false => files.push(seekable(path).map_err(|error| {
+                Failure::User(format!("{} can't be read: {error}", path.display()))
+            })?),
+        }
+    }
+    let list = list.and_then(|list| list.canonicalize().ok());
+    files.retain(|file| list.is_none() || file.canonicalize().ok() != list);
+    Ok(files)
+}
+
+/// Endings of recordings; a folder may hold other things beside.
+const ENDINGS: [&str; 9] = [
+    "h5", "hdf5", "csv", "tsv", "txt", "npy", "npz", "wav", "tdms",
+];
+
+fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
+    let entries = fs::read_dir(folder).map_err(refused)?;
+    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    let is_recording = |path: &PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| ENDINGS.contains(&ending.to_ascii_lowercase().as_str()))
+            && path.is_file()
+    };
+    let mut found: Vec<PathBuf> = paths.filter(is_recording).collect();
+    found.sort();
+    match found.is_empty() {
+        true => Err(Failure::User(format!(
+            "{}: no recordings in it (of .{})",
+            folder.display(),
+            ENDINGS.join(", .")
+        ))),
+        false => Ok(found),
+    }
+}
+
+/// How recordings are read and measured.
+///
+/// # Errors
+/// Options that do not go together; a rig or a table of shots that can't be used.
+pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
+    let rig = arguments.rig.as_deref().map(open_rig).transpose()?;
+    let reading = &arguments.reading;
+    if reading.channel.len() > 2 {
+        return Err(Failure::User(
+            "a shot has at most two channels: --channel once if one sums both sensors, twice for \
+             the sensor bead's and the wall's"
+                .to_owned(),
+        ));
+    }
+    let high_pass_hz = ac_coupling_hz(&arguments.picking, rig.as_ref());
+    Ok(Options {
+        keep_droop: high_pass_hz == Some(0.0),
+        keep_low_pass: arguments.picking.low_pass == Some(0.0),
+        reading: ReadOptions {
+            rate_hz: reading.rate,
+            trust_rate: reading.trust_rate,
+            channels: reading.channel.clone(),
+            time_unit_s: reading.time_unit,
+            parts: match (reading.shot_samples, reading.level) {
+                (Some(samples), None) => Parts::Shots(samples),
+                _ => Parts::Whole,
+            },
+            rows: match reading.rows {
+                None => Rows::Auto,
+                Some(RowsAre::Shots) => Rows::Shots,
+                Some(RowsAre::Channels) => Rows::Channels,
+                Some(RowsAre::Times) => Rows::Times,
+                Some(RowsAre::Moments) => Rows::Moments,
+            },
+        },
+        cutting: match (reading.level, reading.whole) {
+            (Some(volts), _) => Cut::Level(Level {
+                volts,
+                samples: reading.shot_samples,
+            }),
+            (None, true) => Cut::Never,
+            (None, false) => Cut::Plain,
+        },
+        measuring: measuring(&arguments.picking, rig.as_ref(), high_pass_hz)?,
+        list: arguments.shots.as_deref().map(list).transpose()?,
+        speed_error_m_s: arguments
+            .speed_error
+            .or_else(|| Some(rig.as_ref()?.campaign().photogate.error_m_s)),
+    })
+}
+
+/// The rig's file, or a preset by its name.
+fn open_rig(file: &Path) -> Result<Experiment, Failure> {
+    let preset = file.to_str().filter(|_| !file.exists());
+    let preset = preset.filter(|name| hertzchain_experiment::preset(name).is_ok());
+    input::open(&Input {
+        file: preset.is_none().then(|| file.to_owned()),
+        preset: preset.map(str::to_owned),
+    })
+}
+
+/// The table of shots.
+///
+/// # Errors
+/// A file that can't be read, or is no such table.
+pub fn list(file: &Path) -> Result<ShotList, Failure> {
+    let wrong = |error: &dyn std::error::Error| {
+        Failure::User(format!("--shots {}: {error}", file.display()))
+    };
+    let text = text(file).map_err(|error| wrong(&error))?;
+    ShotList::parse(&text).map_err(|error| wrong(&error))
+}
+
+/// Corner of the amplifier's high-pass in Hz, 0 for none, if an option or the rig's file has it.
+fn ac_coupling_hz(picking: &Picking, rig: Option<&Experiment>) -> Option<f64> {
+    let of_rig = || Some(rig?.campaign().amplifier.high_pass_hz);
+    picking.ac_coupling.or_else(of_rig)
+}
+
+fn measuring(
+    picking: &Picking,
+    rig: Option<&Experiment>,
+    high_pass_hz: Option<f64>,
+) -> Result<Measuring, Failure> {
+    let beads = picking.beads.zip(picking.sensor);
+    if let Some((beads, sensor)) = beads.filter(|(beads, sensor)| sensor >= beads) {
+        return Err(Failure::User(format!(
+            "--sensor {sensor} is not one of --beads {beads} before the last"
+        )));
+    }
+    let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
+    Ok(Measuring {
+        finding: Finding {
+            polarity: polarity(picking.polarity),
+            wall_polarity: polarity(picking.wall_polarity),
+            beads: beads.or_else(of_rig),
+            rails: None,
+            wall_rails: None,
+        },
+        method: method(picking),
+        high_pass_s: high_pass_hz
+            .filter(|hz| *hz > 0.0)
+            .map(|hz| (TAU * hz).recip()),
+        low_pass: picking.smooth.map(|cutoff_hz| LowPass {
+            cutoff_hz,
+            order: ORDER,
+        }),
+        bandwidth: bandwidth(picking, rig)?,
+    })
+}
+
+/// The amplifier's low-pass, if an option or the rig's file states it; 0 for none.
+fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandwidth>, Failure> {
+    let amplifier = rig.map(|rig| &rig.campaign().amplifier);
+    let corner_hz = picking.low_pass.or(amplifier.map(|of| of.low_pass_hz));
+    if picking.filter.is_some() && corner_hz.is_none() {
+        return Err(Failure::User(
+            "--filter is of the amplifier's low-pass, whose corner --low-pass or --rig states"
+                .to_owned(),
+        ));
+    }
+    let local = picking.method == MethodName::Local;
+    let Some(corner_hz) = corner_hz.filter(|hz| *hz > 0.0 && (local || picking.low_pass.is_some()))
+    else {
+        return Ok(None);
+    };
+    if !local {
+        return Err(Failure::User(
+            "--low-pass corrects maxima, the times of --method local, and no others".to_owned(),
+        ));
+    }
+    let order = match (picking.filter, amplifier.map(|of| (of.order, of.kind))) {
+        (Some(Filter::First), _) | (None, None) => Some(1),
+        (Some(Filter::Butterworth2), _) => Some(2),
+        (None, Some((experiment::LowPass::First, _))) => Some(1),
+        (None, Some((experiment::LowPass::Second, experiment::LowPassKind::Butterworth))) => {
+            Some(2)
+        }
+        _ => None,
+    };
+    let order = order.ok_or_else(|| {
+        Failure::User(
+            "only low-passes of first order and Butterworth's of second are taken out of maxima: --filter names \
+             another one, or the rig's amplifier has it; --low-pass 0 leaves times as they are"
+                .to_owned(),
+        )
+    })?;
+    Ok(Some(Bandwidth { corner_hz, order }))
+}
+
+fn polarity(way: Option<Way>) -> Polarity {
+    match way {
+        None => Polarity::Auto,
+        Some(Way::Positive) => Polarity::Positive,
+        Some(Way::Negative) => Polarity::Negative,
+    }
+}
+
+fn method(picking: &Picking) -> Method {
+    match picking.method {
+        MethodName::Local => Method::default(),
+        MethodName::Onset => Method::Onset {
+            fraction: picking.onset,
+        },
+        MethodName::Correlation => Method::CrossCorrelation(Template::Passing),
+        MethodName::Shape => Method::MatchedShape {
+            shape: Shape::cos_power(POWER),
+            width: FITTED_WIDTHS,
+        },
+    }
+}
+
+/// How shots become curves.
+#[must_use]
+pub fn grouping(arguments: &Arguments) -> Grouping {
+    Grouping {
+        gap_m_s: arguments.speed_gap,
+        reference: arguments.reference.clone(),
+        keep_dubious: arguments.keep_dubious,
+    }
+}
+
+/// Whether the options suit the recordings; one that does not is told once, not with every shot.
+///
+/// # Errors
+/// An option that its records do not take, as a low-pass above half their sampling rate.
+pub fn suits(measured: &Measurement) -> Result<(), Failure> {
+    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(SignalError::Option { .. }));
+    let first = measured.shots.first();
+    let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));
+    match error {
+        Some((first, error)) if measured.shots.iter().all(|shot| unsuited(&shot)) => {
+            Err(Failure::User(format!(
+                "{error}; {} is sampled at {:.0} Hz, and no record takes it",
+                first.source,
+                first.interval_s.recip()
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refused records and such without a time of flight make the run one with mistakes,
+/// whatever else was measured.
+///
+/// # Errors
+/// What was refused or not found.
+pub fn judge(measured: &Measurement) -> Result<(), Failure> {
+    let refused = measured.refused.len();
+    let all = refused + measured.shots.len();
+    let timeless = measured.shots.iter().filter(|shot| shot.flight.is_err());
+    let timeless = timeless.count();
+    let wrong = match (refused, timeless) {
+        (0, 0) => None,
+        (0, _) => Some(no_time(timeless, all)),
+        (_, 0) => Some(format!("{refused} of {all} records were refused")),
+        _ => Some(format!(
+            "{refused} of {all} records were refused, and {}",
+            no_time(timeless, measured.shots.len())
+        )),
+    };
+    let told = match refused + timeless < all {
+        true => wrong.map(|wrong| wrong + "; the others were measured"),
+        false => Some("nothing was measured: ".to_owned() + &wrong.unwrap_or_default()),
+    };
+    told.map_or(Ok(()), |told| Err(Failure::User(told)))
+}
+
+fn no_time(timeless: usize, all: usize) -> String {
+    let have = if all == 1 { "has" } else { "have" };
+    format!("{timeless} of {all} that were read {have} no time of flight, as their flags tell")
+}

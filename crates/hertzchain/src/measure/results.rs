@@ -1,0 +1,270 @@
+//! Everything measured, as JSON in SI.
+
+use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, Ratio, Summary};
+use hertzchain_measure::{Case, Curves, Lost, Measurement, Note, Shot, SpeedRow, WetOverDry};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::{Value, json};
+use std::io;
+
+/// Shots, curves, ratios and what was refused.
+#[must_use]
+pub fn json(measured: &Measurement, curves: &Curves) -> Value {
+    let all = serde_json::to_value(Report { measured, curves });
+    all.expect("texts, numbers and lists of them are JSON")
+}
+
+/// Writes the same, indented, shot by shot: as JSON a shot takes ten times the memory that
+/// it has as numbers, and recordings may have any number of them.
+///
+/// # Errors
+/// Those of what is written to.
+pub fn write_json(
+    measured: &Measurement,
+    curves: &Curves,
+    mut out: &mut dyn io::Write,
+) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut out, &Report { measured, curves })?;
+    out.write_all(b"\n")
+}
+
+/// Everything, under its names.
+struct Report<'a> {
+    measured: &'a Measurement,
+    curves: &'a Curves,
+}
+
+impl Serialize for Report<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { measured, curves } = self;
+        let mut all = serializer.serialize_map(None)?;
+        let low_pass = measured
+            .bandwidth
+            .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
+        all.serialize_entry("low_pass", &low_pass)?;
+        all.serialize_entry("cases", &Each(&curves.cases, case))?;
+        all.serialize_entry("lost", &Each(&curves.lost, lost))?;
+        all.serialize_entry("notes", &Each(&measured.notes, note))?;
+        all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
+        all.serialize_entry(
+            "refused",
+            &Each(&measured.refused, |one| json!(one.to_string())),
+        )?;
+        all.serialize_entry("shots", &Each(&measured.shots, shot))?;
+        all.serialize_entry("unmatched", &measured.unmatched)?;
+        all.end()
+    }
+}
+
+/// A list of which one member at a time is JSON.
+struct Each<'a, T>(&'a [T], fn(&T) -> Value);
+
+impl<T> Serialize for Each<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(self.1))
+    }
+}
+
+fn lost(lost: &Lost) -> Value {
+    json!({ "case": lost.case, "speed_m_s": lost.speed_m_s, "shots": lost.shots })
+}
+
+fn note(note: &Note) -> Value {
+    let files = note.files.iter().map(|file| file.display().to_string());
+    json!({ "note": note.text, "files": files.collect::<Value>() })
+}
+
+fn wet_over_dry(wet: &WetOverDry) -> Value {
+    json!({
+        "case": wet.case,
+        "incident": wet.incident.iter().map(ratio).collect::<Value>(),
+        "reflected": wet.reflected.iter().map(ratio).collect::<Value>(),
+        "correlations": wet.correlations,
+    })
+}
+
+fn estimate(of: Estimate) -> Value {
+    json!({ "value": of.value, "sigma": of.sigma })
+}
+
+fn shot(shot: &Shot) -> Value {
+    let mut all = json!({
+        "file": shot.file.display().to_string(),
+        "shot": shot.shot,
+        "case": shot.case,
+        "speed_m_s": shot.speed_m_s.map(estimate),
+        "flags": shot.remarks(),
+    });
+    match &shot.flight {
+        Err(error) => all["missing"] = json!(error.to_string()),
+        Ok(flight) => {
+            all["tof_incident_s"] = estimate(flight.incident_s);
+            all["tof_reflected_s"] = flight.reflected_s.map_or(Value::Null, estimate);
+            all["tof_correlation"] = json!(flight.correlation());
+            all["wall_over_passing"] = estimate(flight.wall_over_passing);
+            all["returning_over_passing"] =
+                flight.returning_over_passing.map_or(Value::Null, estimate);
+            all["passing"] = picked(&flight.picks.passing);
+            all["wall"] = picked(&flight.picks.wall);
+            all["returning"] = flight.picks.returning.as_ref().map_or(Value::Null, picked);
+        }
+    }
+    all
+}
+
+fn picked(of: &Picked) -> Value {
+    json!({
+        "time_s": of.time_s,
+        "time_sigma_s": of.sigma_s,
+        "height_v": of.height,
+        "width_s": of.width_s,
+    })
+}
+
+fn case(case: &Case) -> Value {
+    json!({
+        "case": case.name,
+        "speeds": case.rows.iter().map(row).collect::<Value>(),
+        "power_law_incident": law(case, &case.laws.incident),
+        "power_law_reflected": law(case, &case.laws.reflected),
+    })
+}
+
+fn row(row: &SpeedRow) -> Value {
+    json!({
+        "speed_m_s": estimate(row.speed_m_s),
+        "speed_error_shots": row.speed_error_shots,
+        "shots": row.shots.0,
+        "left_out": row.shots.1,
+        "returns_undecided": row.returns_undecided,
+        "returns_missing": row.returns_missing,
+        "tof_incident_s": summary(&row.incident_s),
+        "tof_reflected_s": row.reflected_s.as_ref().map(summary),
+        "wall_over_passing": summary(&row.wall_over_passing),
+        "returning_over_passing": row.returning_over_passing.as_ref().map(summary),
+        "tof_incident_shared_s": row.shared_s[0],
+        "tof_reflected_shared_s": row.shared_s[1],
+        "tof_incident_at_mean_speed_s": row.at_mean_speed_s[0].map(estimate),
+        "tof_reflected_at_mean_speed_s": row.at_mean_speed_s[1].map(estimate),
+        "tof_correlation": row.correlation,
+        "tof_at_mean_speed_correlation": row.correlation_at_mean_speed,
+        "widths_s": row.widths_s.map(|width| width.map(|width| width.mean)),
+    })
+}
+
+fn summary(of: &Summary) -> Value {
+    json!({
+        "mean": of.mean,
+        "deviation": of.deviation,
+        "error": of.error,
+        "count": of.count,
+        "weighted_mean": of.weighted.value,
+        "weighted_error": of.weighted.sigma,
+        "chi_square": of.chi_square,
+    })
+}
+
+/// Whether a law is supported is null where nothing tells, and then says why.
+fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
+    match of {
+        Err(error) => json!({ "missing": error.to_string() }),
+        Ok(law) => json!({
+            "prefactor_s": law.prefactor,
+            "prefactor_error_s": law.prefactor_error,
+            "exponent": law.exponent,
+            "exponent_error": law.exponent_error,
+            "covariance": law.covariance,
+            "r_squared": law.r_squared,
+            "chi_square": law.chi_square.map(|judged| judged.value),
+            "degrees_of_freedom": law.chi_square.map(|judged| judged.freedom),
+            "probability": law.chi_square.map(|judged| judged.probability),
+            "supported": case.supports(law).ok().flatten(),
+            "supported_unknown_because": case.supports(law).err(),
+        }),
+    }
+}
+
+fn ratio(of: &Ratio) -> Value {
+    json!({ "speed_m_s": of.speed, "ratio": of.ratio.value, "error": of.ratio.sigma })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hertzchain_measure::Refused;
+    use hertzchain_measure::signal::{Moved, Picks};
+    use std::path::PathBuf;
+
+    fn measured(shots: usize) -> Measurement {
+        let picked = Picked {
+            time_s: 1e-3,
+            sigma_s: 1e-9,
+            moved: Moved::default(),
+            height: 1.0,
+            height_sigma: 1e-3,
+            width_s: 46e-6,
+            misfit: None,
+        };
+        let at = |time_s| Picked { time_s, ..picked };
+        let picks = Picks {
+            passing: picked,
+            wall: at(1.7e-3),
+            returning: Some(at(2.5e-3)),
+            rivals: [None; 3],
+        };
+        let shot = Shot {
+            source: "long.npy, shot 12345 at 123.4567 s".to_owned(),
+            file: PathBuf::from("recordings/long.npy"),
+            shot: Some(12_345),
+            case: String::new(),
+            programmed_speed_m_s: None,
+            speed_m_s: None,
+            interval_s: 1e-6,
+            flight: Ok(picks.flight()),
+            doubts: Vec::new(),
+            untriggered: false,
+            gaps: None,
+            gap_in_pulse: false,
+            holds_several: false,
+        };
+        Measurement {
+            shots: vec![shot; shots],
+            refused: vec![Refused::Speeds {
+                file: PathBuf::from("short.npz"),
+                told: 3,
+                found: 2,
+            }],
+            ..Measurement::default()
+        }
+    }
+
+    /// Most bytes that were held at once while it was written.
+    fn held(shots: usize) -> u64 {
+        let (measured, curves) = (measured(shots), Curves::default());
+        let info = allocation_counter::measure(|| {
+            write_json(&measured, &curves, &mut io::sink()).unwrap();
+        });
+        info.bytes_max
+    }
+
+    #[test]
+    fn json_of_any_number_of_shots_holds_one_of_them_at_a_time() {
+        assert_eq!(held(1000), held(10));
+    }
+
+    #[test]
+    fn a_shot_is_kept_as_some_numbers_whatever_its_samples() {
+        // Times, heights and widths of three pulses with errors, other maxima of theirs, speed,
+        // and three names.
+        assert!(size_of::<Shot>() < 800, "{}", size_of::<Shot>());
+    }
+
+    #[test]
+    fn what_is_written_is_the_value_that_python_gets() {
+        let (measured, curves) = (measured(3), Curves::default());
+        let mut text = Vec::new();
+        write_json(&measured, &curves, &mut text).unwrap();
+        let value: Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(value, json(&measured, &curves));
+        assert_eq!(value["shots"].as_array().unwrap().len(), 3);
+    }
+}

@@ -1,0 +1,66 @@
+//! What went wrong, printed, with the exit code: 2 for the user's mistakes, 1
+//! for ours.
+
+use crate::print::note;
+use hertzchain::arguments::infer::{Assignment, Measured};
+use hertzchain::failure;
+pub use hertzchain::failure::{Failure, of_speed};
+use hertzchain::given::Given;
+use hertzchain::inference::{assumed, held_loads, kept};
+use hertzchain::input::option;
+use hertzchain_experiment::Warning;
+use hertzchain_infer::{Data, Model};
+use hertzchain_measure::records::without_controls;
+use std::borrow::Cow;
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+fn colour() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
+/// Prints a report: in colour on a terminal, unless it quotes control characters.
+fn show(report: impl Fn(bool) -> String) {
+    let plain = report(false);
+    match without_controls(&plain) {
+        Cow::Borrowed(_) if colour() => eprint!("{}", report(true)),
+        shown => eprint!("{shown}"),
+    }
+}
+
+/// Prints why a verb failed and says how the program ends.
+pub fn report(failure: &Failure) -> ExitCode {
+    show(|colour| failure.report(colour));
+    match failure {
+        Failure::Mistakes(_) | Failure::User(_) => ExitCode::from(2),
+        Failure::Ours(_) => ExitCode::from(1),
+        Failure::BrokenPipe => ExitCode::SUCCESS,
+    }
+}
+
+/// Warnings at a speed that an option gave, told of the option.
+pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
+    show(|colour| failure::option_warnings(option, warnings, colour));
+}
+
+/// What is assumed of data that do not say all.
+pub fn print_assumed(data: &Data, measured: &Measured) {
+    if let Some(assumed) = assumed(data, measured) {
+        note(&format!("warning: {assumed}"));
+    }
+}
+
+/// Numbers that are kept while their unit changes, and loads that the model does not have.
+pub fn print_kept(model: &Model, sets: &[Assignment]) {
+    for kept in kept(model, sets).into_iter().chain(held_loads(model)) {
+        note(&format!("warning: {kept}"));
+    }
+}
+
+/// What is odd about an experiment at the speed that may have been given.
+pub fn print_speed_warnings(given: Option<&Given>, warnings: &[Warning]) {
+    match given {
+        Some(given) => print_option_warnings(&option(given), warnings),
+        None => show(|colour| failure::warnings(warnings, colour)),
+    }
+}

@@ -1,0 +1,171 @@
+//! Numbers and tables for people.
+
+use crate::print::heading;
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle, presets};
+use hertzchain::quantity::decimals;
+pub use hertzchain::quantity::{Style, digits};
+use hertzchain_experiment::Units;
+use hertzchain_sim::{Group, Row, Value};
+
+/// Decimals beyond which an error is written with an exponent.
+const MOST_DECIMALS: usize = 7;
+
+/// A value and its error, both to the second digit of the error.
+pub fn with_error(value: f64, error: f64) -> (String, String) {
+    if !(error > 0.0 && error.is_finite()) {
+        return (digits(value, 7), digits(error, 2));
+    }
+    // What the error is once rounded: 0.0996 has the digits of 0.10.
+    let shown: f64 = format!("{error:.1e}").parse().unwrap_or(error);
+    let place = 1 - shown.log10().floor() as i32;
+    let decimals = usize::try_from(place).unwrap_or(0).min(15);
+    let value = match place < 0 {
+        true => {
+            let step = 10_f64.powi(-place);
+            format!("{}", (value / step).round() * step)
+        }
+        false => format!("{value:.decimals$}"),
+    };
+    let error = match decimals > MOST_DECIMALS {
+        true => format!("{shown:.1e}"),
+        false => format!("{shown:.decimals$}"),
+    };
+    (value, error)
+}
+
+/// R², with as many digits as make two of 1 − R²; close to 1 as a difference
+/// from it.
+pub fn r_squared(value: f64) -> String {
+    let rest = 1.0 - value;
+    if rest <= ROUNDING {
+        return "1".to_owned();
+    }
+    match 1 - rest.log10().floor() as i32 {
+        place @ ..=6 => format!("{value:.*}", usize::try_from(place).unwrap_or(0)),
+        _ => format!("1 − {rest:.1e}"),
+    }
+}
+
+/// What sums of logarithms leave of a perfect fit.
+const ROUNDING: f64 = 1e-13;
+
+/// Rows of a name and a value, aligned.
+pub fn pairs(rows: &[(String, String)]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    for (name, value) in rows {
+        table.add_row([format!("  {name}"), value.clone()]);
+    }
+    trimmed(&table)
+}
+
+/// Lines above, below and under the head.
+const RULED: TableStyle = TableStyle::new()
+    .top_border(LineStyle::none().fill('─').junction('─'))
+    .header_separator(LineStyle::none().fill('─').junction('─'))
+    .bottom_border(LineStyle::none().fill('─').junction('─'));
+
+/// A table of numbers with a head.
+pub fn table(head: &[String], rows: &[Vec<String>]) -> String {
+    let mut table = Table::new();
+    table.load_style(RULED);
+    table.set_header(head.to_vec());
+    for row in rows {
+        table.add_row(row.clone());
+    }
+    for column in table.column_iter_mut() {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    trimmed(&table)
+}
+
+/// Numbers with the same decimals, so many that the largest has `digits`; a
+/// dash where there is none.
+pub fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
+    let most = values
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let decimals = decimals(most, digits);
+    let cell = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
+    values.iter().map(cell).collect()
+}
+
+fn trimmed(table: &Table) -> String {
+    let lines = table.to_string();
+    lines
+        .lines()
+        .map(|line| format!("{}\n", line.trim_end()))
+        .collect()
+}
+
+/// Groups of a description under their titles.
+pub fn groups(groups: &[Group], units: Units) -> String {
+    let style = Style::brief(units);
+    let mut text = String::new();
+    for group in groups {
+        let rows: Vec<(String, String)> = (group.rows.iter())
+            .map(|row| (row.name.clone(), value(style, &row.value, &row.unit)))
+            .collect();
+        text += &format!("{}\n{}\n", heading(&group.title), pairs(&rows));
+    }
+    text.trim_end().to_owned()
+}
+
+fn value(style: Style, value: &Value, unit: &str) -> String {
+    match value {
+        Value::Number(number) => style.quantity(*number, unit),
+        Value::Range(least, most) => {
+            format!(
+                "{} to {}",
+                style.quantity(*least, unit),
+                style.quantity(*most, unit)
+            )
+        }
+        Value::Count(count) if unit.is_empty() => count.to_string(),
+        Value::Count(count) => format!("{count} {unit}"),
+        Value::Text(text) => text.clone(),
+        Value::Parts(parts) => {
+            let words: Vec<String> = parts.iter().map(|part| self::part(style, part)).collect();
+            words.join(", ")
+        }
+    }
+}
+
+/// One of several numbers in a line has its name before it; words speak for
+/// themselves.
+fn part(style: Style, part: &Row) -> String {
+    let value = value(style, &part.value, &part.unit);
+    match part.value {
+        Value::Text(_) => value,
+        _ => format!("{} {value}", part.name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(value: f64, error: f64) -> String {
+        let (value, error) = with_error(value, error);
+        format!("{value} ± {error}")
+    }
+
+    #[test]
+    fn values_end_where_their_errors_do() {
+        assert_eq!(pair(686.612_934, 4.7123), "686.6 ± 4.7");
+        assert_eq!(pair(630.841_591_2, 6.31e-4), "630.84159 ± 0.00063");
+        assert_eq!(pair(-0.199_999_999_7, 2.62e-10), "-0.19999999970 ± 2.6e-10");
+        assert_eq!(pair(686.612_934, 0.0996), "686.61 ± 0.10");
+        assert_eq!(pair(686.612_934, 47.4), "687 ± 47");
+        assert_eq!(pair(6866.129, 474.0), "6870 ± 470");
+    }
+
+    #[test]
+    fn r_squared_shows_two_digits_of_what_is_left() {
+        assert_eq!(r_squared(0.998_758_344), "0.9988");
+        assert_eq!(r_squared(0.87), "0.87");
+        assert_eq!(r_squared(1.0 - 2.04e-9), "1 − 2.0e-9");
+        assert_eq!(r_squared(1.0 - 1e-15), "1");
+    }
+}

@@ -1,0 +1,261 @@
+//! Figures of the claims about the rig.
+
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
+use hertzchain_paper::claims::{Branch, Judged, Verdict as Found};
+use hertzchain_paper::rig_claims::{
+    AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
+};
+
+/// All of them by name.
+pub fn figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
+    vec![
+        ("rig_verdicts", verdicts(claims)),
+        ("rig_spreads", spreads(evidence)),
+        ("rig_rebounds", rebounds(evidence)),
+        ("rig_gaps", gaps(evidence)),
+    ]
+}
+
+/// Claims against rigs.
+fn verdicts(claims: &RigClaims) -> Figure {
+    let names: Vec<&str> = claims.rigs.iter().map(|(rig, _)| &*rig.name).collect();
+    let cell = |claim: usize| move |(_, judged): &(Rig, Vec<Judged>)| symbol(judged.get(claim));
+    let rows = claims.judged.iter().enumerate();
+    let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, judged)| {
+        let cells: Vec<Verdict> = claims.rigs.iter().map(cell(at)).collect();
+        matrix.row(&judged.claim.id.replace('-', " "), &cells)
+    });
+    matrix
+        .figure()
+        .title("What the paper says of its rig, on virtual ones")
+}
+
+fn symbol(judged: Option<&Judged>) -> Verdict {
+    match judged.map(|judged| judged.verdict) {
+        Some(Found::Holds) => Verdict::Holds,
+        Some(Found::InPart) => Verdict::InPart,
+        Some(Found::Fails) => Verdict::Fails,
+        Some(Found::NotDecidable) | None => Verdict::NotDecidable,
+    }
+}
+
+/// Spreads of times of flight against each factor, the others as usual; beside
+/// them what the striker's own irregularity adds.
+fn spreads(evidence: &Evidence) -> Figure {
+    let kinds: [(&str, Colour, Marker, Of); 3] = [
+        (
+            "reflected, with taps",
+            Colour::GREEN,
+            Marker::OpenSquare,
+            |at| spread_s(&at.tapped, Branch::Reflected),
+        ),
+        ("incident, with taps", Colour::BLUE, Marker::Circle, |at| {
+            spread_s(&at.tapped, Branch::Incident)
+        }),
+        (
+            "incident, without taps",
+            Colour::VERMILION,
+            Marker::Triangle,
+            |at| spread_s(&at.loose, Branch::Incident),
+        ),
+    ];
+    let added_ns = evidence.rigs.first().map_or(f64::NAN, |usual| {
+        let scatter = usual.with_scatter_s(Branch::Incident);
+        let added_s: Vec<f64> = scatter.map(|(_, scatter_s)| scatter_s).collect();
+        1e9 * typical(&added_s).value.exp()
+    });
+    let mut figure = Figure::double_column(120.0).columns(2).letters();
+    for (at, factor) in FACTORS.iter().enumerate() {
+        let rigs = one_at_a_time(evidence, at);
+        let label = match factor.unit {
+            "" => factor.name.to_owned(),
+            unit => format!("{} ({})", factor.name, unit.trim()),
+        };
+        let mut chart = Chart::new(&label, "spread of ToF (ns)").y_log();
+        chart = chart.y_range(SPREADS_NS.0, SPREADS_NS.1);
+        if rigs.iter().all(|(value, _)| *value > 0.0) {
+            chart = chart.x_log();
+        }
+        for (name, colour, marker, of) in kinds {
+            let points = spread(&rigs, factor.si, name, of);
+            chart = chart.with(points.colour(colour).marker(marker));
+        }
+        let first = at == 0;
+        chart = chart.h_line(
+            added_ns,
+            if first {
+                "by the striker\u{2019}s ± 3 mm/s"
+            } else {
+                ""
+            },
+        );
+        let legend = if first { Legend::Auto } else { Legend::Off };
+        figure = figure.panel(chart.legend(legend));
+    }
+    figure
+}
+
+/// Range of spreads in ns, the same in all panels.
+const SPREADS_NS: (f64, f64) = (50.0, 5e5);
+
+/// What a series has.
+type Of = fn(&AtSpeed) -> f64;
+
+/// Rigs that differ from the usual one in a factor at most, by its value.
+fn one_at_a_time(evidence: &Evidence, factor: usize) -> Vec<(f64, &Observed)> {
+    let usual = Rig::usual();
+    let alike = |rig: &Rig| {
+        let pairs = rig.values.iter().zip(usual.values).enumerate();
+        pairs
+            .into_iter()
+            .all(|(at, (value, usual))| at == factor || *value == usual)
+    };
+    let rigs = evidence.rigs.iter().filter(|observed| alike(&observed.rig));
+    let mut rigs: Vec<(f64, &Observed)> = rigs
+        .filter_map(|observed| Some((*observed.rig.values.get(factor)?, observed)))
+        .collect();
+    rigs.sort_by(|one, other| one.0.total_cmp(&other.0));
+    rigs
+}
+
+/// The geometric mean over all speeds, with its 95 % interval.
+fn spread(rigs: &[(f64, &Observed)], si: f64, name: &str, of: Of) -> Series {
+    let values: Vec<f64> = rigs.iter().map(|(value, _)| value / si).collect();
+    let found = rigs.iter().map(|(_, observed)| {
+        let log = typical(&observed.speeds.iter().map(of).collect::<Vec<f64>>());
+        let ns = 1e9 * log.value.exp();
+        (ns, ns * -(-log.error).exp_m1(), ns * log.error.exp_m1())
+    });
+    let found: Vec<(f64, f64, f64)> = found.collect();
+    let part = |of: fn(&(f64, f64, f64)) -> f64| found.iter().map(of).collect::<Vec<f64>>();
+    Series::points(name, &values, &part(|f| f.0)).y_errors(&part(|f| f.1), &part(|f| f.2))
+}
+
+/// Rebound over speed against speed.
+fn rebounds(evidence: &Evidence) -> Figure {
+    let mut chart = Chart::new("Striker speed $v_0$ (m/s)", "Rebound / $v_0$").x_log();
+    for observed in shown(evidence) {
+        let speeds: Vec<f64> = observed.speeds.iter().map(|at| at.speed_m_s).collect();
+        let share = |at: &AtSpeed| {
+            let all: Vec<f64> = at.tapped.iter().map(rebound_m_s).collect();
+            -mean(&all) / at.speed_m_s
+        };
+        let shares: Vec<f64> = observed.speeds.iter().map(share).collect();
+        chart = chart.with(Series::points(&observed.rig.name, &speeds, &shares));
+    }
+    Figure::single_column(75.0).panel(chart.v_line(0.25, "the paper\u{2019}s 0.25 m/s"))
+}
+
+/// The usual rig and those that differ from it in friction or push.
+fn shown(evidence: &Evidence) -> Vec<&Observed> {
+    let alike = |rig: &Rig| rig.values[2..] == Rig::usual().values[2..];
+    let rigs = evidence.rigs.iter();
+    rigs.filter(|observed| alike(&observed.rig)).collect()
+}
+
+/// Gaps after the fastest shots and after the taps that follow, contact by
+/// contact, on the three rigs that are left loosest, no two of the same friction
+/// and push.
+fn gaps(evidence: &Evidence) -> Figure {
+    let mut rigs: Vec<&Observed> = evidence.rigs.iter().collect();
+    rigs.sort_by(|one, other| left_m(other).total_cmp(&left_m(one)));
+    let friction_and_push = |observed: &Observed| [observed.rig.values[0], observed.rig.values[1]];
+    let mut seen = Vec::new();
+    rigs.retain(|observed| {
+        let new = !seen.contains(&friction_and_push(observed));
+        seen.push(friction_and_push(observed));
+        new
+    });
+    let mut figure = Figure::double_column(65.0).columns(3).letters();
+    for observed in rigs.into_iter().take(3) {
+        if let Some(at) = observed.speeds.last() {
+            figure = figure.panel(row(observed, at));
+        }
+    }
+    figure
+}
+
+/// All gaps in m after the fastest shot, as a mean.
+fn left_m(observed: &Observed) -> f64 {
+    observed.speeds.last().map_or(0.0, |at| {
+        let sums: Vec<f64> = at
+            .tapped
+            .iter()
+            .map(|shot| shot.gaps_after_m.iter().sum())
+            .collect();
+        mean(&sums)
+    })
+}
+
+/// Gaps below this in m are shown in nm.
+const SMALL_M: f64 = 1e-7;
+
+fn row(observed: &Observed, at: &AtSpeed) -> Chart {
+    let before: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_before_m).collect();
+    let after: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_after_m).collect();
+    let (before_m, after_m) = (means(&before), means(&after));
+    let all_m = before_m.iter().chain(&after_m);
+    let (unit, unit_m) = match all_m.copied().fold(0.0, f64::max) < SMALL_M {
+        true => ("nm", 1e-9),
+        false => ("µm", 1e-6),
+    };
+    let chart = Chart::new("Contact", &format!("Gap ({unit})")).title(&held(&observed.rig));
+    let kinds = [
+        ("after a shot", after_m, Colour::VERMILION, Marker::Triangle),
+        ("after taps", before_m, Colour::BLUE, Marker::Circle),
+    ];
+    kinds
+        .into_iter()
+        .fold(chart, |chart, (name, gaps_m, colour, marker)| {
+            let gaps: Vec<f64> = gaps_m.iter().map(|gap_m| gap_m / unit_m).collect();
+            let numbers: Vec<f64> = (1..=gaps.len()).map(|contact| contact as f64).collect();
+            let name = format!("{name}: {:.0} {unit} in all", gaps.iter().sum::<f64>());
+            let points = Series::points(&name, &numbers, &gaps);
+            chart.with(points.colour(colour).marker(marker))
+        })
+}
+
+/// What holds the beads of a rig where they are, of the factors that are tried.
+fn held(rig: &Rig) -> String {
+    let [friction, push] = [0, 1].map(|at: usize| FACTORS[at].text(rig.values[at]));
+    format!("{friction}, {push}")
+}
+
+/// Mean of every contact over all shots.
+fn means(rows: &[&[f64]]) -> Vec<f64> {
+    let contacts = rows.first().map_or(0, |gaps_m| gaps_m.len());
+    let mean_of = |contact: usize| {
+        let all = rows.iter().filter_map(|gaps_m| gaps_m.get(contact));
+        mean(&all.copied().collect::<Vec<f64>>())
+    };
+    (0..contacts).map(mean_of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+    use super::*;
+    use hertzchain_experiment::Experiment;
+    use hertzchain_paper::reproduce::Silent;
+    use hertzchain_paper::rig_claims::{Design, observe};
+
+    #[test]
+    fn a_small_design_has_all_its_pictures() {
+        let text = include_str!("../../../../sim/tests/small.toml");
+        let design = Design {
+            rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::but(3, 2e-3)],
+            speeds: 3,
+            shots: 2,
+            first: 1,
+            ..Design::about(Experiment::from_text("small.toml", text).unwrap())
+        };
+        let evidence = observe(&design, &Silent).unwrap();
+        let claims = RigClaims::judge(&design, &evidence).unwrap();
+        for (name, figure) in figures(&evidence, &claims) {
+            let marks = figure.svg().matches("<path").count();
+            assert!(marks > 20, "{name}: {marks}");
+        }
+        assert_eq!(held(&Rig::but(0, 0.2)), "friction 0.2, push 0.24 N");
+    }
+}

@@ -1,0 +1,147 @@
+//! `hertzchain campaign`: what a rig does alone, on a virtual rig.
+
+use crate::arguments::Campaign as Arguments;
+use crate::failure::Failure;
+use crate::print::{self, print};
+use hertzchain::input;
+use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, outlook};
+use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
+use rayon::ThreadPoolBuilder;
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.input.file.is_none() && arguments.input.preset.is_none() {
+        let text = "which campaign? Name an experiment file, or --preset paper";
+        return Err(Failure::User(text.to_owned()));
+    }
+    let experiment = input::open(&arguments.input)?;
+    let plan = Plan::new(&experiment, arguments.seed).map_err(failure)?;
+    for warning in outlook(&plan).map_err(failure)? {
+        print::note(&format!("warning: {warning}"));
+    }
+    let threads = arguments.threads.unwrap_or(0);
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
+    let shown = Shown::new();
+    let begun = Instant::now();
+    let watch = |progress| shown.show(progress);
+    let done = pool.install(|| campaign(&plan, &arguments.out, arguments.shard, &watch));
+    shown.bar.finish_and_clear();
+    let done = done.map_err(failure)?;
+    print(&summary(&plan, &done, begun.elapsed(), arguments))?;
+    judge(&done)
+}
+
+/// Series that can't be computed are told, after all the others were.
+fn judge(done: &Done) -> Result<(), Failure> {
+    for why in &done.failed {
+        print::note(&format!("warning: {why}"));
+    }
+    if let Some(warning) = untriggered(done) {
+        print::note(&format!("warning: {warning}"));
+    }
+    match done.failed.len() {
+        0 => Ok(()),
+        n => Err(Failure::User(format!(
+            "{n} series can't be computed{}",
+            match done.run + done.kept {
+                0 => "",
+                _ => "; the others are finished",
+            }
+        ))),
+    }
+}
+
+/// Most series that a warning names.
+const NAMED: usize = 3;
+
+/// Shots that were recorded without a trigger.
+fn untriggered(done: &Done) -> Option<String> {
+    let series = &done.untriggered;
+    let shots: usize = series.iter().map(|(_, shots)| shots).sum();
+    let mut names: Vec<&str> = series.iter().map(|(name, _)| &**name).take(NAMED).collect();
+    if series.len() > NAMED {
+        names.push("others");
+    }
+    (shots > 0).then(|| {
+        format!(
+            "{shots} shots never passed the trigger's level and were recorded from the touch on, which \
+             their files tell in `triggered`: {}; lower `level` in [campaign.recorder], or trigger = \
+             \"photogate\"",
+            names.join(", ")
+        )
+    })
+}
+
+/// The user's mistakes are told as such; a full disk is nobody's.
+pub fn failure(error: RigError) -> Failure {
+    match error {
+        RigError::Mistakes(mistakes) => (*mistakes).into(),
+        RigError::Record(error) => Failure::Ours(error.to_string()),
+        other => Failure::User(other.to_string()),
+    }
+}
+
+/// Progress: a bar in a terminal, a line for every tenth elsewhere.
+struct Shown {
+    bar: ProgressBar,
+    begun: Instant,
+    drawn: bool,
+}
+
+impl Shown {
+    fn new() -> Self {
+        let bar = ProgressBar::new(0);
+        let template = "{wide_bar} {pos}/{len} shots, {per_sec:.1}, {eta} left";
+        let style = ProgressStyle::with_template(template);
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self {
+            bar,
+            begun: Instant::now(),
+            drawn: std::io::stderr().is_terminal(),
+        }
+    }
+
+    fn show(&self, progress: Progress) {
+        let Progress { fired, shots } = progress;
+        if fired == 0 {
+            self.bar.set_length(shots);
+            return;
+        }
+        self.bar.inc(1);
+        let tenth = |fired: u64| 10 * fired / shots.max(1);
+        if !self.drawn && tenth(fired) > tenth(fired - 1) {
+            let elapsed_s = self.begun.elapsed().as_secs_f64();
+            let rate_hz = fired as f64 / elapsed_s;
+            let left_s = (shots - fired) as f64 / rate_hz;
+            print::note(&format!(
+                "{fired} of {shots} shots, {rate_hz:.1} a second, {left_s:.0} s left"
+            ));
+        }
+    }
+}
+
+/// What was done, and how fast.
+fn summary(plan: &Plan, done: &Done, elapsed: Duration, arguments: &Arguments) -> String {
+    let campaign = plan.experiment.campaign();
+    let recorder = &campaign.recorder;
+    let samples = done.shots as f64 * (recorder.samples() * recorder.channels.count()) as f64;
+    let took_s = elapsed.as_secs_f64();
+    let kept = match done.kept {
+        0 => String::new(),
+        kept => format!(" {kept} more series were there already."),
+    };
+    format!(
+        "{} series, {} shots, {} taps, {samples:.3e} samples in {took_s:.1} s ({:.1} shots a second).{kept}\n\
+         {} of recordings in {}; seed {}.",
+        done.run,
+        done.shots,
+        done.shots * campaign.taps as u64,
+        done.shots as f64 / took_s.max(1e-9),
+        HumanBytes(done.bytes),
+        arguments.out.display(),
+        plan.seed,
+    )
+}

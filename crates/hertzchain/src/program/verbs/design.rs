@@ -1,0 +1,125 @@
+//! `hertzchain design`: what to measure next.
+
+use crate::failure::{Failure, print_assumed, print_kept};
+use crate::folder::Folder;
+use crate::format::{self, digits};
+use crate::print::{self, heading};
+use crate::words::{lines, misfit};
+use hertzchain::arguments::infer::Design as Arguments;
+use hertzchain::design::Designed;
+use hertzchain::{design, inference};
+use hertzchain_infer::{CurveProblem, Expected, titled};
+
+/// Candidates that anybody reads.
+const SHOWN: usize = 15;
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let data = inference::data(&arguments.data, &arguments.measured)?;
+    let speeds = design::speeds(&data, arguments)?;
+    let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
+    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
+    print_kept(&model, &arguments.modelled.set);
+    let problem = inference::problem(model, data, &arguments.freed)?;
+    let targets = design::targets(&problem, arguments)?;
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let pool = inference::pool(arguments.modelled.threads)?;
+    let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
+    let mut all = design::json(&problem, &designed);
+    all["options"] = arguments.words().into();
+    let assumed = inference::assumed_model(&arguments.modelled);
+    all["assumed_model"] = assumed.clone().into();
+    let assumed = lines(assumed.into_iter().collect());
+    match arguments.json {
+        true => print::print_json(&all)?,
+        false => print::print(&(assumed + &text(&problem, &designed)))?,
+    }
+    folder.map_or(Ok(()), |mut folder| {
+        folder.write("design.json", format!("{all:#}\n").as_bytes())?;
+        folder.tables(&design::tables(&designed))?;
+        print::written(&folder.finish()?);
+        Ok(())
+    })
+}
+
+fn text(problem: &CurveProblem, designed: &Designed) -> String {
+    let (candidates, found) = (&designed.candidates, &designed.design);
+    let names = &designed.names;
+    let now = names
+        .iter()
+        .zip(&found.before)
+        .zip(&designed.units)
+        .map(|((name, sd), unit)| {
+            format!("{name} ± {} {unit}", sd_text(*sd))
+                .trim_end()
+                .to_owned()
+        });
+    let now: Vec<String> = now.collect();
+    let mut head = vec!["measure next".to_owned()];
+    let units = names.iter().zip(&designed.units);
+    head.extend(units.map(|(name, unit)| titled(&format!("{name} ±"), unit)));
+    head.push("information (nats)".to_owned());
+    let priced = candidates.iter().any(|candidate| candidate.cost != 1.0);
+    if priced {
+        head.extend(["cost", "information over cost"].map(str::to_owned));
+    }
+    let row = |expected: &Expected| {
+        let name = candidates[expected.candidate].name.clone();
+        let after = expected.after.iter().map(|sd| sd_text(*sd));
+        std::iter::once(name)
+            .chain(after)
+            .chain([digits(expected.gain, 3)])
+            .chain(priced.then(|| digits(candidates[expected.candidate].cost, 3)))
+            .chain(priced.then(|| digits(expected.gain_per_cost, 3)))
+            .collect::<Vec<_>>()
+    };
+    let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
+    let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
+    format!(
+        "{}Now: {}\n{}{}\n{}\n{}\n{}\n{}",
+        unfit(designed),
+        now.join(", "),
+        lines(inference::references(problem.model())),
+        beware(problem, designed),
+        heading("One measurement more, best first"),
+        format::table(&head, &best),
+        heading("A series, each the best after those before it"),
+        format::table(&head, &greedy)
+    )
+}
+
+/// Before all else: a ranking by a model that the data so far do not follow.
+fn unfit(designed: &Designed) -> String {
+    misfit(&designed.goodness).map_or(String::new(), |told| {
+        format!("Beware: {told}; nor is what it ranks worth more.\n\n")
+    })
+}
+
+/// What standard errors of open combinations are worth, and what would close them.
+fn beware(problem: &CurveProblem, designed: &Designed) -> String {
+    let undetermined = &designed.undetermined;
+    if undetermined.is_empty() {
+        return String::new();
+    }
+    let open = undetermined
+        .iter()
+        .map(|words| format!("  Not determined so far: {words}.\n"));
+    let advice = designed.advice.iter();
+    let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
+    let hopeless = designed.hopeless(problem).into_iter();
+    let hopeless = hopeless.map(|told| format!("  {told}.\n"));
+    format!(
+        "Beware: the data so far leave combinations of the parameters open.\n{}{}{}",
+        open.collect::<String>(),
+        hopeless.collect::<String>(),
+        advice.collect::<String>()
+    )
+}
+
+fn sd_text(sd: f64) -> String {
+    match sd.is_finite() {
+        true => digits(sd, 3),
+        false => "not determined".to_owned(),
+    }
+}

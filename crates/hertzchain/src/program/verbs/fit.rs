@@ -1,0 +1,98 @@
+//! `hertzchain fit`: times of flight, or whole pulses, to parameters.
+
+mod pictures;
+mod pulses;
+mod report;
+mod uncertainty;
+
+use crate::failure::{Failure, print_assumed, print_kept};
+use crate::folder::Folder;
+use crate::notes::with_notes;
+use crate::print;
+use crate::words::lines;
+use hertzchain::arguments::infer::{Fit as Arguments, Method};
+use hertzchain::fit::{self, Fitted, Inferred, More};
+use hertzchain::inference;
+use hertzchain_infer::{CurveProblem, Problem, Surrogate};
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let table = match &arguments.data[..] {
+        [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
+        _ => return pulses::run(arguments),
+    };
+    let data = inference::data(table, &arguments.measured)?;
+    let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
+    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
+    print_assumed(&data, &arguments.measured);
+    print_kept(&model, &arguments.modelled.set);
+    let problem = inference::problem(model, data, &arguments.freed)?;
+    pace(&problem, arguments);
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let threads = arguments.modelled.threads;
+    let fitted = with_notes(threads, || fit::fitted(problem, arguments))??;
+    let mut all = fit::json(&fitted, arguments);
+    show(arguments, &mut all, || report::text(&fitted, arguments))?;
+    folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+}
+
+/// Prints a result, and before all else that a model which was not named was assumed.
+fn show(
+    arguments: &Arguments,
+    all: &mut serde_json::Value,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    let assumed = inference::assumed_model(&arguments.modelled);
+    all["assumed_model"] = assumed.clone().into();
+    match arguments.json {
+        true => print::print_json(all),
+        false => print::print(&(lines(assumed.into_iter().collect()) + &text())),
+    }
+}
+
+/// Warns of a posterior that takes its time.
+fn pace(problem: &CurveProblem, arguments: &Arguments) {
+    let count = problem.parameters().len();
+    let most = Surrogate::MOST_PARAMETERS;
+    if arguments.method == Method::Posterior && !arguments.direct && count > most {
+        print::note(&format!(
+            "warning: {count} parameters are free, and curves are interpolated for up to {most}: \
+             every curve of the posterior is computed, a hundred times as slowly; fix some \
+             parameters, or use --method profile"
+        ));
+    }
+}
+
+fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {
+    folder.figure("fit", &pictures::fit(fitted))?;
+    let tables = fit::tables(fitted);
+    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
+    let out = folder.path().to_owned();
+    print::written(&folder.finish()?);
+    fit::finished(&out);
+    Ok(())
+}
+
+/// Files that any fit has.
+fn write_inferred(
+    folder: &mut Folder,
+    fitted: &Inferred,
+    (all, tables): (&serde_json::Value, &[fit::Table]),
+) -> Result<(), Failure> {
+    folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
+    folder.tables(tables)?;
+    folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
+    match &fitted.more {
+        More::Nothing => {}
+        More::Profiles(profiles) => {
+            folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
+        }
+        More::Sampled(sampled) => {
+            folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;
+            if let Ok(posterior) = &sampled.posterior {
+                folder.figure("corner", &uncertainty::corner(fitted, posterior))?;
+            }
+        }
+    }
+    Ok(())
+}

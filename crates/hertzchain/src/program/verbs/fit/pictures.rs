@@ -1,0 +1,154 @@
+//! Figures of a fit.
+
+use super::{Fitted, report::short};
+use hertzchain::fit::Inferred;
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
+use hertzchain_infer::Observable;
+
+/// Looks of observables, in their order.
+const LOOKS: [(Colour, Marker); 4] = [
+    (Colour::BLUE, Marker::Circle),
+    (Colour::VERMILION, Marker::OpenSquare),
+    (Colour::BLUE, Marker::Circle),
+    (Colour::VERMILION, Marker::OpenSquare),
+];
+
+/// Standard errors of the fitted curve that its band spans to either side: 95 %.
+const BAND: f64 = 1.96;
+
+/// Data with the fit and its band; residuals below.
+pub fn fit(fitted: &Fitted) -> Figure {
+    let data = fitted.problem.data();
+    let mut figure = Figure::single_column(130.0).share_x();
+    for times in [true, false] {
+        let shown: Vec<Observable> = Observable::ALL
+            .into_iter()
+            .filter(|of| of.is_time() == times && data.has(*of))
+            .collect();
+        if !shown.is_empty() {
+            figure = figure.panel(curves(fitted, &shown));
+        }
+    }
+    figure.panel(residuals(fitted))
+}
+
+fn scale(of: Observable) -> f64 {
+    if of.is_time() { 1e6 } else { 1.0 }
+}
+
+fn curves(fitted: &Fitted, shown: &[Observable]) -> Chart {
+    let times = shown.iter().any(|of| of.is_time());
+    let label = if times {
+        "Time of flight (µs)"
+    } else {
+        "Ratio of peaks"
+    };
+    let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
+    let chart = if times { chart.y_log() } else { chart };
+    let chart = chart.title(fitted.problem.model().experiment().title());
+    let named = shown.iter().enumerate();
+    named.fold(chart, |chart, (at, of)| {
+        let line = if at == 0 { "fit" } else { "" };
+        with_curve(fitted, chart, *of, line)
+    })
+}
+
+/// Measured points, the fitted line and its 95 % band.
+fn with_curve(fitted: &Fitted, chart: Chart, of: Observable, line: &str) -> Chart {
+    let rows = fitted.problem.data().rows.iter().enumerate();
+    let rows: Vec<_> = rows
+        .filter_map(|(at, row)| Some((at, row, row.value(of)?)))
+        .collect();
+    let unit = scale(of);
+    let column =
+        |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(value).collect() };
+    let speeds = column(&|i| rows[i].1.speed_m_s.value);
+    let predicted = column(&|i| {
+        let of_row = fitted
+            .curve
+            .predicted
+            .get(rows[i].0)
+            .and_then(|row| row[of as usize]);
+        unit * of_row.unwrap_or(f64::NAN)
+    });
+    let spread = column(&|i| unit * BAND * fitted.curve.sd[rows[i].0][of as usize]);
+    let (colour, marker) = LOOKS[of as usize];
+    let edge = |sign: f64| column(&|i| predicted[i] + sign * spread[i]);
+    let points = Series::points(short(of), &speeds, &column(&|i| unit * rows[i].2.value))
+        .y_error(&column(&|i| unit * rows[i].2.sigma))
+        .x_error(&column(&|i| rows[i].1.speed_m_s.sigma));
+    chart
+        .with(Series::band("", &speeds, &edge(-1.0), &edge(1.0)).colour(colour))
+        .with(
+            Series::line(line, &speeds, &predicted)
+                .colour(colour)
+                .dash(Dash::Solid)
+                .width(0.7),
+        )
+        .with(points.colour(colour).marker(marker))
+}
+
+/// Standardised residuals against speed, with the band that the parameters' errors
+/// leave the fit, in the same standard errors.
+fn residuals(fitted: &Fitted) -> Chart {
+    let data = fitted.problem.data();
+    let measured = fitted.problem.measured();
+    let label = "Residual (standard errors)";
+    let chart = Chart::new("Speed of the striker (m/s)", label)
+        .x_log()
+        .h_line(0.0, "");
+    let residuals = measured.into_iter().zip(&fitted.inferred.fit.residuals);
+    let spreads = spreads(fitted);
+    let all: Vec<_> = residuals.zip(&spreads).collect();
+    let sizes = all
+        .iter()
+        .map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
+    let reach = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
+    // Free paper above all points, or one may look like part of the legend.
+    let chart = chart.y_range(-1.1 * reach, LEGEND_ABOVE * reach);
+    Observable::ALL
+        .into_iter()
+        .filter(|of| data.has(*of))
+        .fold(chart, |chart, of| {
+            let own = || all.iter().filter(|(((_, other), _), _)| *other == of);
+            let (speeds, values): (Vec<f64>, Vec<f64>) = own()
+                .map(|(((row, _), residual), _)| (data.rows[*row].speed_m_s.value, **residual))
+                .unzip();
+            let edge = |sign: f64| own().map(|(_, sd)| sign * BAND * **sd).collect::<Vec<_>>();
+            let (colour, marker) = LOOKS[of as usize];
+            let name = format!("95 % of the fit, {}", short(of));
+            let first = Observable::ALL.iter().find(|of| data.has(**of)) == Some(&of);
+            // A second band would hide the first.
+            let chart = match first {
+                true => {
+                    let band = Series::band(&name, &speeds, &edge(-1.0), &edge(1.0));
+                    chart.with(band.colour(colour))
+                }
+                false => [(-1.0, ""), (1.0, &name)]
+                    .iter()
+                    .fold(chart, |chart, (sign, name)| {
+                        let line = Series::line(name, &speeds, &edge(*sign));
+                        chart.with(line.colour(colour).dash(Dash::Dashed).width(0.7))
+                    }),
+            };
+            let points = Series::points("", &speeds, &values);
+            chart.with(points.colour(colour).marker(marker))
+        })
+}
+
+/// Top of the residuals' axis over the largest of them: room for two lines of a legend.
+const LEGEND_ABOVE: f64 = 1.8;
+
+/// Standard errors of the fitted curve in those of each residual.
+fn spreads(fitted: &Fitted) -> Vec<f64> {
+    let Inferred {
+        fit, covariance, ..
+    } = &fitted.inferred;
+    let slopes = |at: usize| {
+        let columns = fit.jacobian.columns.iter();
+        columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))
+    };
+    (0..fit.jacobian.data_rows)
+        .map(|at| covariance.sd_of(&slopes(at).collect::<Vec<f64>>()))
+        .collect()
+}

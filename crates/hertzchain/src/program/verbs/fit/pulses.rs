@@ -1,0 +1,136 @@
+//! Whole pulses of recordings to parameters.
+
+use super::{report, show, write_inferred};
+use crate::failure::{Failure, print_kept};
+use crate::folder::Folder;
+use crate::format::digits;
+use crate::notes::with_notes;
+use crate::print::{self, heading};
+use crate::words::lines;
+use hertzchain::arguments::infer::Fit as Arguments;
+use hertzchain::fit::pulses::{Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown};
+use hertzchain::fit::{finished, tables_of_any};
+use hertzchain::inference;
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
+use hertzchain_infer::Problem;
+use serde_json::Value;
+
+/// Runs the verb on recordings.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let recorded = recorded(arguments)?;
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let threads = arguments.modelled.threads;
+    let fitted = with_notes(threads, || fitted(recorded, arguments))??;
+    print_kept(fitted.problem.model(), &arguments.modelled.set);
+    let mut all = json(&fitted, arguments);
+    show(arguments, &mut all, || text(&fitted, arguments))?;
+    folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+}
+
+/// Everything that is to be said.
+fn text(fitted: &Pulsed, arguments: &Arguments) -> String {
+    let records = fitted.problem.records();
+    let noise = records.iter().flat_map(|record| &record.sigma_v);
+    let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
+    let mut text = format!(
+        "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n{}",
+        heading(fitted.problem.model().experiment().title()),
+        records.len(),
+        fitted.problem.residual_count(),
+        digits(1e3 * noise_v, 2),
+        report::values(&fitted.inferred),
+        lines(inference::references(fitted.problem.model()))
+    );
+    text += &format!(
+        "The model's signals pass the amplifier's filters: {}\n",
+        fitted.filters()
+    );
+    text += &report::described(&fitted.inferred);
+    text += &lines(fitted.unasked(arguments));
+    text += &report::determined(&fitted.inferred, &advice);
+    text += &report::more(&fitted.inferred);
+    text += &report::beware(&fitted.inferred);
+    if !fitted.refused.is_empty() {
+        text += &format!("{} records were left out:\n", fitted.refused.len());
+        let told = fitted.refused.iter().take(TOLD);
+        text += &told.map(|why| format!("  {why}\n")).collect::<String>();
+    }
+    text
+}
+
+/// What pulses do not tell apart.
+fn advice() -> Vec<String> {
+    vec![
+        "shots at other speeds; K and A of the contacts in place of Y, nu and eta; a prior for \
+         what is known, such as --prior wall_gain=1+-0.02"
+            .to_owned(),
+    ]
+}
+
+fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure> {
+    let shown = shown(fitted)?;
+    folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
+    folder.figure("pulses", &picture(&shown))?;
+    let tables = tables_of_any(&fitted.inferred);
+    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
+    let out = folder.path().to_owned();
+    print::written(&folder.finish()?);
+    finished(&out);
+    Ok(())
+}
+
+/// The slowest and the fastest record with the fit, residuals below each.
+fn picture(shown: &[Shown<'_>]) -> Figure {
+    let speed = |one: &&Shown<'_>| one.record.speed_m_s.value;
+    let first = shown.iter().filter(|one| one.channel == 0);
+    let slowest = first.clone().min_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let fastest = first.max_by(|a, b| speed(a).total_cmp(&speed(b)));
+    let mut figure = Figure::single_column(170.0);
+    let one_speed = slowest.map(|s| speed(&s)) == fastest.map(|f| speed(&f));
+    for one in slowest.into_iter().chain(fastest.filter(|_| !one_speed)) {
+        figure = figure.panel(signal(one)).panel(residuals(one));
+    }
+    figure
+}
+
+fn in_us(times: &[f64]) -> Vec<f64> {
+    times.iter().map(|time| 1e6 * time).collect()
+}
+
+/// An empty chart over all of a record's time, so that panels below each other line up.
+fn over_time(shown: &Shown<'_>, label: &str) -> Chart {
+    let times = in_us(&shown.columns[0]);
+    let chart = Chart::new("Time after the passing maximum (µs)", label);
+    match (times.first(), times.last()) {
+        (Some(first), Some(last)) => chart.x_range(*first, *last),
+        _ => chart,
+    }
+}
+
+fn signal(shown: &Shown<'_>) -> Chart {
+    let [times, measured, model] = &shown.columns;
+    let speed = digits(shown.record.speed_m_s.value, 4);
+    over_time(shown, "Signal (V)")
+        .title(&format!("{speed} m/s: {}", shown.record.source))
+        .with(
+            Series::points("measured", &in_us(times), measured)
+                .colour(Colour::BLUE)
+                .marker(Marker::Circle),
+        )
+        .with(Series::line("fit", &in_us(times), model).colour(Colour::VERMILION))
+}
+
+fn residuals(shown: &Shown<'_>) -> Chart {
+    let [times, measured, model] = &shown.columns;
+    let sigma = shown.record.sigma_v[shown.channel];
+    let pairs = measured.iter().zip(model);
+    let residuals: Vec<f64> = pairs.map(|(a, b)| (a - b) / sigma).collect();
+    over_time(shown, "Residual (standard errors)")
+        .h_line(0.0, "")
+        .legend(Legend::Off)
+        .with(
+            Series::points("", &in_us(times), &residuals)
+                .colour(Colour::BLUE)
+                .marker(Marker::Circle),
+        )
+}

@@ -1,0 +1,465 @@
+//! A fit for people.
+
+use crate::format::{self, digits};
+use crate::print::heading;
+use crate::words::{chi_square_text, doubt, estimate, lines, misfit, percent, rough};
+use hertzchain::arguments::infer::Fit as Arguments;
+use hertzchain::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
+use hertzchain::inference::{references, widened};
+use hertzchain_infer::{
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
+};
+
+/// The solver's error may be this share of the least standard error.
+const MOST_SHARE: f64 = 0.1;
+
+/// Everything that is to be said.
+pub fn text(fitted: &Fitted, arguments: &Arguments) -> String {
+    let data = fitted.problem.data();
+    let case = match data.case.as_str() {
+        "" => String::new(),
+        case => format!(", {case}"),
+    };
+    let title = fitted.problem.model().experiment().title();
+    let mut text = format!(
+        "{}\n{}{case}: {} values at {} speeds\n\n{}\n{}",
+        heading(title),
+        data.file,
+        data.value_count(),
+        data.rows.len(),
+        values(&fitted.inferred),
+        lines(references(fitted.problem.model()))
+    );
+    text += &described(&fitted.inferred);
+    text += &accuracy(fitted);
+    text += &lines(fitted.unasked(arguments));
+    text += &widened(data).map_or(String::new(), |told| format!("{told}\n"));
+    let advice = fitted.advice.as_ref();
+    text += &determined(&fitted.inferred, &|| {
+        advice.map_or(Vec::new(), Advice::words)
+    });
+    text += &more(&fitted.inferred);
+    text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
+    text += &beware(&fitted.inferred);
+    let pairs = fitted.several_pairs();
+    text += &pairs.map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    text + &unit(fitted)
+}
+
+/// That speeds seem to be in another unit.
+fn unit(fitted: &Fitted) -> String {
+    fitted.unit_of_speed.map_or(String::new(), |unit| {
+        format!(
+            "Beware: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
+             times of flight at speeds that many times slower\n",
+            fitted.problem.data().file
+        )
+    })
+}
+
+/// Correlations and how well the data are described.
+pub fn described(fitted: &Inferred) -> String {
+    correlations(fitted) + &goodness(&fitted.goodness) + &robust(fitted) + &derivatives(fitted)
+}
+
+/// Which loss was robust, and what it makes of the errors.
+fn robust(fitted: &Inferred) -> String {
+    let loss = fitted.fit.loss;
+    if loss == Loss::Squares {
+        return String::new();
+    }
+    format!(
+        "Robust loss ({}): {} of {} residuals, those beyond {} standard errors, count by their size; \
+         the covariance is {} times that of least squares, but for what priors say\n",
+        loss.name(),
+        fitted.fit.beyond_loss(),
+        fitted.fit.residuals.len(),
+        loss.scale(),
+        digits(fitted.covariance.loss_factor, 3)
+    )
+}
+
+/// How far derivatives by two step sizes agree.
+fn derivatives(fitted: &Inferred) -> String {
+    let worst = fitted.fit.jacobian.worst_disagreement();
+    format!(
+        "Derivatives by two step sizes agree within {}\n",
+        percent(worst)
+    )
+}
+
+/// What is doubtful about the minimum.
+pub fn beware(fitted: &Inferred) -> String {
+    let doubt = doubt(&fitted.fit.ending);
+    let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
+    text += &rough.map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    if let Err(why) = &fitted.limits {
+        text += &format!("No limit of parameters at bounds: {why}\n");
+    }
+    if fitted.fit.starts.len() > 1 {
+        let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
+        text += &format!("{agree} of {all} starts came to this minimum.\n");
+    }
+    text + &other_minima(fitted)
+}
+
+/// Other minima that fit as well: errors hold for one of them.
+fn other_minima(fitted: &Inferred) -> String {
+    let minima = fitted.other_minima();
+    if minima.is_empty() {
+        return String::new();
+    }
+    let line = |(start, count): &(&Started, usize)| {
+        let values = fitted.parameters.iter().zip(&start.point);
+        let values = values.map(|(parameter, value)| {
+            format!(
+                "{} = {} {}",
+                parameter.name,
+                digits(*value, 6),
+                parameter.unit
+            )
+        });
+        format!(
+            "  {} (chi-square higher by {}, {count} starts)\n",
+            values.collect::<Vec<_>>().join(", ").trim_end(),
+            digits(2.0 * (start.cost - fitted.fit.cost), 2)
+        )
+    };
+    let lines: String = minima.iter().map(line).collect();
+    format!(
+        "Beware: other starts came to other values that fit as well. Errors and intervals hold for the one minimum above, \
+         and the data do not say that it is the right one (other data, a prior or bounds may):\n{lines}"
+    )
+}
+
+/// The parameters with their standard errors.
+pub fn values(fitted: &Inferred) -> String {
+    let parameters = fitted.parameters.iter().enumerate();
+    let row = |(at, parameter): (usize, &Parameter)| {
+        let (value, sd) = (fitted.fit.point[at], fitted.standard_error(at));
+        let limit = fitted.limit(at).map(limit).unwrap_or_default();
+        (
+            parameter.name.clone(),
+            estimate(parameter, value, sd) + &limit,
+        )
+    };
+    format::pairs(&parameters.map(row).collect::<Vec<_>>())
+}
+
+/// What the data say of a parameter at its bound.
+fn limit(limit: &Limit) -> String {
+    let end = |end: End| match end {
+        End::At(value) => digits(value, 6),
+        End::Bound(value) => format!("its other bound {}", digits(value, 3)),
+        End::Open(value) => format!("no limit as far as {}", digits(value, 3)),
+        End::ModelFails(value) => {
+            format!("no limit up to {}, where the model fails", digits(value, 3))
+        }
+    };
+    let [narrow, wide] = limit.ends.map(end);
+    format!(
+        ": {} {narrow} (68 %), {wide} (95 %) by profile",
+        limit.side()
+    )
+}
+
+/// Pairs whose correlation is worth a line.
+const TOLD: f64 = 0.5;
+
+/// Most of them that anybody reads.
+const PAIRS: usize = 6;
+
+fn correlations(fitted: &Inferred) -> String {
+    let name = |at: usize| &fitted.parameters[at].name;
+    let count = fitted.parameters.len();
+    let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let known = pairs.filter_map(|(i, j)| Some((i, j, fitted.covariance.correlation(i, j)?)));
+    let mut told: Vec<(usize, usize, f64)> = known.filter(|pair| pair.2.abs() >= TOLD).collect();
+    told.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    let line = |(i, j, value): &(usize, usize, f64)| {
+        let value = digits(*value, 3);
+        format!("Correlation of {} and {}: {value}\n", name(*i), name(*j))
+    };
+    let text: String = told.iter().take(PAIRS).map(line).collect();
+    match told.len().saturating_sub(PAIRS) {
+        0 => text,
+        more => text + &format!("{more} more correlations of {TOLD} and above: in fit.json\n"),
+    }
+}
+
+/// Chi-square, runs and the worst residual.
+fn goodness(goodness: &Goodness) -> String {
+    if goodness.chi_square.is_none() {
+        return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
+    }
+    let mut text = chi_square_text(goodness);
+    text += &goodness.runs.map_or(String::new(), runs_text);
+    if let Some(found) = &goodness.largest {
+        text += &format!(
+            "Largest residual: {} σ ({})\n",
+            digits(found.sigmas, 2),
+            found.label
+        );
+    }
+    text
+}
+
+/// Runs of equal sign, by the tail on whose side they are: too many are as odd as too few.
+fn runs_text(runs: Runs) -> String {
+    let (how, share) = match (runs.count as f64) <= runs.expected {
+        true => ("as few or fewer", runs.probability_fewer),
+        false => ("as many or more", runs.probability_more),
+    };
+    let odd = match (share < ODD, (runs.count as f64) <= runs.expected) {
+        (false, _) => "",
+        (true, true) => "; neighbouring residuals go together, as where the curve's shape is wrong",
+        (true, false) => {
+            "; residuals change sign oddly often, as where neighbouring data are not independent"
+        }
+    };
+    format!(
+        "{} runs of equal sign, {} expected: {how} in {} of repetitions{odd}\n",
+        runs.count,
+        digits(runs.expected, 3),
+        percent(share)
+    )
+}
+
+/// Share of repetitions in one tail below which the number of runs is odd: five percent of
+/// both tails.
+const ODD: f64 = 0.025;
+
+/// The model's own error against the data's.
+fn accuracy(fitted: &Fitted) -> String {
+    let rows = fitted.problem.data().rows.iter();
+    let times = rows.flat_map(|row| row.values.iter().take(2).flatten());
+    let relative = times.map(|time| time.sigma / time.value);
+    let least = relative.fold(f64::INFINITY, f64::min);
+    if !least.is_finite() {
+        return String::new();
+    }
+    let share = fitted.accuracy / least;
+    let told = format!(
+        "The model's times of flight are right to {:.0e}, {} of the least standard error",
+        fitted.accuracy,
+        percent(share)
+    );
+    match share > MOST_SHARE {
+        true => format!("{told}: ask for more by --accuracy\n"),
+        false => format!("{told}\n"),
+    }
+}
+
+/// What the data determine and what not, and what would help.
+pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
+    let found = &fitted.identifiability;
+    if !fitted.fit.ending.converged() {
+        return "The fit found no minimum: what the data determine is not known where it ended.\n"
+            .to_owned();
+    }
+    let (known, all) = (found.determined(), found.singular_values.len());
+    if known == all && fitted.goodness.is_rejected() {
+        return String::new();
+    }
+    if known == all {
+        return match all {
+            1 => "The data determine it.\n".to_owned(),
+            _ => format!("The data determine all {all} combinations of the parameters.\n"),
+        };
+    }
+    let mut text =
+        format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
+    for confusion in &found.confused {
+        text += &format!("  Not determined: {}.\n", confusion.words);
+    }
+    for advice in advice() {
+        text += &format!("  What would help: {advice}.\n");
+    }
+    text
+}
+
+/// Intervals of profiles or of a posterior.
+pub fn more(fitted: &Inferred) -> String {
+    match &fitted.more {
+        More::Nothing => String::new(),
+        More::Profiles(profiles) => intervals_of_profiles(fitted, profiles),
+        More::Sampled(sampled) => sampled_text(fitted, sampled),
+    }
+}
+
+fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
+    let end = |end: End| match end {
+        End::At(value) => digits(value, 6),
+        End::Bound(value) => format!("{} (its bound)", digits(value, 4)),
+        End::Open(value) => format!("beyond {}", digits(value, 4)),
+        End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
+    };
+    let row = |profile: &Profile| {
+        let name = fitted.parameters[profile.parameter].title();
+        let ends = profile
+            .intervals
+            .iter()
+            .map(|interval| format!("{} to {}", end(interval.lower), end(interval.upper)));
+        std::iter::once(name).chain(ends).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = profiles.iter().map(row).collect();
+    let head = ["by profile", "68 %", "95 %"].map(str::to_owned);
+    format!("\n{}", format::table(&head, &rows))
+}
+
+fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
+    let text = format!(
+        "curves interpolated, right to {} standard errors",
+        digits(error, 2)
+    );
+    let speeds: Vec<String> = computed_m_s.iter().map(|speed| digits(*speed, 3)).collect();
+    match speeds.is_empty() {
+        true => text,
+        false => format!(
+            "{text}, but computed at {} m/s, where pulses jump",
+            speeds.join(", ")
+        ),
+    }
+}
+
+fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
+    let chain = &sampled.chain;
+    let how = match &sampled.curves {
+        Curves::Computed(None) => "every curve computed".to_owned(),
+        Curves::Computed(Some(why)) => format!("every curve computed, as {why}"),
+        Curves::Interpolated(error, speeds_m_s) => interpolated(*error, speeds_m_s),
+    };
+    let mut text = format!(
+        "\nPosterior: {} walkers, {} steps, {} of proposals taken; {how}\n",
+        chain.walkers(),
+        chain.steps(),
+        percent(chain.acceptance())
+    );
+    let posterior = match &sampled.posterior {
+        Err(unconverged) => {
+            return text + &format!("No quantiles: {unconverged} (--steps, --resume).\n");
+        }
+        Ok(posterior) => posterior,
+    };
+    let interval = |at: usize, share: f64| {
+        let [lower, upper] = posterior.interval(at, share);
+        format!("{} to {}", digits(lower, 6), digits(upper, 6))
+    };
+    let row = |(at, parameter): (usize, &Parameter)| {
+        let found = &posterior.diagnoses[at];
+        vec![
+            parameter.title(),
+            digits(posterior.quantile(at, 0.5), 6),
+            interval(at, 0.682_689_5),
+            interval(at, 0.95),
+            digits(found.time.time, 3),
+            format!("{:.3}", found.r_hat),
+            digits(found.effective, 3),
+        ]
+    };
+    let rows: Vec<Vec<String>> = fitted.parameters.iter().enumerate().map(row).collect();
+    let head = [
+        "posterior",
+        "median",
+        "68 %",
+        "95 %",
+        "steps correlated",
+        "R-hat",
+        "effective samples",
+    ];
+    text += &format::table(&head.map(str::to_owned), &rows);
+    text
+}
+
+/// Models of the same data.
+fn rivals(rivals: &Rivals) -> String {
+    let lost = rivals.lost.iter().map(|lost| {
+        format!(
+            "{} is far from the data: chi-square {} where it ended ({})\n",
+            lost.name,
+            digits(lost.chi_square, 4),
+            lost.why
+        )
+    });
+    let lost: String = lost.collect();
+    let compared = rivals.comparison.as_ref();
+    compared.map_or(String::new(), |found| compared_text(rivals, found)) + &lost
+}
+
+fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
+    let row = |&at: &usize| {
+        let (rival, criteria) = (&rivals.all[at], &comparison.criteria[at]);
+        vec![
+            rival.name.clone(),
+            criteria.parameters.to_string(),
+            digits(rival.fit.chi_square(), 5),
+            (criteria.chi_square).map_or("–".to_owned(), |found| found.freedom.to_string()),
+            (criteria.chi_square).map_or("–".to_owned(), |found| percent(found.probability)),
+            digits(comparison.aicc_above_best[at], 4),
+            digits(criteria.bic, 6),
+            (rival.foretells.as_ref()).map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
+        ]
+    };
+    let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
+    let head = [
+        "model",
+        "free",
+        "chi-square",
+        "degrees of freedom",
+        "p",
+        "AICc above best",
+        "BIC",
+        "cross-validated score",
+    ];
+    let table = format::table(&head.map(str::to_owned), &rows);
+    let without = rivals.all.iter().filter(|rival| !rival.without.is_empty());
+    let without = without.map(|rival| {
+        let settings = rival.without.join(", ");
+        format!(
+            "{} has no such number: --set {settings} is left out there\n",
+            rival.name
+        )
+    });
+    let without: String = without.collect();
+    let kept = rivals.all.iter().flat_map(|rival| {
+        let told = |kept: &String| format!("{}: {kept}\n", rival.name);
+        rival.kept.iter().map(told).collect::<Vec<_>>()
+    });
+    let kept: String = kept.collect();
+    format!("\n{table}{}\n{without}{kept}", comparison.sentence)
+}
+
+/// What observables are called where space is short.
+pub fn short(of: Observable) -> &'static str {
+    match of {
+        Observable::Incident => "incident",
+        Observable::Reflected => "reflected",
+        Observable::WallOverPassing => "wall/passing",
+        Observable::ReturningOverPassing => "returning/passing",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_too_many_runs_are_told_as_well_as_far_too_few() {
+        let told = |residuals: &[f64]| hertzchain_infer::runs(residuals).map(runs_text);
+        let alternating: Vec<f64> = (0..20).map(|at| f64::from(1 - 2 * (at % 2))).collect();
+        let many = told(&alternating).unwrap_or_default();
+        assert!(
+            many.contains("20 runs of equal sign, 11 expected: as many or more in"),
+            "{many}"
+        );
+        assert!(many.contains("oddly often"), "{many}");
+        let (above, below) = ([1.0; 10], [-1.0; 10]);
+        let few = told(&[above, below].concat()).unwrap_or_default();
+        assert!(few.contains("as few or fewer in"), "{few}");
+        assert!(few.contains("go together"), "{few}");
+        let usual = told(&[1.0, 1.0, -1.0, 1.0, -1.0, -1.0]).unwrap_or_default();
+        assert!(usual.ends_with("of repetitions\n"), "{usual}");
+    }
+}

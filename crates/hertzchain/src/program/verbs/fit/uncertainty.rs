@@ -1,0 +1,69 @@
+//! Figures of uncertainty: profiles, samples, and what the data determine.
+
+use hertzchain::fit::Inferred;
+use hertzchain_figures::Figure;
+use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
+use hertzchain_infer::{Parameter, Posterior, Profile, RISE_OF_95_PERCENT};
+
+/// Parameters as axes say them.
+fn labels(fitted: &Inferred) -> Vec<String> {
+    let label = |parameter: &Parameter| match parameter.unit.as_str() {
+        "" => parameter.name.clone(),
+        unit => format!("{} ({})", parameter.name, in_markup(unit)),
+    };
+    fitted.parameters.iter().map(label).collect()
+}
+
+/// A unit with its powers raised: `N/m^(3/2)` as a figure shows it.
+fn in_markup(unit: &str) -> String {
+    let mut parts = unit.split('^');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        let (power, rest) = match part.strip_prefix('(').and_then(|part| part.split_once(')')) {
+            Some(parts) => parts,
+            None => part.split_at(part.find([' ', '/']).unwrap_or(part.len())),
+        };
+        format!("{text}$^{{{power}}}${rest}")
+    })
+}
+
+/// Rise of chi-square along each parameter, beside the parabola that the
+/// covariance stands for.
+pub fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
+    let labels = labels(fitted);
+    let curves: Vec<ProfileCurve> = (profiles.iter())
+        .map(|profile| ProfileCurve {
+            label: &labels[profile.parameter],
+            values: &profile.values,
+            rise: &profile.rise,
+            best: fitted.fit.point[profile.parameter],
+            standard_error: Some(fitted.covariance.sd[profile.parameter]),
+            levels: &[(1.0, "68 %"), (RISE_OF_95_PERCENT, "95 %")],
+        })
+        .collect();
+    profile_figure(&curves)
+}
+
+/// The posterior of each parameter and pair, beside the covariance's.
+pub fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
+    Corner {
+        labels: &labels(fitted),
+        samples: &posterior.samples,
+        marks: &fitted.fit.point,
+        covariance: &fitted.covariance.matrix,
+    }
+    .figure()
+}
+
+/// Singular values of the Jacobian, each parameter in units of its scale.
+pub fn singular_values(fitted: &Inferred) -> Figure {
+    let found = &fitted.identifiability;
+    let names = fitted.parameters.iter().map(|p| p.name.clone());
+    SingularValues {
+        names: &names.collect::<Vec<String>>(),
+        values: &found.singular_values,
+        directions: &found.directions,
+        floor: found.floor,
+    }
+    .figure()
+}

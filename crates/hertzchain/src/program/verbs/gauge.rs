@@ -1,0 +1,65 @@
+//! `hertzchain gauge`: which oil is on the contacts.
+
+mod pictures;
+mod report;
+
+use crate::failure::{Failure, print_assumed};
+use crate::folder::Folder;
+use crate::print;
+use crate::words::lines;
+use hertzchain::arguments::infer::Gauge as Arguments;
+use hertzchain::gauge::{self, Gauged};
+use hertzchain::inference;
+use hertzchain_infer::gauge::Chains;
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let wet = gauge::data(
+        &arguments.wet,
+        &arguments.measured,
+        arguments.wet_case.as_deref(),
+    )?;
+    let dry = gauge::data(
+        &arguments.dry,
+        &arguments.measured,
+        arguments.dry_case.as_deref(),
+    )?;
+    for data in [&wet, &dry] {
+        print_assumed(data, &arguments.measured);
+    }
+    let oils = gauge::all_oils(arguments.oils.as_deref())?;
+    let [wet_model, dry_model] = gauge::models(arguments, [&wet.case, &dry.case])?;
+    let assumed = gauge::assumed_models(
+        arguments.model.is_some() || arguments.preset.is_some(),
+        arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
+    );
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let pool = inference::pool(arguments.threads)?;
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &arguments.dry_free,
+        own: &arguments.own,
+        accuracy: arguments.accuracy,
+    };
+    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
+    let mut all = gauge::json(&gauged);
+    all["options"] = arguments.words().into();
+    all["assumed_model"] = assumed.clone().into();
+    let assumed = lines(assumed.into_iter().collect());
+    match arguments.json {
+        true => print::print_json(&all)?,
+        false => print::print(&(assumed + &report::text(&gauged)))?,
+    }
+    folder.map_or(Ok(()), |folder| write(folder, &gauged, &all))
+}
+
+fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result<(), Failure> {
+    folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
+    folder.tables(&gauge::tables(gauged))?;
+    if gauged.form.is_some() || gauged.rows.iter().any(|row| row.told.is_ok()) {
+        folder.figure("contacts", &pictures::contacts(gauged))?;
+    }
+    print::written(&folder.finish()?);
+    Ok(())
+}

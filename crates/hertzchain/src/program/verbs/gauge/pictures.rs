@@ -1,0 +1,132 @@
+//! K and A of the wet contacts against speed, beside those of known oils.
+
+use hertzchain::gauge::Gauged;
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
+use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_told};
+
+/// Standard errors that the band of power laws spans to either side: 95 %.
+const BAND: f64 = 1.96;
+
+/// Speeds at which an oil's curve is drawn.
+const POINTS: usize = 60;
+
+/// Both numbers, one panel each.
+pub fn contacts(gauged: &Gauged) -> Figure {
+    match tells_both(gauged) {
+        true => Figure::single_column(120.0)
+            .share_x()
+            .panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9))
+            .panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
+        false => Figure::single_column(70.0).panel(panel(
+            gauged,
+            0,
+            "$K$ if $A$ is as dry (GN/m$^{3/2}$)",
+            1e-9,
+        )),
+    }
+}
+
+/// Whether any row tells K and A apart, or a form that is stated does. If nothing does, an oil's K is another
+/// quantity than what was measured.
+fn tells_both(gauged: &Gauged) -> bool {
+    let both = |contact: &Contact| contact.combination.is_none();
+    let mut told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
+    gauged.form.is_some() || told.any(both)
+}
+
+fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
+    let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
+    let chart = match of {
+        // K changes by some percent, A tenfold; one legend does for both.
+        0 => chart,
+        _ => chart.y_log().legend(Legend::Off),
+    };
+    let shown = if tells_both(gauged) {
+        gauged.oils.len()
+    } else {
+        0
+    };
+    let oils = gauged.oils.iter().take(shown).enumerate();
+    let chart = oils.fold(chart, |chart, (at, oil)| {
+        chart.with(curve(gauged, (at, oil), of, unit))
+    });
+    let chart = gauged.form.iter().fold(chart, |chart, form| {
+        let [low, high] = [-BAND, BAND].map(|sign| law(gauged, form, of, unit, sign));
+        let middle = law(gauged, form, of, unit, 0.0);
+        let speeds = speeds(gauged);
+        let line = Series::line("power laws", &speeds, &middle).colour(Colour::BLACK);
+        chart
+            .with(Series::band("", &speeds, &low, &high).colour(Colour::BLACK))
+            .with(line)
+    });
+    let known = gauged.rows.iter().filter_map(|row| {
+        let contact = row.told.as_ref().ok()?;
+        if contact.branch == Branch::Unknown {
+            return None;
+        }
+        // A combination's K is not that of a law.
+        if gauged.form.is_some() && contact.combination.is_some() {
+            return None;
+        }
+        let (value, sd) = contact.first.estimates()[of];
+        is_told(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
+    });
+    let known: Vec<(f64, f64, f64)> = known.collect();
+    let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
+    let name = if known.is_empty() { "" } else { "measured" };
+    let points = Series::points(name, &column(|p| p.0), &column(|p| p.1))
+        .y_error(&column(|p| p.2))
+        .marker(Marker::Circle)
+        .colour(Colour::BLACK);
+    let others = gauged.rows.iter().filter_map(|row| {
+        let contact = row.told.as_ref().ok()?;
+        let others = match contact.branch {
+            Branch::Unknown => contact.pairs(),
+            _ => contact.others.iter().collect(),
+        };
+        let value = move |pair: &Pair| (row.speed_m_s, unit * pair.ln[of].exp());
+        Some(others.into_iter().map(value))
+    });
+    let (speeds, values): (Vec<f64>, Vec<f64>) = others.flatten().unzip();
+    match values.is_empty() {
+        true => chart.with(points),
+        false => {
+            let others =
+                Series::points("other pairs as good", &speeds, &values).marker(Marker::OpenCircle);
+            chart.with(others.colour(Colour::BLACK)).with(points)
+        }
+    }
+}
+
+/// Speeds in m/s at which lines are drawn.
+fn speeds(gauged: &Gauged) -> Vec<f64> {
+    let speeds = gauged.gauge.wet().speeds_m_s();
+    let first = speeds.first().copied().unwrap_or(0.1);
+    let last = speeds.last().copied().unwrap_or(1.0);
+    let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
+    (0..POINTS).map(speed).collect()
+}
+
+/// A power law of the whole curve, moved by so many of its standard errors.
+fn law(gauged: &Gauged, form: &PowerForm, of: usize, unit: f64, sds: f64) -> Vec<f64> {
+    let value = |speed: f64| {
+        let at = form.at(speed);
+        unit * (at.ln[of] + sds * at.ln_sd[of]).exp()
+    };
+    speeds(gauged).into_iter().map(value).collect()
+}
+
+/// What an oil would give.
+fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
+    let speeds = speeds(gauged);
+    let value = |speed: &f64| {
+        let (k, a) = oil.contact(gauged.gauge.wet_radius_m(), *speed);
+        unit * [k, a][of]
+    };
+    let values: Vec<f64> = speeds.iter().map(value).collect();
+    let colour = Colour::PALETTE[number % Colour::PALETTE.len()];
+    let dashes = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted];
+    Series::line(&oil.name, &speeds, &values)
+        .colour(colour)
+        .dash(dashes[number % dashes.len()])
+}

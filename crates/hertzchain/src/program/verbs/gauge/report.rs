@@ -1,0 +1,270 @@
+//! What the gauge says, for people and for programs.
+
+use crate::format::{self, digits, with_error};
+use crate::print::heading;
+use crate::words::{chi_square_of, chi_square_text, estimate, lines, misfit, percent};
+use hertzchain::gauge::Gauged;
+use hertzchain::inference::references;
+use hertzchain_infer::Problem;
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_told};
+
+/// Everything that is to be said.
+pub fn text(gauged: &Gauged) -> String {
+    let doubts = doubts(gauged);
+    let mut text = doubts.clone();
+    let (dry_model, wet_model) = (gauged.gauge.dry().model(), gauged.gauge.wet_model());
+    text += &format!(
+        "{}\n{}{}\n",
+        heading("Dry contacts"),
+        dry(gauged),
+        lines(references(dry_model))
+    );
+    text += &format!(
+        "{}\n{}{}",
+        heading("Wet contacts"),
+        contacts(gauged),
+        lines(references(wet_model))
+    );
+    if let Some(laws) = &gauged.laws {
+        text += &law("K", "N/m^1.5", &laws.stiffness);
+        text += &law("A", "s", &laws.relaxation);
+    }
+    text += &gauged
+        .form
+        .as_ref()
+        .map_or(String::new(), |form| by_form(gauged, form));
+    if let Some(add) = gauged.to_add() {
+        text += &format!(
+            "One number a speed determines one combination of K and A. To tell both, {add}.\n"
+        );
+    }
+    text += &held_numbers(gauged);
+    text += &gauged
+        .gauge
+        .ambiguous(&gauged.rows)
+        .map_or(String::new(), |why| format!("{why}\n"));
+    let by_laws = gauged.form.as_ref().is_some_and(PowerForm::is_sound);
+    let known = match by_laws {
+        false => "Known oils",
+        true => "Known oils, by the power laws that each would give",
+    };
+    text += &format!("\n{}\n{}", heading(known), matches(gauged));
+    for (oil, why) in &gauged.verdict.failed {
+        text += &format!("{oil} can't be computed: {why}\n");
+    }
+    text += &format!("{}\n", gauged.verdict.sentence());
+    // Tables may be longer than a screen: who sees the verdict alone is told, too.
+    match doubts.is_empty() {
+        true => text,
+        false => text + "Beware: what the first lines say speaks against believing this.\n",
+    }
+}
+
+/// Before all else: what speaks against believing what is below.
+fn doubts(gauged: &Gauged) -> String {
+    let dry = misfit(&gauged.gauge.dry_goodness())
+        .map(|told| format!("of the dry curve, on which all below rests, {told}."));
+    let all = dry.into_iter().chain(gauged.doubts());
+    let lines: String = all.map(|doubt| format!("Beware: {doubt}\n")).collect();
+    match lines.is_empty() {
+        true => lines,
+        false => lines + "\n",
+    }
+}
+
+fn dry(gauged: &Gauged) -> String {
+    let gauge = &gauged.gauge;
+    let parameters = gauge.dry().parameters().iter().enumerate();
+    let rows = parameters.map(|(at, parameter)| {
+        let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
+        (parameter.name.clone(), estimate(parameter, value, sd))
+    });
+    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square_text(&gauge.dry_goodness())
+}
+
+/// K in GN/m^1.5 and A in ns, with their errors.
+fn shown(pair: &Pair) -> [String; 2] {
+    let [(k, k_sd), (a, a_sd)] = pair.estimates();
+    [told(1e-9 * k, 1e-9 * k_sd), told(1e9 * a, 1e9 * a_sd)]
+}
+
+/// A positive number with its error, if it is known.
+fn told(value: f64, sd: f64) -> String {
+    if !is_told(value, sd) {
+        return "not determined".to_owned();
+    }
+    let (value, sd) = with_error(value, sd);
+    format!("{value} ± {sd}")
+}
+
+/// A line for each pair that a row allows.
+fn pairs(contact: &Contact) -> Vec<[String; 3]> {
+    let line = |pair: &Pair, words: &str| {
+        let [k, a] = shown(pair);
+        [k, a, words.to_owned()]
+    };
+    if let Some(combination) = &contact.combination {
+        let words = format!(
+            "K·(A/{} ns)^{}",
+            digits(1e9 * combination.reference_s, 4),
+            digits(combination.exponent, 3)
+        );
+        let [k, _] = shown(&contact.first);
+        return vec![[k, "–".to_owned(), words]];
+    }
+    // None before the others, where nothing tells which.
+    let (all, first) = match contact.is_known() {
+        true => (
+            std::iter::once(&contact.first)
+                .chain(&contact.others)
+                .collect(),
+            "",
+        ),
+        false => (contact.pairs(), "either"),
+    };
+    let words = std::iter::once(first).chain(std::iter::repeat("or"));
+    all.into_iter()
+        .zip(words)
+        .map(|(pair, words)| line(pair, words))
+        .collect()
+}
+
+fn contacts(gauged: &Gauged) -> String {
+    let lines = |row: &WetRow| -> Vec<Vec<String>> {
+        let speed = digits(row.speed_m_s, 4);
+        let lines = match &row.told {
+            Ok(contact) => pairs(contact),
+            Err(why) => vec![["–".to_owned(), "–".to_owned(), why.clone()]],
+        };
+        let speeds = std::iter::once(speed).chain(std::iter::repeat(String::new()));
+        let whole = speeds.zip(lines);
+        whole
+            .map(|(speed, line)| std::iter::once(speed).chain(line).collect())
+            .collect()
+    };
+    let rows: Vec<Vec<String>> = gauged.rows.iter().flat_map(lines).collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
+    let few = rows.iter().all(|row| row[3].is_empty());
+    let shown = if few { 3 } else { 4 };
+    let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
+    let rows: Vec<Vec<String>> = rows.iter().map(cut).collect();
+    format::table(&cut(&head.map(str::to_owned).to_vec()), &rows)
+}
+
+/// Reduced chi-square from which values are said to follow no power law.
+const NO_LAW: f64 = 2.0;
+
+fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
+    let prefactor = law.law.prefactor;
+    let relative = percent(law.ln_prefactor_sd);
+    let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
+    let fits = match law.reduced_chi_square > NO_LAW {
+        true => format!(
+            "; the values do not follow it (reduced chi-square {})",
+            digits(law.reduced_chi_square, 2)
+        ),
+        false => String::new(),
+    };
+    format!(
+        "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
+        digits(prefactor, 4)
+    )
+}
+
+/// Power laws of the whole curve, and what they give at its speeds.
+fn by_form(gauged: &Gauged, form: &PowerForm) -> String {
+    let sd = form.sd();
+    let law = |name: &str, unit: &str, at: usize| {
+        let prefactor = digits(form.values[at].exp(), 4);
+        let relative = match sd[at].is_finite() {
+            true => percent(sd[at]),
+            false => "not determined".to_owned(),
+        };
+        let (exponent, error) = with_error(form.values[at + 1], sd[at + 1]);
+        format!("{name} = {prefactor} {unit} (± {relative}) · v^({exponent} ± {error})\n")
+    };
+    let row = |speed: f64| {
+        let at = form.at(speed);
+        let both = |of: usize, unit: f64| {
+            let value = unit * at.ln[of].exp();
+            told(value, value * at.ln_sd[of])
+        };
+        vec![digits(speed, 4), both(0, 1e-9), both(1, 1e9)]
+    };
+    let rows: Vec<Vec<String>> = gauged
+        .gauge
+        .wet()
+        .speeds_m_s()
+        .into_iter()
+        .map(row)
+        .collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
+    let open = form
+        .undetermined
+        .iter()
+        .map(|words| format!("  Not determined: {words}.\n"));
+    format!(
+        "\n{}\n{}{}{}{}{}",
+        heading("Wet contacts as power laws of speed, fitted to both curves"),
+        law("K", "N/m^1.5", 0),
+        law("A", "s", 2),
+        form.chi_square.map_or(String::new(), chi_square_of),
+        open.collect::<String>(),
+        format::table(&head, &rows)
+    )
+}
+
+/// What K and A take for granted.
+fn held_numbers(gauged: &Gauged) -> String {
+    let own = gauged.gauge.wet_own(&[]);
+    let each = own.iter().map(|parameter| {
+        format!(
+            "{} = {} {}",
+            parameter.name,
+            digits(parameter.start, 4),
+            parameter.unit
+        )
+    });
+    let each: Vec<String> = each.collect();
+    match each.is_empty() {
+        true => String::new(),
+        false => format!(
+            "K and A hold for {}, as the wet model has it; their errors know of no other. The oils below are \
+             each taken at their best.\n",
+            each.join(", ")
+        ),
+    }
+}
+
+/// How often chance alone gives as much; what is never is not told to its digits.
+fn by_chance(probability: f64) -> String {
+    match probability < NEVER {
+        true => format!("below {:.0e} %", 100.0 * NEVER),
+        false => percent(probability),
+    }
+}
+
+fn matches(gauged: &Gauged) -> String {
+    let own = gauged.gauge.wet_own(&[]);
+    let rows = gauged.verdict.matches.iter().map(|found| {
+        let mut row = vec![
+            found.oil.clone(),
+            digits(found.distance, 3),
+            by_chance(found.chi_square.probability),
+            if found.fits() { "possible" } else { "rejected" }.to_owned(),
+        ];
+        // One column a number that is the same at all speeds.
+        let found = found.own.iter().take(own.len());
+        row.extend(found.map(|own| estimate(&own.parameter, own.value, own.standard_error)));
+        row
+    });
+    let head = [
+        "oil",
+        "distance (standard errors)",
+        "as far by chance",
+        "verdict",
+    ];
+    let mut head: Vec<String> = head.map(str::to_owned).to_vec();
+    head.extend(own.iter().map(|parameter| parameter.name.clone()));
+    format::table(&head, &rows.collect::<Vec<_>>())
+}

@@ -1,0 +1,65 @@
+//! `hertzchain laws`: every contact law, from the registry.
+
+use crate::arguments::Laws;
+use crate::failure::Failure;
+use crate::{format, print};
+use hertzchain::bibliography::Work;
+use hertzchain::laws::{self, nature};
+use hertzchain_chain::laws::{LawInfo, Parameter, Source};
+
+/// Runs the verb.
+pub fn run(arguments: &Laws) -> Result<(), Failure> {
+    let infos = laws::infos(arguments.name.as_deref())?;
+    if arguments.json {
+        return print::print_json(&laws::json(&infos));
+    }
+    let texts: Vec<String> = infos.iter().map(|info| as_text(info)).collect();
+    print::print(texts.join("\n").trim_end())
+}
+
+fn as_text(info: &LawInfo) -> String {
+    let gate = if info.gated {
+        "while the contact is closed"
+    } else {
+        "always, also across gaps"
+    };
+    let mut rows = vec![
+        ("equation".to_owned(), info.equation.to_owned()),
+        ("kind".to_owned(), nature(info).to_owned()),
+        ("acts".to_owned(), gate.to_owned()),
+        ("validity".to_owned(), info.validity.to_owned()),
+        ("source".to_owned(), source(info)),
+    ];
+    rows.extend(
+        info.parameters
+            .iter()
+            .map(|p| (p.name.to_owned(), parameter(p))),
+    );
+    format!("{}\n{}", print::heading(info.name), format::pairs(&rows))
+}
+
+/// The work that a law is from, and its key in the bibliography.
+fn source(info: &LawInfo) -> String {
+    let key = format!("[{}]", info.reference);
+    match Work::of_key(info.reference) {
+        Some(work) => format!("{} {key}", work.lines().join("\n")),
+        None => key,
+    }
+}
+
+fn default(parameter: &Parameter) -> String {
+    match parameter.source {
+        Source::Required => "required".to_owned(),
+        Source::Materials => "default: from the materials".to_owned(),
+        Source::Hertz => "default: the section's elastic_hertz, else the materials".to_owned(),
+        Source::Default(value) => format!("default: {value}"),
+    }
+}
+
+fn parameter(parameter: &Parameter) -> String {
+    let unit = match parameter.unit {
+        "1" => "plain number",
+        unit => unit,
+    };
+    format!("{} [{unit}]; {}", parameter.meaning, default(parameter))
+}

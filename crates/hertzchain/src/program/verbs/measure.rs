@@ -1,0 +1,125 @@
+//! `hertzchain measure`: records of a rig to times of flight.
+
+mod pictures;
+mod summary;
+
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::print;
+use hertzchain::arguments::measure::Measure as Arguments;
+use hertzchain::measure;
+use hertzchain_measure::signal::Bandwidth;
+use hertzchain_measure::{
+    Curves, Measurement, Note, Options, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let files = measure::files(&arguments.records, arguments.shots.as_deref())?;
+    let options = measure::options(arguments)?;
+    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let bar = bar();
+    let measured = hertzchain_measure::measure(&files, &options, &bar);
+    bar.0.finish_and_clear();
+    measure::suits(&measured)?;
+    let grouping = measure::grouping(arguments);
+    let curves = Curves::of(&measured.shots, &grouping);
+    tell(&measured);
+    note_low_pass(&measured, &options, arguments.picking.low_pass);
+    match arguments.json {
+        true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
+        false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
+    }
+    if let Some(folder) = folder {
+        write(folder, &measured, (&curves, &grouping.reference))?;
+    }
+    measure::judge(&measured)
+}
+
+/// Drawn on a terminal only.
+struct Bar(ProgressBar);
+
+impl Watch for Bar {
+    fn seen(&self) {
+        self.0.inc(1);
+    }
+}
+
+fn bar() -> Bar {
+    let bar = ProgressBar::no_length();
+    let style = ProgressStyle::with_template("{spinner} {pos} records, {per_sec}");
+    style.into_iter().for_each(|style| bar.set_style(style));
+    Bar(bar)
+}
+
+/// Most lines about the table of shots, which may be of other recordings.
+const MOST_LINES: usize = 20;
+
+/// What is to be known of records beside their times.
+fn tell(measured: &Measurement) {
+    for refused in &measured.refused {
+        print::note(&format!("refused: {refused}"));
+    }
+    for line in measured.unmatched.iter().take(MOST_LINES) {
+        print::note(&format!("--shots: {line}"));
+    }
+    if let more @ 1.. = measured.unmatched.len().saturating_sub(MOST_LINES) {
+        print::note(&format!(
+            "--shots: … and {more} more; measured.json has all"
+        ));
+    }
+    for Note { text, files } in &measured.notes {
+        let first = files.first().map(|file| file.display().to_string());
+        let more = match files.len() {
+            0 | 1 => String::new(),
+            files => format!(" and {} more", files - 1),
+        };
+        print::note(&format!(
+            "note: {}{more}: {text}",
+            first.unwrap_or_default()
+        ));
+    }
+}
+
+/// Notes whether maxima are those before the amplifier's low-pass, unless the user left it as it is
+/// by a corner of 0, or notes on files that state it say so.
+fn note_low_pass(measured: &Measurement, options: &Options, asked_hz: Option<f64>) {
+    match (options.measuring.bandwidth, asked_hz) {
+        (Some(Bandwidth { corner_hz, order }), _) => print::note(&format!(
+            "note: maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
+        )),
+        (None, None) if measured.bandwidth.is_none() => print::note(
+            "note: times are not corrected for the amplifier's low-pass: its corner is not stated \
+             (--low-pass, --rig)",
+        ),
+        _ => {}
+    }
+}
+
+fn write(
+    mut folder: Folder,
+    measured: &Measurement,
+    (curves, reference): (&Curves, &str),
+) -> Result<(), Failure> {
+    folder.write_with("shots.csv", |out| write_shots(&measured.shots, out))?;
+    folder.write_with("measured.json", |out| {
+        measure::write_json(measured, curves, out)
+    })?;
+    if let Some(figure) = pictures::signals(&measured.examples) {
+        folder.figure("signals", &figure)?;
+    }
+    if !(curves.cases.is_empty() && curves.lost.is_empty()) {
+        folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
+    }
+    if !curves.cases.is_empty() {
+        folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
+        folder.figure("times-of-flight", &pictures::times(curves))?;
+    }
+    if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {
+        folder.write("ratios.csv", ratios_csv(curves).as_bytes())?;
+        folder.figure("ratios", &pictures::ratios(curves, reference))?;
+    }
+    print::written(&folder.finish()?);
+    Ok(())
+}

@@ -1,0 +1,171 @@
+//! Figures of what was measured.
+
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
+use hertzchain_measure::signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
+use hertzchain_measure::{Case, Curves, Example, SpeedRow};
+
+/// Examples that fit on a page.
+const MOST: usize = 4;
+
+/// How much of a record is shown before the first pulse and after the last, in
+/// incident times of flight.
+const MARGIN: f64 = 0.5;
+
+/// One shot of every case with its picks; `None` without any.
+pub fn signals(examples: &[Example]) -> Option<Figure> {
+    let charts: Vec<Chart> = examples.iter().take(MOST).filter_map(signal).collect();
+    let empty = Figure::double_column(55.0 * charts.len() as f64 + 8.0).letters();
+    (!charts.is_empty()).then(|| charts.into_iter().fold(empty, Figure::panel))
+}
+
+fn signal(example: &Example) -> Option<Chart> {
+    let shot = &example.shot;
+    let flight = shot.flight.as_ref().ok()?;
+    let picks = &flight.picks;
+    let last = picks
+        .returning
+        .map_or(picks.wall.time_s, |back| back.time_s);
+    let margin_s = MARGIN * flight.incident_s.value;
+    let (from, to) = (picks.passing.time_s - margin_s, last + margin_s);
+    let at = |time_s: f64| (time_s / shot.interval_s).max(0.0) as usize;
+    let (first, end) = (at(from), at(to));
+    let time_us = |index: usize| 1e6 * index as f64 * shot.interval_s;
+    let mut chart = Chart::new("Time (µs)", "Signal (V)").title(&title(example, flight));
+    for (name, volts) in example.names.iter().zip(&example.volts) {
+        let shown = volts.get(first..end.min(volts.len()))?;
+        let times: Vec<f64> = (first..first + shown.len()).map(time_us).collect();
+        let name = if example.volts.len() > 1 { name } else { "" };
+        chart = chart.with(Series::line(name, &times, shown).dash(Dash::Solid));
+    }
+    chart = chart
+        .v_line(1e6 * picks.passing.time_s, "passing")
+        .v_line(1e6 * picks.wall.time_s, "wall");
+    Some(match picks.returning {
+        Some(back) => chart.v_line(1e6 * back.time_s, "returning"),
+        None => chart,
+    })
+}
+
+fn title(example: &Example, flight: &Flight) -> String {
+    let speed = example.shot.speed_m_s;
+    let speed = speed.map_or(String::new(), |speed| format!("{:.4} m/s, ", speed.value));
+    let case = match example.shot.case.as_str() {
+        "" => String::new(),
+        case => format!("{case}, "),
+    };
+    let incident_us = 1e6 * flight.incident_s.value;
+    format!("{case}{speed}incident {incident_us:.2} µs")
+}
+
+/// Times of flight at the mean speeds with all their errors, and their power laws, dashed where
+/// the errors do not allow any.
+pub fn times(curves: &Curves) -> Figure {
+    let chart = |title: &str| {
+        Chart::new("Speed of the striker (m/s)", "Time of flight (µs)")
+            .x_log()
+            .y_log()
+            .title(title)
+            .legend(match curves.cases.len() {
+                1 => Legend::Off,
+                _ => Legend::Auto,
+            })
+    };
+    let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
+    for (number, case) in curves.cases.iter().enumerate() {
+        let laws = &case.laws;
+        incident = with_curve(incident, (number, case), &laws.incident, 0);
+        reflected = with_curve(reflected, (number, case), &laws.reflected, 1);
+    }
+    let figure = Figure::double_column(75.0).columns(2).letters();
+    figure.panel(incident).panel(reflected)
+}
+
+/// Width of a fit's line in points: the data lie on top.
+const FIT_WIDTH: f64 = 0.7;
+
+/// Points of a case and their power law.
+fn with_curve(
+    chart: Chart,
+    (number, case): (usize, &Case),
+    law: &Result<PowerLaw, FitError>,
+    time: usize,
+) -> Chart {
+    let known: Vec<(&SpeedRow, Estimate)> = case
+        .rows
+        .iter()
+        .filter_map(|row| Some((row, row.at_mean_speed_s[time]?)))
+        .collect();
+    let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
+        known.iter().map(value).collect()
+    };
+    // A single shot may have no error: then there is no bar.
+    let bar = |error: f64| if error.is_finite() { error } else { 0.0 };
+    let speeds = column(&|point| point.0.speed_m_s.value);
+    let times = column(&|point| 1e6 * point.1.value);
+    let points = Series::points(&case.name, &speeds, &times)
+        .marker(marker(number))
+        .y_error(&column(&|point| 1e6 * bar(point.1.sigma)))
+        .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
+    let fitted = column(&|point| match law {
+        Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
+        Err(_) => f64::NAN,
+    });
+    let colour = colour(number);
+    let dash = match law.as_ref().map(|law| case.supports(law)) {
+        Ok(Ok(Some(false))) => Dash::Dashed,
+        _ => Dash::Solid,
+    };
+    let line = Series::line("", &speeds, &fitted).dash(dash);
+    chart
+        .with(points.colour(colour))
+        .with(line.colour(colour).width(FIT_WIDTH))
+}
+
+fn colour(number: usize) -> Colour {
+    Colour::PALETTE[number % Colour::PALETTE.len()]
+}
+
+fn marker(number: usize) -> Marker {
+    const ALL: [Marker; 4] = [
+        Marker::Circle,
+        Marker::Triangle,
+        Marker::Square,
+        Marker::Diamond,
+    ];
+    ALL.into_iter()
+        .cycle()
+        .nth(number)
+        .unwrap_or(Marker::Circle)
+}
+
+/// Ratios of times to the reference's, with error bars.
+pub fn ratios(curves: &Curves, reference: &str) -> Figure {
+    let chart = |title: &str| {
+        Chart::new(
+            "Speed of the striker (m/s)",
+            &format!("Time of flight over {reference}"),
+        )
+        .x_log()
+        .title(title)
+        .h_line(1.0, "")
+    };
+    let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
+    for wet in &curves.ratios {
+        // The look that the case has beside its reference.
+        let same = |case: &Case| case.name == wet.case;
+        let number = curves.cases.iter().position(same).unwrap_or(0);
+        let series = |ratios: &[Ratio]| {
+            let speeds: Vec<f64> = ratios.iter().map(|ratio| ratio.speed).collect();
+            let values: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.value).collect();
+            let errors: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.sigma).collect();
+            Series::points(&wet.case, &speeds, &values)
+                .marker(marker(number))
+                .colour(colour(number))
+                .y_error(&errors)
+        };
+        incident = incident.with(series(&wet.incident));
+        reflected = reflected.with(series(&wet.reflected));
+    }
+    let figure = Figure::double_column(75.0).columns(2).letters();
+    figure.panel(incident).panel(reflected)
+}

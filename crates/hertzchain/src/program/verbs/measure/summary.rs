@@ -1,0 +1,230 @@
+//! What was measured, in short, for people.
+
+use crate::format::{self, with_error};
+use crate::print::heading;
+use hertzchain_measure::signal::{Estimate, FitError, PowerLaw, Summary};
+use hertzchain_measure::{Case, Curves, Measurement, Shot, SpeedRow};
+
+/// Shots that anybody reads one by one.
+const MOST_SHOTS: usize = 30;
+
+/// Relative errors below this are the arithmetic's.
+const ROUNDING: f64 = 1e-12;
+
+/// Tables and fits.
+pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
+    let mut text = counted(measured) + "\n";
+    let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
+    if few && !measured.shots.is_empty() {
+        text += &shots(&measured.shots);
+    }
+    for case in &curves.cases {
+        text += &curve(case);
+    }
+    for lost in &curves.lost {
+        text += &format!(
+            "{} at {} m/s: none of {} shot{} has a time of flight that counts\n",
+            named(&lost.case),
+            format::digits(lost.speed_m_s, 4),
+            lost.shots,
+            if lost.shots == 1 { "" } else { "s" }
+        );
+    }
+    for wet in &curves.ratios {
+        text += &format!(
+            "\n{}\n",
+            heading(&format!("{} over {reference}", named(&wet.case)))
+        );
+        for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
+            for ratio in ratios {
+                let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
+                let speed = format::digits(ratio.speed, 4);
+                text += &format!("  {time} at {speed} m/s: {value} ± {error}\n");
+            }
+        }
+    }
+    if !measured.shots.is_empty() && curves.cases.is_empty() && curves.lost.is_empty() {
+        text += "No speeds are known: give --shots for curves.\n";
+    }
+    text
+}
+
+fn counted(measured: &Measurement) -> String {
+    let timed = measured.shots.iter().filter(|shot| shot.flight.is_ok());
+    let flagged = measured
+        .shots
+        .iter()
+        .filter(|shot| !shot.flags().is_empty());
+    let all = measured.shots.len() + measured.refused.len();
+    format!(
+        "{all} record{}, {} with times of flight, {} flagged, {} refused",
+        if all == 1 { "" } else { "s" },
+        timed.count(),
+        flagged.count(),
+        measured.refused.len()
+    )
+}
+
+fn named(case: &str) -> &str {
+    if case.is_empty() { "all shots" } else { case }
+}
+
+fn micro(of: Estimate) -> String {
+    let (value, error) = with_error(1e6 * of.value, 1e6 * of.sigma);
+    format!("{value} ± {error}")
+}
+
+fn shots(shots: &[Shot]) -> String {
+    let head = [
+        "record",
+        "v (m/s)",
+        "incident (µs)",
+        "reflected (µs)",
+        "flags",
+    ];
+    let row = |shot: &Shot| {
+        let flight = shot.flight.as_ref().ok();
+        let name = shot.file.file_name().unwrap_or_default().to_string_lossy();
+        let number = shot.shot.map_or(String::new(), |shot| format!(" {shot}"));
+        vec![
+            format!("{name}{number}"),
+            shot.speed_m_s
+                .map_or(String::new(), |speed| format::digits(speed.value, 4)),
+            flight.map_or(String::new(), |flight| micro(flight.incident_s)),
+            flight
+                .and_then(|flight| flight.reflected_s)
+                .map_or(String::new(), micro),
+            shot.flags(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = shots.iter().take(MOST_SHOTS).map(row).collect();
+    let more = shots.len().saturating_sub(MOST_SHOTS);
+    let more = match more {
+        0 => String::new(),
+        more => format!("… and {more} more; --out writes all\n"),
+    };
+    format::table(&head.map(str::to_owned), &rows) + &more
+}
+
+/// How many shots count, and what does not.
+fn counts(row: &SpeedRow) -> String {
+    let (counted, out) = row.shots;
+    let left_out = match out {
+        0 => String::new(),
+        out => format!(" (+{out} left out)"),
+    };
+    let undecided = match row.returns_undecided {
+        0 => String::new(),
+        open => format!(", {open} returns undecided"),
+    };
+    let missing = match row.returns_missing {
+        0 => String::new(),
+        missing => format!(", {missing} without a return"),
+    };
+    format!("{counted}{left_out}{undecided}{missing}")
+}
+
+fn curve(case: &Case) -> String {
+    let head = [
+        "v (m/s)",
+        "shots",
+        "incident (µs)",
+        "s.d.",
+        "reflected (µs)",
+        "s.d.",
+        "wall/passing",
+        "returning/passing",
+    ];
+    // With what all shots share, which no scatter shows; one shot's own error holds it.
+    let mean = |summary: Option<Summary>, shared_s: f64| {
+        summary.map_or(String::new(), |s| {
+            let shared_s = if s.count > 1 { shared_s } else { 0.0 };
+            micro(Estimate {
+                value: s.mean,
+                sigma: s.error.hypot(shared_s),
+            })
+        })
+    };
+    let deviation = |summary: Option<Summary>| {
+        let known = summary.map(|s| s.deviation).filter(|s| s.is_finite());
+        known.map_or(String::new(), |s| format::digits(1e6 * s, 2))
+    };
+    let share =
+        |summary: Option<Summary>| summary.map_or(String::new(), |s| format::digits(s.mean, 4));
+    let rows = case.rows.iter().map(|row| {
+        vec![
+            format::digits(row.speed_m_s.value, 4),
+            counts(row),
+            mean(Some(row.incident_s), row.shared_s[0]),
+            deviation(Some(row.incident_s)),
+            mean(row.reflected_s, row.shared_s[1]),
+            deviation(row.reflected_s),
+            share(Some(row.wall_over_passing)),
+            share(row.returning_over_passing),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    format!(
+        "\n{}\n{}{}{}",
+        heading(named(&case.name)),
+        format::table(&head.map(str::to_owned), &rows),
+        law("incident", case, &case.laws.incident),
+        law("reflected", case, &case.laws.reflected)
+    )
+}
+
+/// A fit, judged; too few speeds for one are plain to see. Errors are widened to
+/// the points' scatter where that is larger.
+fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
+    let Ok(law) = law else { return String::new() };
+    // Of equal shots, what the arithmetic rounds is no error.
+    let alike = law.prefactor_error < ROUNDING * law.prefactor;
+    let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
+    let exponent = match alike {
+        // Without the sign of a zero.
+        true => (law.exponent / ROUNDING).round() * ROUNDING + 0.0,
+        false => law.exponent,
+    };
+    let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));
+    match law.exponent_error.is_finite() {
+        true => format!(
+            "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
+            judgement(case, law)
+        ),
+        false => {
+            format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
+        }
+    }
+}
+
+/// Whether the points follow the law within their errors.
+fn judgement(case: &Case, law: &PowerLaw) -> String {
+    let Some(judged) = &law.chi_square else {
+        return match law.residuals.len() {
+            2 => ", from two speeds, which cannot test it".to_owned(),
+            _ => String::new(),
+        };
+    };
+    let squares = format!(
+        ", chi-square {} of {}, probability {}",
+        format::digits(judged.value, 3),
+        judged.freedom,
+        format::digits(judged.probability, 2)
+    );
+    let supported = case.supports(law);
+    if supported.is_ok_and(|supported| supported != Some(false)) {
+        return squares;
+    }
+    let widened = format!(
+        "those given here are widened {} times, to the scatter about it",
+        format::digits(law.excess(), 2)
+    );
+    match supported {
+        Ok(_) => format!("{squares}: NOT a power law within the errors; {widened}"),
+        Err(why) => format!(
+            "{squares}: not a power law within the errors of times alone; {why} (the column `speed error` of the table of --shots, or \
+             --speed-error, tells them), so this judges nothing; {widened}"
+        ),
+    }
+}

@@ -1,0 +1,52 @@
+//! `hertzchain merge`: shards of several machines put together.
+
+use super::campaign::failure;
+use super::sweep::{shard, told};
+use crate::arguments::Merge as Arguments;
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::print::print;
+use hertzchain_sim::Part;
+use hertzchain_sim::rig::{TOLD_IN, told_plan};
+use indicatif::HumanBytes;
+use std::path::Path;
+
+/// Runs the verb.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
+    match folders.iter().find(|folder| folder.join(TOLD_IN).is_file()) {
+        Some(folder) => campaign(folder, &folders, &arguments.out),
+        None => sweep(&folders, &arguments.out),
+    }
+}
+
+fn campaign(told_by: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> {
+    let plan = told_plan(told_by).map_err(failure)?;
+    let merged = hertzchain_sim::rig::merge(&plan, folders, out).map_err(failure)?;
+    print(&format!(
+        "{} series of {}, {} of them copied now; {} of recordings in {}; seed {}.\n",
+        merged.series,
+        plan.experiment.title(),
+        merged.copied,
+        HumanBytes(merged.bytes),
+        out.display(),
+        plan.seed,
+    ))
+}
+
+fn sweep(folders: &[&Path], out: &Path) -> Result<(), Failure> {
+    let part = hertzchain_sim::shards::gather(folders).map_err(shard::failure)?;
+    let folder = Folder::open(out)?;
+    shard::told(&part);
+    told::show(&part)?;
+    told::write(folder, &part)?;
+    judge(&part)
+}
+
+/// As the verb `sweep` judges.
+fn judge(part: &Part) -> Result<(), Failure> {
+    match told::nothing(part) {
+        true => Err(Failure::User("no speed gave a shot".into())),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,180 @@
+//! `hertzchain reproduce`: everything in the paper.
+
+mod rig;
+
+use crate::arguments::Reproduce;
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::print::{self, print};
+use comfy_table::{ContentArrangement, Table, presets};
+use hertzchain_figures::paper::{self, PaperError};
+use hertzchain_paper::claims::{Judged, MEANING, Verdict, computed_text};
+use hertzchain_paper::readings::Scan;
+use hertzchain_paper::reproduce::{
+    Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_leftovers, reproduce,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Runs the verb.
+pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
+    // Whether it can be written to, before anything is computed for it.
+    let mut folder = Folder::open(&arguments.out)?;
+    let options = match arguments.readings {
+        true => Options::default().with_readings(),
+        false => Options::default(),
+    };
+    let bar = Bar::new();
+    let computed = reproduce(&options, &bar);
+    let computed = computed.map_err(|error| failure(&error))?;
+    write(&computed, &mut folder)?;
+    let mut text = summary(&computed, folder.path());
+    if arguments.rig {
+        text.push_str(&rig::run(&mut folder, &bar)?);
+    }
+    bar.0.finish_and_clear();
+    let names: Vec<&str> = folder.names().into_iter().chain([PROVENANCE]).collect();
+    let provenance = computed.provenance_json(&names);
+    remove_leftovers(folder.path(), &names).map_err(|error| failure(&error))?;
+    folder.write(PROVENANCE, provenance.as_bytes())?;
+    folder.finish()?;
+    print(&text)
+}
+
+/// Tables and pictures.
+fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
+    for (name, table) in computed.tables().map_err(|error| failure(&error))? {
+        folder.write(name, table.as_bytes())?;
+    }
+    let pictures = paper::files(computed).map_err(|error| match error {
+        PaperError::Reproduce(error) => failure(&error),
+        error => Failure::Ours(error.to_string()),
+    })?;
+    let mut pictures = pictures.into_iter();
+    pictures.try_for_each(|(name, content)| folder.write(&name, &content))
+}
+
+/// The paper's chains come with the program: nothing here is the user's fault.
+fn failure(error: &ReproduceError) -> Failure {
+    Failure::Ours(error.to_string())
+}
+
+/// A bar in the terminal; nothing where nobody looks.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{msg:32} {wide_bar} {pos}/{len} {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn begin(&self, stage: &str, steps: u64) {
+        self.0.reset();
+        self.0.set_length(steps);
+        self.0.set_message(stage.to_owned());
+    }
+
+    fn advance(&self) {
+        self.0.inc(1);
+    }
+
+    fn note(&self, text: &str) {
+        self.0.suspend(|| print::note(text));
+    }
+}
+
+/// What was found, and where it lies.
+fn summary(computed: &Reproduction, folder: &Path) -> String {
+    let verdicts = verdicts(&computed.judged);
+    let mut text = format!("{}\n\n{MEANING}\n\n{verdicts}\n", times(computed));
+    if let Some(scan) = &computed.scan {
+        text.push_str(&closest(scan));
+    }
+    let provenance = &computed.provenance;
+    let _ = write!(
+        text,
+        "\nRead as: {}. Times of flight asked to {:.0e}, reached {:.1e} at worst; computed in {:.0} s.\n\
+         Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
+         Verdicts one by one: {}\n",
+        computed.reading,
+        provenance.accuracy_asked,
+        provenance.accuracy_reached,
+        provenance.wall_time_s,
+        folder.display(),
+        folder.join("claims.md").display(),
+    );
+    text
+}
+
+/// Speeds of the summary in m/s.
+const SHOWN_M_S: [f64; 4] = [0.075, 0.25, 0.5, 1.0];
+
+/// Incident and reflected ToF of each case at a few speeds.
+fn times(computed: &Reproduction) -> Table {
+    let mut table = plain();
+    let speeds = SHOWN_M_S.map(|speed| format!("{speed} m/s"));
+    let title = "ToF in µs, incident / reflected".to_owned();
+    table.set_header([title].into_iter().chain(speeds));
+    for curve in &computed.evidence.curves {
+        let times = SHOWN_M_S.map(|speed| {
+            curve.at(speed).map_or(String::new(), |p| {
+                format!(
+                    "{:.2} / {:.2}",
+                    1e6 * p.tof_incident_s,
+                    1e6 * p.tof_reflected_s
+                )
+            })
+        });
+        table.add_row([curve.case.clone()].into_iter().chain(times));
+    }
+    table
+}
+
+/// Every claim with its verdict and value.
+fn verdicts(judged: &[Judged]) -> String {
+    let mut table = plain();
+    table.set_header(["claim of the paper", "verdict", "computed"]);
+    for judged in judged {
+        let row = [
+            judged.claim.statement.clone(),
+            judged.verdict.to_string(),
+            computed_text(judged),
+        ];
+        table.add_row(row);
+    }
+    let count = |verdict| judged.iter().filter(|j| j.verdict == verdict).count();
+    let counts = Verdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
+    format!("{table}\n{} claims: {}", judged.len(), counts.join(", "))
+}
+
+/// Width of tables where the terminal does not tell its own.
+const WIDTH: u16 = 110;
+
+fn plain() -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    if table.width().is_none() {
+        table.set_width(WIDTH);
+    }
+    table
+}
+
+fn closest(scan: &Scan) -> String {
+    let (closest, claims) = (scan.closest(), scan.claims.len());
+    format!(
+        "\nOf {} readings, closest to the paper: {}.\nWith the constants as printed it scores {} of {claims}, the default reading {}; \
+         without what their rounding leaves open, {} and {}.\nWhat it loses is in readings.md, all verdicts in readings.svg.\n",
+        scan.rows().count(),
+        closest.reading,
+        closest.score(),
+        scan.default.score(),
+        closest.score_without(&scan.flipped_in_closest),
+        scan.default.score_without(&scan.flipped_by_rounding),
+    )
+}

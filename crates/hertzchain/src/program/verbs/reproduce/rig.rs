@@ -1,0 +1,30 @@
+//! `hertzchain reproduce --rig`: what the paper says of its rig.
+
+use super::{Bar, verdicts};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::pictures::rig as pictures;
+use hertzchain_experiment::preset;
+use hertzchain_paper::rig_claims::{Design, MEANING, RigClaims, observe, series_csv};
+
+/// Runs the campaigns and writes verdicts, table and pictures; returns what was found, for people.
+pub fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
+    let ours = |error: &dyn std::error::Error| Failure::Ours(error.to_string());
+    let paper = preset("paper").map_err(|error| ours(&error))?;
+    let design = Design::about(paper);
+    let evidence = observe(&design, bar).map_err(|error| ours(&error))?;
+    let claims = RigClaims::judge(&design, &evidence).map_err(|error| ours(&error))?;
+    let json = format!("{:#}\n", claims.json());
+    into.write("rig-claims.json", json.as_bytes())?;
+    into.write("rig-claims.md", claims.markdown().as_bytes())?;
+    into.write("rig-series.csv", series_csv(&evidence).as_bytes())?;
+    for (name, figure) in pictures::figures(&evidence, &claims) {
+        into.figure(name, &figure)?;
+    }
+    Ok(format!(
+        "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
+        evidence.rigs.len(),
+        verdicts(&claims.judged),
+        into.path().join("rig-claims.md").display(),
+    ))
+}

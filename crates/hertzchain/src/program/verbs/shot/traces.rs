@@ -1,0 +1,270 @@
+//! Traces, figures and the moving picture of a shot.
+
+use crate::arguments::Shot as Arguments;
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::pictures;
+use crate::print;
+use hertzchain::table::{cell, suffix};
+use hertzchain_chain::observe::Trace;
+use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
+use hertzchain_experiment::{Experiment, Units};
+use hertzchain_figures::Animation;
+use hertzchain_sim::{Plan, Shot, shoot};
+use npyz::WriterBuilder;
+
+/// Samples of a shot, unless the chain is so long that memory decides.
+const SAMPLES: usize = 3000;
+const FEWEST_SAMPLES: usize = 200;
+
+/// Most numbers in memory.
+const MOST_NUMBERS: usize = 25_000_000;
+
+/// Which bodies exist: the striker's place is empty in a chain without one,
+/// and the far end moves only if it is a stop.
+struct Bodies {
+    first: usize,
+    last: usize,
+}
+
+impl Bodies {
+    fn of(chain: &Chain) -> Self {
+        let beads = chain.beads.len();
+        let open = matches!(chain.far, FarEnd::Free | FarEnd::Periodic { .. });
+        Self {
+            first: usize::from(matches!(chain.start, Start::Free)),
+            last: if open { beads } else { beads + 1 },
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.last + 1 - self.first
+    }
+
+    fn positions(&self) -> Vec<Sensor> {
+        (self.first..=self.last).map(Sensor::Position).collect()
+    }
+
+    fn velocities(&self) -> Vec<Sensor> {
+        (self.first..=self.last).map(Sensor::Velocity).collect()
+    }
+
+    fn forces(&self) -> Vec<Sensor> {
+        (self.first..self.last).map(Sensor::Contact).collect()
+    }
+}
+
+/// Runs the shot again with everything watched that is to be written.
+pub fn write(
+    mut folder: Folder,
+    arguments: &Arguments,
+    experiment: &Experiment,
+    plan: &Plan,
+    shot: &Shot,
+) -> Result<(), Failure> {
+    let bodies = Bodies::of(&plan.chain);
+    let shown = experiment.sensors();
+    let mut sensors = shown.clone();
+    if arguments.npy || arguments.animate {
+        sensors.extend(bodies.positions());
+        sensors.extend(bodies.velocities());
+        sensors.extend(bodies.forces());
+    }
+    let mut trace = sampled(plan, shot, sensors)?;
+    // Budgets stand at the ends of steps; the last step may reach beyond the shot.
+    trace.budgets.extend(shot.budget.clone());
+    if arguments.out.is_some() {
+        let noise = shot.tolerance.unwrap_or(shot.accuracy_asked);
+        let table = csv(&trace, &shown, experiment, noise);
+        folder.write("traces.csv", table.as_bytes())?;
+        let energy = energy_csv(&trace, experiment.units());
+        folder.write("energy.csv", energy.as_bytes())?;
+        folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
+        folder.figure(
+            "energy",
+            &pictures::energy(&trace.budgets, experiment.units()),
+        )?;
+    }
+    let columns = &trace.columns[shown.len()..];
+    if arguments.npy {
+        npy(&mut folder, &trace, columns, &bodies, experiment.units())?;
+    }
+    if arguments.animate {
+        let page = animation(experiment, plan, &trace, columns, &bodies).html();
+        folder.write("animation.html", page.as_bytes())?;
+    }
+    print::written(&folder.finish()?);
+    Ok(())
+}
+
+fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Failure> {
+    let samples = (MOST_NUMBERS / sensors.len().max(1)).min(SAMPLES);
+    if samples < FEWEST_SAMPLES {
+        let text = "the chain is too long to write every bead; leave out --npy and --animate";
+        return Err(Failure::User(text.into()));
+    }
+    let interval_s = shot.duration_s / samples as f64;
+    let watched = plan.clone().watching(sensors, Some(interval_s));
+    let trace = shoot(&watched)?.trace;
+    trace.ok_or_else(|| Failure::Ours("a watched shot left no trace".into()))
+}
+
+/// What was sampled; what is smaller than the solver's error, a fraction
+/// `noise` of the largest number of its unit, is 0.
+fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment, noise: f64) -> String {
+    let (units, wall) = (experiment.units(), pictures::wall(experiment));
+    let column = |sensor: &Sensor| {
+        let (name, unit) = pictures::name(*sensor, wall);
+        format!(",{}{}", name.replace(' ', "_"), suffix(unit, units))
+    };
+    let names: String = sensors.iter().map(column).collect();
+    let floors = floors(trace, sensors, wall, noise);
+    let mut text = format!("time{}{names}\n", suffix("s", units));
+    for (row, time) in trace.time_s.iter().enumerate() {
+        text += &cell(*time);
+        for (column, floor) in trace.columns.iter().zip(&floors) {
+            let value = column.get(row).copied().unwrap_or(f64::NAN);
+            let value = if value.abs() < *floor { 0.0 } else { value };
+            text += &format!(",{}", cell(value));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The smallest number that means anything, a column: the solver's error is
+/// common to all bodies and contacts.
+fn floors(trace: &Trace, sensors: &[Sensor], wall: Option<usize>, noise: f64) -> Vec<f64> {
+    let unit = |sensor: &Sensor| pictures::name(*sensor, wall).1;
+    let largest = |column: &Vec<f64>| column.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let of_unit = |sensor: &Sensor| {
+        let alike = sensors.iter().zip(&trace.columns);
+        let alike = alike.filter(|(other, _)| unit(other) == unit(sensor));
+        alike.map(|(_, column)| largest(column)).fold(0.0, f64::max)
+    };
+    sensors
+        .iter()
+        .map(|sensor| noise * of_unit(sensor))
+        .collect()
+}
+
+fn energy_csv(trace: &Trace, units: Units) -> String {
+    let first = trace.budgets.first();
+    let laws = first.map_or(&[][..], |budget| &budget.dissipated);
+    let parts = ["start", "driven", "kinetic", "elastic"].into_iter();
+    let parts = parts.chain(laws.iter().map(|line| line.law));
+    let parts = parts.chain(["clipped", "gravity", "preload", "stop", "residual"]);
+    let unit = suffix("J", units);
+    let names: String = parts.map(|part| format!(",{part}{unit}")).collect();
+    let mut text = format!("time{}{names}\n", suffix("s", units));
+    for b in &trace.budgets {
+        let lost = b.dissipated.iter().map(|line| line.energy_j);
+        let first = [b.time_s, b.start_j, b.driven_j, b.kinetic_j, b.elastic_j];
+        let rest = [
+            b.clipped_j,
+            b.gravity_j,
+            b.preload_j,
+            b.stop_j,
+            b.residual_j(),
+        ];
+        let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest))
+            .map(cell)
+            .collect();
+        text += &format!("{}\n", cells.join(","));
+    }
+    text
+}
+
+fn npy(
+    folder: &mut Folder,
+    trace: &Trace,
+    columns: &[Vec<f64>],
+    bodies: &Bodies,
+    units: Units,
+) -> Result<(), Failure> {
+    let file = |name: &str, unit| format!("{name}{}.npy", suffix(unit, units));
+    let count = bodies.count();
+    let (positions, rest) = columns.split_at(count.min(columns.len()));
+    let (velocities, forces) = rest.split_at(count.min(rest.len()));
+    let times = std::slice::from_ref(&trace.time_s);
+    folder.write(&file("time", "s"), &array(times, false)?)?;
+    folder.write(&file("position", "m"), &array(positions, true)?)?;
+    folder.write(&file("velocity", "m/s"), &array(velocities, true)?)?;
+    folder.write(&file("force", "N"), &array(forces, true)?)
+}
+
+/// Columns as an array [body][sample], or one column as [sample].
+fn array(columns: &[Vec<f64>], two_dimensional: bool) -> Result<Vec<u8>, Failure> {
+    let samples = columns.first().map_or(0, Vec::len) as u64;
+    let shape = [columns.len() as u64, samples];
+    let shape = if two_dimensional {
+        &shape[..]
+    } else {
+        &shape[1..]
+    };
+    let mut bytes = Vec::new();
+    let failed = |error: std::io::Error| Failure::Ours(format!("NPY: {error}"));
+    let options = npyz::WriteOptions::new().default_dtype().shape(shape);
+    let mut writer = options.writer(&mut bytes).begin_nd().map_err(failed)?;
+    writer.extend(columns.iter().flatten()).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
+fn animation(
+    experiment: &Experiment,
+    plan: &Plan,
+    trace: &Trace,
+    columns: &[Vec<f64>],
+    bodies: &Bodies,
+) -> Animation {
+    let radii: Vec<f64> = (bodies.first..=bodies.last)
+        .map(|b| radius(&plan.chain, b))
+        .collect();
+    let count = bodies.count();
+    let mut place = 0.0;
+    let mut before = radii.first().copied().unwrap_or(0.0);
+    let mut positions = Vec::new();
+    for (column, radius) in columns.iter().zip(&radii) {
+        place += before + radius;
+        before = *radius;
+        positions.push(column.iter().map(|x| place + x).collect());
+    }
+    let forces = columns.get(2 * count..).unwrap_or_default();
+    let page = Animation::new(&trace.time_s, &positions, forces, &radii)
+        .title(experiment.title())
+        .first_contact(bodies.first)
+        .mark(plan.sensor_bead - bodies.first, "sensor bead");
+    let page = match plan.chain.start {
+        Start::Striker { .. } => page.mark(0, "striker"),
+        Start::Driven { .. } => page.mark(0, "driven end"),
+        Start::Free => page,
+    };
+    let page = match pictures::wall(experiment) {
+        Some(_) => page.mark(count - 1, "wall"),
+        None => page,
+    };
+    let clock = pictures::Clock::of(&trace.time_s, experiment.units());
+    let force = if clock.unit.is_empty() { "" } else { "N" };
+    let page = page.units((clock.scale, clock.unit), force);
+    let wet = experiment.sections().iter().find(|section| section.wet);
+    match wet {
+        Some(section) => page.wet(
+            section.from.saturating_sub(bodies.first),
+            section.last(plan.chain.beads.len()) - bodies.first,
+        ),
+        None => page,
+    }
+}
+
+/// Radius of a body in m; a plane is drawn as the last bead.
+fn radius(chain: &Chain, body: usize) -> f64 {
+    let last = chain.beads.last().map_or(1.0, |bead| bead.radius_m);
+    match (body, &chain.start, &chain.far) {
+        (0, Start::Striker { bead, .. } | Start::Driven { bead, .. }, _) => bead.radius_m,
+        (0, Start::Free, _) => last,
+        (body, _, _) if body <= chain.beads.len() => chain.beads[body - 1].radius_m,
+        (_, _, FarEnd::HalfBead { radius_m, .. } | FarEnd::Stop { radius_m, .. }) => *radius_m,
+        _ => last,
+    }
+}

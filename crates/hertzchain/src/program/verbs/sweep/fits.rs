@@ -1,0 +1,100 @@
+//! The power laws of a sweep in words.
+
+use crate::format::{digits, r_squared, with_error};
+use hertzchain::missing;
+use hertzchain_experiment::Units;
+use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
+use hertzchain_sim::{Column, Part};
+
+/// A line for the incident and one for the reflected times of flight.
+pub fn lines(part: &Part) -> String {
+    let named = [
+        ("incident", Column::Incident),
+        ("reflected", Column::Reflected),
+    ];
+    let lines = named.map(|(name, column)| {
+        let (fit, uncertainty) = part.rows.law(column, part.accuracy);
+        line(name, &fit, uncertainty, part.units)
+    });
+    lines.concat()
+}
+
+fn line(
+    name: &str,
+    fit: &Result<PowerLaw, FitError>,
+    uncertainty: Result<Uncertainty, FitError>,
+    units: Units,
+) -> String {
+    let law = match fit {
+        Err(error) => return format!("{name}: no power law: {}\n", missing::law(error)),
+        Ok(law) => law,
+    };
+    let (size, unit, speed) = match units {
+        Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
+        Units::Dimensionless => (1.0, "", "v"),
+    };
+    let errors = Errors::of(law, uncertainty.ok());
+    let (prefactor, prefactor_error) = with_error(law.prefactor / size, errors.prefactor / size);
+    let (exponent, exponent_error) = with_error(law.exponent, errors.exponent);
+    if law.residuals.len() == 2 {
+        return format!(
+            "{name}: ToF = {prefactor}{unit} · {speed}^({exponent}), through two speeds, which tell no errors\n",
+        );
+    }
+    format!(
+        "{name}: ToF = ({prefactor} ± {prefactor_error}){unit} · {speed}^({exponent} ± {exponent_error}), \
+         R² = {}, largest deviation {} %\n",
+        r_squared(law.r_squared),
+        digits(100.0 * law.largest_deviation(), 2),
+    )
+}
+
+/// The errors to quote of a fit.
+struct Errors {
+    prefactor: f64,
+    exponent: f64,
+}
+
+impl Errors {
+    /// Standard errors, but not less than what the accuracies of the times of
+    /// flight alone leave open; only these where two speeds tell no others.
+    fn of(law: &PowerLaw, uncertainty: Option<Uncertainty>) -> Self {
+        let (prefactor, exponent) = uncertainty.map_or((0.0, 0.0), |least| {
+            (law.prefactor * least.prefactor_relative, least.exponent)
+        });
+        // The larger; a standard error that is not a number is none.
+        Self {
+            prefactor: prefactor.max(law.prefactor_error),
+            exponent: exponent.max(law.exponent_error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hertzchain_measure::signal::{power_law, uncertainty};
+
+    #[test]
+    fn no_error_is_quoted_below_the_accuracy_of_the_times() {
+        let speeds = [0.1_f64, 0.3, 1.0];
+        let times = speeds.map(|v| 630.841_591_2e-6 * v.powf(-0.2));
+        let fit = power_law(&speeds, &times, None);
+        let told = |accuracy: f64| {
+            line(
+                "incident",
+                &fit,
+                uncertainty(&speeds, &[accuracy; 3]),
+                Units::Si,
+            )
+        };
+        // Σ|cᵢ| = 1.33 and Σ|dᵢ| = 0.88 for these speeds.
+        assert!(
+            told(1e-6).starts_with("incident: ToF = (630.84159 ± 0.00"),
+            "{}",
+            told(1e-6)
+        );
+        assert!(told(1e-6).contains("^(-0.20000000 ± 8."), "{}", told(1e-6));
+        assert!(told(1e-3).contains("(630.84 ± 0."), "{}", told(1e-3));
+    }
+}

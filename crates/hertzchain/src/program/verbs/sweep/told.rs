@@ -1,0 +1,130 @@
+//! A sweep's table and power laws: printed, as CSV, as a figure. Shots of this
+//! process and merged shards are told alike.
+
+use super::fits;
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::format::{self, Style};
+use crate::pictures;
+use crate::print::{self, heading, print};
+use hertzchain::table::{self, cell};
+use hertzchain_experiment::Units;
+use hertzchain_sim::{COLUMNS, Column, Part, Rows};
+
+/// What a column is called, its unit, the size of the unit, and which it is.
+type Shown = (&'static str, &'static str, f64, Column);
+
+const SHOWN: [Shown; 10] = [
+    ("speed", "m/s", 1.0, Column::Speed),
+    ("incident ToF", "µs", 1e-6, Column::Incident),
+    ("reflected ToF", "µs", 1e-6, Column::Reflected),
+    ("sensor peak", "N", 1.0, Column::SensorPeak),
+    ("wall peak", "N", 1.0, Column::WallPeak),
+    ("rebound", "m/s", 1.0, Column::Rebound),
+    ("competing maximum", "µs", 1e-6, Column::CompetingTime),
+    ("competing peak", "N", 1.0, Column::CompetingPeak),
+    (
+        "reflected, competing",
+        "µs",
+        1e-6,
+        Column::CompetingReflectedTime,
+    ),
+    ("its peak", "N", 1.0, Column::CompetingReflectedPeak),
+];
+
+/// Whether no speed has a shot.
+pub fn nothing(part: &Part) -> bool {
+    part.rows.failed.len() == part.rows.len()
+}
+
+/// Prints the table with its power laws; nothing where no speed has a shot,
+/// which is told instead.
+pub fn show(part: &Part) -> Result<(), Failure> {
+    if nothing(part) {
+        return Ok(());
+    }
+    let mut text = rows(part) + &fits::lines(part);
+    if let Some(tuned) = &part.tuned {
+        text += &format!("Times of flight: {tuned}\n");
+    }
+    print(&text)
+}
+
+/// The table under its heading.
+pub fn rows(part: &Part) -> String {
+    let reached = part.rows.column(Column::Accuracy).iter().copied();
+    // A number that is none is never the larger one.
+    let style = Style::of_accuracy(reached.fold(part.accuracy, f64::max), part.units);
+    format!("{}\n{}", heading(&part.title), lines(style, &part.rows))
+}
+
+/// Whether a column has anything to tell.
+fn told(rows: &Rows, column: Column) -> bool {
+    rows.column(column).iter().any(|value| !value.is_nan())
+}
+
+fn lines(style: Style, rows: &Rows) -> String {
+    let si = style.units == Units::Si;
+    let column = |(name, unit, size, of): &Shown| {
+        let size = if si { *size } else { 1.0 };
+        let values = rows.column(*of).iter();
+        let values: Vec<Option<f64>> = values
+            .map(|value| (!value.is_nan()).then(|| value / size))
+            .collect();
+        let digits = if name.ends_with("ToF") {
+            style.digits + 1
+        } else {
+            5
+        };
+        let head = if si {
+            format!("{name} ({unit})")
+        } else {
+            (*name).to_owned()
+        };
+        (head, format::column(&values, digits))
+    };
+    let shown = SHOWN.iter().filter(|shown| told(rows, shown.3));
+    let (mut head, mut columns): (Vec<String>, Vec<Vec<String>>) = shown.map(column).unzip();
+    if told(rows, Column::Accuracy) {
+        let text = |reached: &f64| match reached.is_nan() {
+            true => String::new(),
+            false => format!("{reached:.0e}"),
+        };
+        head.push("accuracy reached".to_owned());
+        columns.push(rows.column(Column::Accuracy).iter().map(text).collect());
+    }
+    let row = |i: usize| columns.iter().map(|column| column[i].clone()).collect();
+    let rows: Vec<Vec<String>> = (0..rows.len()).map(row).collect();
+    format::table(&head, &rows)
+}
+
+/// Writes the table and the figure.
+pub fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
+    folder.write("sweep.csv", csv(part).as_bytes())?;
+    folder.figure("sweep", &pictures::sweep(part))?;
+    print::written(&folder.finish()?);
+    Ok(())
+}
+
+/// Shots that are none have no line.
+fn csv(part: &Part) -> String {
+    let names = match part.units {
+        Units::Si => COLUMNS,
+        Units::Dimensionless => COLUMNS.map(table::without_unit),
+    };
+    let mut text = format!("{}\n", names.join(","));
+    let mut failed = part
+        .rows
+        .failed
+        .iter()
+        .map(|failed| failed.place)
+        .peekable();
+    for place in 0..part.rows.len() {
+        if failed.next_if_eq(&place).is_some() {
+            continue;
+        }
+        let cells = part.rows.columns.iter().map(|column| cell(column[place]));
+        text += &format!("{}\n", cells.collect::<Vec<_>>().join(","));
+    }
+    text
+}

@@ -1,0 +1,143 @@
+//! Nothing panics, whatever the samples.
+
+use crate::common::Scene;
+use hertzchain_measure::signal::{
+    Channels, Cutter, Estimate, Finding, LowPass, Measuring, Method, Polarity, Rails, Shape,
+    Template, Trigger, chi_square, coverage, groups, level, measure, power_law_both_errors,
+    summary, undroop,
+};
+use proptest::prelude::*;
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -1.0..1.0_f64,
+        1 => Just(f64::NAN),
+        1 => Just(f64::INFINITY),
+        1 => Just(f64::MAX),
+        1 => Just(f64::MIN_POSITIVE),
+        1 => Just(0.0),
+        1 => any::<f64>(),
+    ]
+}
+
+fn methods() -> Vec<Method> {
+    vec![
+        Method::default(),
+        Method::LocalModel {
+            degree: 8,
+            width: 0.2,
+        },
+        Method::Onset { fraction: 0.1 },
+        Method::CrossCorrelation(Template::Passing),
+        Method::CrossCorrelation(Template::Shape(Shape::sech_power(2.0))),
+        Method::CrossCorrelation(Template::Fixed(Shape::sech_power(2.0), 30e-6)),
+        Method::MatchedShape {
+            shape: Shape::cos_power(6.0),
+            width: 2.0,
+        },
+    ]
+}
+
+fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
+    for method in methods() {
+        for channels in [
+            Channels::Summed(samples),
+            Channels::Separate {
+                sensor: samples,
+                wall,
+            },
+        ] {
+            for beads in [None, Some((40, 7))] {
+                let finding = Finding {
+                    beads,
+                    polarity: Polarity::Auto,
+                    wall_polarity: Polarity::Negative,
+                    rails: Some(Rails {
+                        low: -1.0,
+                        high: 1.0,
+                    }),
+                    wall_rails: None,
+                };
+                let measuring = Measuring {
+                    finding,
+                    method: method.clone(),
+                    high_pass_s: beads.map(|_| 1e-3),
+                    low_pass: None,
+                    bandwidth: None,
+                };
+                let _ = measure(channels, interval_s, &measuring);
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn random_numbers_are_measured_or_refused(
+        samples in prop::collection::vec(number(), 0..300),
+        wall in prop::collection::vec(-1.0..1.0_f64, 0..300),
+        interval in number(),
+    ) {
+        measure_all(&samples, &wall, interval);
+        let _ = level(&samples);
+        let _ = undroop(&mut samples.clone(), interval, 1e-3);
+        let _ = LowPass { cutoff_hz: interval, order: 4 }.apply(&samples, 1e-6);
+        let _ = Shape::sampled(&samples);
+        let _ = groups(&samples, interval);
+        let _ = coverage(&samples, interval);
+        let _ = power_law_both_errors(&samples, &samples, &samples, &samples);
+        let pairs: Vec<Estimate> =
+            samples.iter().map(|x| Estimate { value: *x, sigma: *x }).collect();
+        let _ = summary(&pairs);
+        let _ = chi_square(&pairs, &samples, 0);
+    }
+
+    #[test]
+    fn finite_walks_are_measured_or_refused(
+        steps in prop::collection::vec(-1.0..1.0_f64, 64..400),
+        scale in -300.0..130.0_f64,
+    ) {
+        let mut at = 0.0;
+        let walk: Vec<f64> = steps.iter().map(|s| { at += s; at * 10_f64.powf(scale) }).collect();
+        measure_all(&walk, &walk, 1e-6);
+    }
+
+    #[test]
+    fn damaged_shots_are_measured_or_refused(
+        cut in 0_usize..4000,
+        from in 0_usize..4000,
+        length in 0_usize..3000,
+        fill in number(),
+        noise in 0.0..0.5_f64,
+    ) {
+        let scene = Scene { noise, ..Scene::default() };
+        let mut samples = scene.summed();
+        samples.iter_mut().skip(from).take(length).for_each(|x| *x = fill);
+        samples.drain(..cut);
+        let wall = scene.summed();
+        measure_all(&samples, &wall[cut..], 1e-6);
+    }
+
+    #[test]
+    fn any_floats_can_be_cut(
+        recording in prop::collection::vec(number(), 0..300),
+        threshold in -1.0..1.0_f64,
+    ) {
+        let trigger = Trigger {
+            level: threshold,
+            falling: false,
+            hysteresis: 0.1,
+            before: 5,
+            length: 20,
+            hold_off: u64::MAX,
+        };
+        if let Ok(mut cutter) = Cutter::new(trigger) {
+            let mut count = 0;
+            cutter.feed(&recording, |x| x, |_| count += 1);
+            cutter.finish(|_| count += 1);
+            prop_assert!(count <= 1);
+        }
+    }
+}

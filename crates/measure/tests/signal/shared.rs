@@ -1,0 +1,157 @@
+//! What moves all alike shots alike: what lies under pulses, and what is open of their shapes.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use crate::common::{Scene, normal};
+use crate::dry::Dry;
+use hertzchain_measure::signal::{
+    Channels, Doubt, Estimate, Flight, Measuring, Moved, Place, alone, measure, shared,
+};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+fn under(under_s: f64) -> Moved {
+    Moved {
+        under_s,
+        shape_s: 0.0,
+    }
+}
+
+#[test]
+fn what_moves_all_shots_alike_stays_in_a_mean_and_noise_does_not() {
+    let pair = |a, b| [under(a), under(b)];
+    assert_eq!(shared(&[pair(3.0, 4.0), pair(3.0, 4.0)]), 5.0);
+    assert_eq!(shared(&[pair(1.0, 2.0), pair(-1.0, 2.0)]), 2.0);
+    assert_eq!(shared(&[]), 0.0);
+    assert_eq!(alone(5.0, pair(3.0, 0.0)), 4.0);
+    assert_eq!(alone(1.0, pair(3.0, 0.0)), 0.0);
+    let open = Moved {
+        under_s: -3.0,
+        shape_s: 4.0,
+    };
+    assert_eq!(shared(&[[open, under(0.0)], [open, under(0.0)]]), 5.0);
+    assert_eq!(alone(13.0, [open, under(0.0)]), 12.0);
+}
+
+fn of(samples: &[f64]) -> Flight {
+    let shot = measure(Channels::Summed(samples), 1e-6, &Measuring::default());
+    shot.unwrap().flight.unwrap()
+}
+
+/// A scene with something added, by the time in s.
+fn with(added: impl Fn(f64) -> f64) -> Flight {
+    let mut samples = Scene::default().summed();
+    for (i, volt) in samples.iter_mut().enumerate() {
+        *volt += added(i as f64 * 1e-6);
+    }
+    of(&samples)
+}
+
+/// Times of the wall's and of the returning pulse of that scene in s.
+const WALL_S: f64 = 1.500_457e-3;
+const BACK_S: f64 = 2.280_789e-3;
+
+/// How far in s the return was moved, and how far it may have been.
+fn moved(flight: &Flight) -> (f64, f64) {
+    let back = flight.picks.returning.unwrap();
+    (back.time_s - BACK_S, back.moved.under_s)
+}
+
+#[test]
+fn what_is_left_of_a_trail_of_the_wall_under_a_return_is_in_its_error() {
+    for time_s in [100e-6, 200e-6, 400e-6] {
+        let trail = |t: f64| match t > WALL_S {
+            true => 0.3 * (-(t - WALL_S) / time_s).exp(),
+            false => 0.0,
+        };
+        let (by, may) = moved(&with(trail));
+        // A share of the largest fall is taken out, as of computed rows; trails fall by another.
+        assert!(
+            may < 0.0 && by.abs() < 1.96 * may.abs(),
+            "{time_s}: {by:e} {may:e}"
+        );
+    }
+}
+
+#[test]
+fn a_fragment_before_a_return_is_not_taken_for_what_lies_under_it() {
+    let fragment = |t: f64| 0.2 * ((t - BACK_S + 110e-6) / 28e-6).cosh().powi(-4);
+    let (_, may) = moved(&with(fragment));
+    // The fragment's flank is 0.02 high at the return's foot: 2 µs if it went on beneath.
+    assert!(may.abs() < 1e-8, "{may:e}");
+}
+
+#[test]
+fn a_wall_that_has_let_go_moves_nothing_and_nothing_is_stated() {
+    // From its pulse's end on the wall's force is less by the push, and no more changes.
+    let let_go = |t: f64| -0.02 * (1.0 + ((t - WALL_S - 250e-6) / 40e-6).tanh());
+    let (by, may) = moved(&with(let_go));
+    assert!(by.abs() < 1e-8, "{by:e}");
+    assert!(may.abs() < 1e-8, "{may:e}");
+}
+
+/// Errors of the incident time of noisy dry shots: all alike, their places between samples not.
+fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Moved; 2]>) {
+    let dry = Dry::load();
+    let truth_s = Dry::MAXIMA_S[1] - Dry::MAXIMA_S[0];
+    let shot = |seed: u64| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let begun_s = 400e-6 + 1e-8 * (37 * seed % 100) as f64;
+        let sample = |i: usize| dry.summed(i as f64 * 1e-6 - begun_s) + 0.003 * normal(&mut rng);
+        let samples: Vec<f64> = (0..2600).map(sample).collect();
+        let flight = of(&samples);
+        let error = Estimate {
+            value: flight.incident_s.value - truth_s,
+            ..flight.incident_s
+        };
+        (error, flight.moved()[0])
+    };
+    (0..shots).map(shot).unzip()
+}
+
+#[test]
+fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows() {
+    let (errors, moved) = noisy_dry(400);
+    let count = errors.len() as f64;
+    let mean = errors.iter().map(|error| error.value).sum::<f64>() / count;
+    let squares = errors.iter().zip(&moved);
+    let squares = squares.map(|(error, moved)| alone(error.sigma, *moved).powi(2));
+    let alone_s = squares.sum::<f64>().sqrt() / count;
+    let shared_s = shared(&moved);
+    assert!(
+        mean.abs() < 1.96 * alone_s.hypot(shared_s),
+        "{mean:e} {shared_s:e}"
+    );
+    // A mean that is no better than a shot would say nothing.
+    let one_s = errors.iter().map(|error| error.sigma).sum::<f64>() / count;
+    assert!(shared_s < 0.5 * one_s, "{shared_s:e} {one_s:e}");
+}
+
+/// Error of the incident time where the wall's pulse falls so many times as slowly as it rises and
+/// something passes beneath its rise, and whether that is told.
+fn beneath_a_fall(ratio: f64) -> (f64, bool) {
+    let mut samples = Scene::default().summed();
+    let (top, fall) = (1500, ratio * 26.0 / 2.0_f64.sqrt().acosh());
+    for (i, volt) in samples.iter_mut().enumerate().skip(top).take(400) {
+        *volt = 1.6 / ((i - top) as f64 / fall).cosh().powi(2);
+    }
+    for (i, volt) in samples.iter_mut().enumerate() {
+        *volt -= 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
+    }
+    let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+    let told = shot.found.doubts.contains(&Doubt::Trailing(Place::Wall));
+    (shot.flight.unwrap().incident_s.sigma, told)
+}
+
+#[test]
+fn errors_of_pulses_that_trail_do_not_leap_where_it_is_told() {
+    // From where one bell no longer follows both halves, and its window is narrower, on.
+    let ratios = (0..12).map(|k| 1.4 + 0.1 * f64::from(k));
+    let all: Vec<(f64, bool)> = ratios.map(beneath_a_fall).collect();
+    assert!(!all[0].1 && all[11].1, "{all:?}");
+    for pair in all.windows(2) {
+        // The threshold alone made it leap by 2.6.
+        let leap = pair[1].0 / pair[0].0;
+        assert!((0.8..1.4).contains(&leap), "{all:?}");
+    }
+    assert!(all[11].0 > 2.0 * all[0].0, "{all:?}");
+}

@@ -1,0 +1,300 @@
+//! The numbers that claims are judged on.
+
+use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
+
+/// Reproducibility of the striker's speed in the paper: standard deviation
+/// over 20 shots, in m/s.
+pub const SPEED_SCATTER_M_S: f64 = 0.003;
+
+/// Shots behind each point of the paper.
+pub const SHOTS_PER_POINT: f64 = 20.0;
+
+/// Which passage a time of flight belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Branch {
+    /// From the sensor bead to the wall.
+    Incident,
+    /// From the wall back to the sensor bead.
+    Reflected,
+}
+
+impl Branch {
+    /// Both, the incident first.
+    pub const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
+
+    /// As written in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Incident => "incident",
+            Self::Reflected => "reflected",
+        }
+    }
+}
+
+/// What one shot showed. Numbers that the shot did not give are not a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Speed of the striker in m/s.
+    pub speed_m_s: f64,
+    /// Incident ToF in s.
+    pub tof_incident_s: f64,
+    /// Reflected ToF in s.
+    pub tof_reflected_s: f64,
+    /// Peak at the sensor bead, incoming, in N.
+    pub sensor_peak_n: f64,
+    /// Peak at the wall in N.
+    pub wall_peak_n: f64,
+    /// Peak at the sensor bead, returning, in N.
+    pub returning_peak_n: f64,
+    /// Largest returning maximum beside the first, before an echo from the near
+    /// end can be back, in N; 0 when there is none.
+    pub second_returning_peak_n: f64,
+    /// Full widths at half maximum of the incoming, wall and returning pulse in s.
+    pub widths_s: [f64; 3],
+    /// Velocity of the striker when it first leaves bead 1 in m/s, negative
+    /// away from the chain.
+    pub striker_separation_m_s: f64,
+    /// Velocity of the striker at the end of the shot in m/s.
+    pub striker_rebound_m_s: f64,
+    /// Reflected less incident ToF, both by peaks, in s: of the shot, and with the gaps
+    /// behind the pulse closed as it meets the wall.
+    pub excess_s: [f64; 2],
+    /// By how much beads 1 and N stand farther apart than at rest when the
+    /// returning pulse has passed, in m: all gaps less all overlaps.
+    pub loosened_m: f64,
+    /// Relative accuracy reached of both ToFs.
+    pub accuracy_reached: f64,
+    /// Relative accuracy of the sensor, wall and returning peak.
+    pub peak_accuracy: f64,
+    /// Absolute accuracy of the second returning peak in N.
+    pub second_peak_accuracy_n: f64,
+    /// Relative accuracy of the three widths.
+    pub width_accuracy: f64,
+    /// Absolute accuracy of the striker's two velocities in m/s.
+    pub striker_accuracy_m_s: f64,
+    /// Absolute accuracy of both differences of ToFs in s.
+    pub excess_accuracy_s: f64,
+    /// Absolute accuracy of the loosening in m.
+    pub loosened_accuracy_m: f64,
+}
+
+impl Point {
+    /// The ToF of a branch in s.
+    #[must_use]
+    pub fn tof_s(&self, branch: Branch) -> f64 {
+        match branch {
+            Branch::Incident => self.tof_incident_s,
+            Branch::Reflected => self.tof_reflected_s,
+        }
+    }
+
+    /// Absolute accuracy of a ToF in s.
+    #[must_use]
+    pub fn tof_accuracy_s(&self, branch: Branch) -> f64 {
+        self.accuracy_reached * self.tof_s(branch)
+    }
+}
+
+/// One case over speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Name of the case: `dry`, `motor`, ...
+    pub case: String,
+    /// Its shots in order of speed.
+    pub points: Vec<Point>,
+}
+
+impl Curve {
+    /// All speeds in m/s.
+    #[must_use]
+    pub fn speeds_m_s(&self) -> Vec<f64> {
+        self.points.iter().map(|p| p.speed_m_s).collect()
+    }
+
+    /// All ToFs of a branch in s.
+    #[must_use]
+    pub fn tofs_s(&self, branch: Branch) -> Vec<f64> {
+        self.points.iter().map(|p| p.tof_s(branch)).collect()
+    }
+
+    /// The shot at a speed.
+    #[must_use]
+    pub fn at(&self, speed_m_s: f64) -> Option<&Point> {
+        let near = |p: &&Point| (p.speed_m_s - speed_m_s).abs() < 1e-9 * speed_m_s;
+        self.points.iter().find(near)
+    }
+
+    /// d ln T/d ln v of a branch at every speed, from its neighbours in log–log,
+    /// where the curve is nearly straight; and its absolute accuracy: that of
+    /// the two ToFs over the distance of their speeds in ln v.
+    fn exponents(&self, branch: Branch) -> Vec<(f64, f64)> {
+        let exponent = |a: &Point, b: &Point| {
+            let span = (b.speed_m_s / a.speed_m_s).ln();
+            let rise = (b.tof_s(branch) / a.tof_s(branch)).ln();
+            (
+                rise / span,
+                (a.accuracy_reached + b.accuracy_reached) / span,
+            )
+        };
+        let last = self.points.len().saturating_sub(1);
+        let around = |i: usize| {
+            let before = self.points.get(i.saturating_sub(1));
+            match (before, self.points.get((i + 1).min(last))) {
+                (Some(before), Some(after)) if before.speed_m_s < after.speed_m_s => {
+                    exponent(before, after)
+                }
+                _ => (f64::NAN, f64::NAN),
+            }
+        };
+        (0..self.points.len()).map(around).collect()
+    }
+
+    /// dT/dv of a branch in s²/m at every speed.
+    #[must_use]
+    pub fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
+        let slopes = self.exponents(branch).into_iter().zip(&self.points);
+        slopes
+            .map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s)
+            .collect()
+    }
+
+    /// Relative accuracy of dT/dv at every speed: that of the local exponent
+    /// and of the ToF.
+    #[must_use]
+    pub fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
+        let exponents = self.exponents(branch).into_iter().zip(&self.points);
+        exponents
+            .map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached)
+            .collect()
+    }
+
+    /// Standard error in s that the paper's points have: the scatter of the
+    /// speed over 20 shots, carried through dT/dv, over √20.
+    #[must_use]
+    pub fn standard_errors_s(&self, branch: Branch) -> Vec<f64> {
+        let scatter = SPEED_SCATTER_M_S / SHOTS_PER_POINT.sqrt();
+        let slopes = self.slopes_s2_m(branch);
+        slopes.iter().map(|slope| slope.abs() * scatter).collect()
+    }
+
+    /// Straight line in log–log through a branch, every speed weighing the same.
+    ///
+    /// # Errors
+    /// Fewer than two speeds, or a ToF that is not a positive number.
+    pub fn power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
+        power_law(&self.speeds_m_s(), &self.tofs_s(branch), None)
+    }
+
+    /// The same with the weights of the paper's standard errors.
+    ///
+    /// # Errors
+    /// As [`Curve::power_law`].
+    pub fn weighted_power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
+        let sigmas = self.standard_errors_s(branch);
+        power_law(&self.speeds_m_s(), &self.tofs_s(branch), Some(&sigmas))
+    }
+}
+
+/// Wet over dry incident ToF at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// Speed of the striker in m/s.
+    pub speed_m_s: f64,
+    /// Ratio of the incident ToFs.
+    pub incident: f64,
+    /// Ratio of the reflected ToFs.
+    pub reflected: f64,
+    /// Relative accuracy of both.
+    pub accuracy_reached: f64,
+}
+
+/// One liquid as printed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Oil {
+    /// Name of its case.
+    pub case: String,
+    /// Kinematic viscosity in m²/s.
+    pub kinematic_viscosity_m2_s: f64,
+    /// Density in kg/m³.
+    pub density_kg_m3: f64,
+}
+
+impl Oil {
+    /// Dynamic viscosity in Pa s.
+    #[must_use]
+    pub fn dynamic_viscosity_pa_s(&self) -> f64 {
+        self.kinematic_viscosity_m2_s * self.density_kg_m3
+    }
+}
+
+/// What a published figure shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measured {
+    /// Peak force at the sensor bead over that at the wall.
+    SensorOverWall,
+    /// A time of flight in s.
+    Tof(Branch),
+    /// Wet over dry incident ToF.
+    Ratio,
+}
+
+/// A measured point, read off a published figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Digitised {
+    /// What was measured.
+    pub what: Measured,
+    /// Case it belongs to.
+    pub case: String,
+    /// Speed in m/s.
+    pub speed_m_s: f64,
+    /// Its value.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// All that claims are judged on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// One curve a case.
+    pub curves: Vec<Curve>,
+    /// The liquids.
+    pub oils: Vec<Oil>,
+    /// Viscosity over Young modulus of the dry balls, η/Y in s.
+    pub viscosity_over_modulus_s: f64,
+    /// Measured points; the paper prints none.
+    pub digitised: Vec<Digitised>,
+}
+
+impl Evidence {
+    /// The curve of a case.
+    #[must_use]
+    pub fn curve(&self, case: &str) -> Option<&Curve> {
+        self.curves.iter().find(|curve| curve.case == case)
+    }
+
+    /// The liquid of a case.
+    #[must_use]
+    pub fn oil(&self, case: &str) -> Option<&Oil> {
+        self.oils.iter().find(|oil| oil.case == case)
+    }
+
+    /// Wet over dry ToFs at the speeds that both curves have.
+    #[must_use]
+    pub fn ratios(&self, case: &str) -> Vec<Ratio> {
+        let (Some(wet), Some(dry)) = (self.curve(case), self.curve("dry")) else {
+            return Vec::new();
+        };
+        let ratio = |w: &Point| {
+            let d = dry.at(w.speed_m_s)?;
+            Some(Ratio {
+                speed_m_s: w.speed_m_s,
+                incident: w.tof_incident_s / d.tof_incident_s,
+                reflected: w.tof_reflected_s / d.tof_reflected_s,
+                accuracy_reached: w.accuracy_reached + d.accuracy_reached,
+            })
+        };
+        wet.points.iter().filter_map(ratio).collect()
+    }
+}

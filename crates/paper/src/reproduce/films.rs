@@ -1,0 +1,130 @@
+//! Shots looked at over time, for pictures.
+
+use super::cases::Cases;
+use super::gather::plan;
+use super::{ReproduceError, failed};
+use hertzchain_chain::Sensor;
+use hertzchain_chain::wave::Budget;
+use hertzchain_sim::shoot;
+use rayon::prelude::*;
+
+/// Case and speed in m/s of the four panels of the paper's Fig. 2.
+pub const SIGNAL_SHOTS: [(&str, f64); 4] = [
+    ("dry", 0.1368),
+    ("pump", 1.152),
+    ("gear", 0.1396),
+    ("motor", 0.3993),
+];
+
+/// One dry and one wet shot that are followed bead by bead, at the same
+/// speed: that of the split pulse of the paper's Fig. 2 (d).
+pub const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
+
+/// The paper's channel, bead sensor plus wall, of one shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalShot {
+    /// The case.
+    pub case: String,
+    /// Speed in m/s.
+    pub speed_m_s: f64,
+    /// Times in s.
+    pub time_s: Vec<f64>,
+    /// Dynamic force of the bead sensor and the wall, added, in N.
+    pub channel_n: Vec<f64>,
+    /// Time in s and force in N of the incoming, wall and returning peak.
+    pub peaks: Vec<(f64, f64)>,
+}
+
+/// One shot bead by bead, with its energy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// The case.
+    pub case: String,
+    /// Speed in m/s.
+    pub speed_m_s: f64,
+    /// Times in s.
+    pub time_s: Vec<f64>,
+    /// Velocity of each body in m/s, the striker first; one column a body.
+    pub velocity_m_s: Vec<Vec<f64>>,
+    /// Energy over time.
+    pub budgets: Vec<Budget>,
+}
+
+/// Samples of a signal are this far apart, in s: the paper's 1 MS/s.
+const SIGNAL_SAMPLE_S: f64 = 1e-6;
+
+/// Frames of a film are this far apart, in s.
+const FRAME_S: f64 = 2e-6;
+
+/// Accuracy of a film, whose budget residual is of its size.
+const FILM_ACCURACY: f64 = 1e-9;
+
+/// Computes the signals of the paper's Fig. 2.
+///
+/// # Errors
+/// The first shot that can't be computed.
+pub fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
+    SIGNAL_SHOTS
+        .par_iter()
+        .map(|(case, speed)| signal(cases, case, *speed, accuracy))
+        .collect()
+}
+
+fn signal(
+    cases: &Cases,
+    case: &str,
+    speed_m_s: f64,
+    accuracy: f64,
+) -> Result<SignalShot, ReproduceError> {
+    let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
+    let plan = plan(case, experiment, speed_m_s, accuracy, &|_, _, _| {})?.for_flights();
+    let channel = Sensor::BeadPlusWall(plan.sensor_bead);
+    let shot = shoot(&plan.watching(vec![channel], Some(SIGNAL_SAMPLE_S)))
+        .map_err(|error| failed(case, speed_m_s, error))?;
+    let trace = shot.trace.unwrap_or_default();
+    let peaks = shot.passage.map_or(Vec::new(), |p| {
+        let all = [Some(p.incident), Some(p.wall), p.reflected];
+        all.into_iter()
+            .flatten()
+            .map(|peak| (peak.time_s, peak.value))
+            .collect()
+    });
+    Ok(SignalShot {
+        case: case.to_owned(),
+        speed_m_s,
+        time_s: trace.time_s,
+        channel_n: trace.columns.into_iter().next().unwrap_or_default(),
+        peaks,
+    })
+}
+
+/// Computes the shots that are followed bead by bead.
+///
+/// # Errors
+/// The first shot that can't be computed.
+pub fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
+    FILM_SHOTS
+        .par_iter()
+        .map(|(case, speed)| film(cases, case, *speed))
+        .collect()
+}
+
+fn film(cases: &Cases, case: &str, speed_m_s: f64) -> Result<Film, ReproduceError> {
+    let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
+    let plan = plan(case, experiment, speed_m_s, FILM_ACCURACY, &|_, _, _| {})?.for_flights();
+    let bodies = (0..=plan.chain.beads.len()).map(Sensor::Velocity).collect();
+    let shot = shoot(&plan.with_budget().watching(bodies, Some(FRAME_S)))
+        .map_err(|error| failed(case, speed_m_s, error))?;
+    let trace = shot.trace.unwrap_or_default();
+    Ok(Film {
+        case: case.to_owned(),
+        speed_m_s,
+        time_s: trace.time_s,
+        velocity_m_s: trace.columns,
+        budgets: trace.budgets,
+    })
+}
+
+fn no_case(case: &str) -> ReproduceError {
+    ReproduceError::NoCase(case.to_owned())
+}

@@ -1,0 +1,274 @@
+//! From shots to the numbers that claims are judged on.
+
+use super::cases::Cases;
+use super::memory::Memory;
+use super::point::{checked, excess_s, read_off_all};
+use super::{ReproduceError, failed};
+use crate::claims::{Curve, Evidence, Judge, Point};
+use hertzchain_chain::{Chain, Sensor};
+use hertzchain_experiment::{Experiment, Reading};
+use hertzchain_sim::{InstructionSet, Pick, Plan, Shot, StudyError, shoot, shoot_all};
+use rayon::prelude::*;
+
+/// How the paper's chains are shot.
+#[derive(Clone, Debug)]
+pub struct Gathering<'a> {
+    /// What the paper leaves open.
+    pub reading: Reading,
+    /// Speeds of the striker in m/s.
+    pub speeds_m_s: &'a [f64],
+    /// Relative accuracy asked of ToFs.
+    pub accuracy: f64,
+    /// How much is known of every shot.
+    pub effort: Effort<'a>,
+}
+
+/// How much is known of every shot.
+#[derive(Clone, Copy, Debug)]
+pub enum Effort<'a> {
+    /// All numbers, each with the accuracy it reached: every shot is computed again
+    /// at a tenth of the tolerance.
+    Checked,
+    /// Times, peaks and widths by the ensemble loop; the striker, the gaps and the
+    /// way back without them only of the shots in which one of these claims asks for them.
+    Lean(&'a [Judge]),
+}
+
+/// Changes a chain of a case, hit at a speed, before it is shot.
+pub type Change<'a> = &'a (dyn Fn(&str, f64, &mut Chain) + Sync);
+
+/// Shoots all cases at all speeds, on all cores; `done` is called after each
+/// shot, from any thread. The result does not depend on their number.
+///
+/// # Errors
+/// The first shot that can't be computed, in the order of the tables.
+pub fn gather(
+    how: &Gathering<'_>,
+    change: Change<'_>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Evidence, ReproduceError> {
+    gathered(how, change, None, done)
+}
+
+/// The same without changes, looking into a memory before shooting.
+///
+/// # Errors
+/// As [`gather`].
+pub fn gather_remembering(
+    how: &Gathering<'_>,
+    memory: &Memory,
+) -> Result<Evidence, ReproduceError> {
+    gathered(how, &|_, _, _| {}, Some(memory), &|| {})
+}
+
+fn gathered(
+    how: &Gathering<'_>,
+    change: Change<'_>,
+    memory: Option<&Memory>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Evidence, ReproduceError> {
+    let cases = Cases::new(&how.reading)?;
+    let all = cases.all().iter();
+    let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
+    let jobs: Vec<_> = jobs.collect();
+    let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
+        let target = Target::new(case, experiment, speed, how, change)?;
+        // What is remembered serves every pick.
+        Ok::<_, ReproduceError>(match memory {
+            Some(_) => target.comparing_picks(),
+            None => target,
+        })
+    };
+    let targets: Vec<Target> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
+    let points = shot_at(&targets, how.effort, memory, done)?;
+    let curves = points.chunks(how.speeds_m_s.len().max(1));
+    let curves = cases
+        .all()
+        .iter()
+        .zip(curves)
+        .map(|((case, _), points)| Curve {
+            case: (*case).to_owned(),
+            points: points.to_vec(),
+        });
+    Ok(Evidence {
+        curves: curves.collect(),
+        oils: cases.oils(),
+        viscosity_over_modulus_s: viscosity_over_modulus(&cases, change)?,
+        digitised: Vec::new(),
+    })
+}
+
+/// η/Y of the dry balls in s.
+fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, ReproduceError> {
+    let Some(dry) = cases.get("dry") else {
+        return Ok(f64::NAN);
+    };
+    let (mut chain, _) = dry.chain(Some(1.0))?;
+    change("dry", 1.0, &mut chain);
+    let material = chain.beads.first().map(|bead| bead.material);
+    Ok(material.map_or(f64::NAN, |m| m.shear_viscosity_pa_s / m.young_modulus_pa))
+}
+
+/// A shot to be computed.
+struct Target {
+    case: &'static str,
+    speed_m_s: f64,
+    plan: Plan,
+    /// How the reading times pulses.
+    pick: Pick,
+    /// Whether its way back without gaps is asked for.
+    closing: bool,
+}
+
+/// The end beads are sampled this often to see how far they are apart, in s.
+const SAMPLED_S: f64 = 5e-6;
+
+impl Target {
+    fn new(
+        case: &'static str,
+        experiment: &Experiment,
+        speed_m_s: f64,
+        how: &Gathering<'_>,
+        change: Change<'_>,
+    ) -> Result<Self, ReproduceError> {
+        let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
+        let asks = |what: fn(&Judge, &str, f64) -> bool| match how.effort {
+            Effort::Checked => true,
+            Effort::Lean(judges) => judges.iter().any(|judge| what(judge, case, speed_m_s)),
+        };
+        let closing = asks(Judge::needs_closing);
+        let followed = closing || asks(Judge::needs_end);
+        let ends = vec![
+            Sensor::Position(1),
+            Sensor::Position(plan.chain.beads.len()),
+        ];
+        let plan = match followed {
+            true => plan.watching(ends, Some(SAMPLED_S)),
+            false => plan.for_flights(),
+        };
+        Ok(Self {
+            case,
+            speed_m_s,
+            pick: plan.pick,
+            closing,
+            plan,
+        })
+    }
+
+    fn comparing_picks(self) -> Self {
+        Self {
+            plan: self.plan.comparing_picks(),
+            ..self
+        }
+    }
+
+    /// The point of the target's own pick.
+    fn own(&self, mut points: Vec<Point>) -> Option<Point> {
+        let at = self.plan.picks().position(|pick| pick == self.pick)?;
+        (at < points.len()).then(|| points.swap_remove(at))
+    }
+
+    fn failed(&self, error: StudyError) -> ReproduceError {
+        failed(self.case, self.speed_m_s, error)
+    }
+
+    fn points(&self, shot: Result<Shot, StudyError>) -> Result<Vec<Point>, ReproduceError> {
+        let shot = shot.map_err(|error| self.failed(error))?;
+        let mut points = read_off_all(&self.plan, self.speed_m_s, &shot);
+        if self.closing {
+            let excess_s = excess_s(&self.plan, &shot).map_err(|error| self.failed(error))?;
+            points
+                .iter_mut()
+                .for_each(|point| point.excess_s = excess_s);
+        }
+        Ok(points)
+    }
+}
+
+/// Points of all targets, in order.
+fn shot_at(
+    targets: &[Target],
+    effort: Effort<'_>,
+    memory: Option<&Memory>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Point>, ReproduceError> {
+    let known = |target: &Target| {
+        let points = memory.and_then(|memory| memory.recall(&target.plan))?;
+        // Two cases may share a plan of which only one asks for the way back without gaps.
+        let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
+        has_all.then_some(points)
+    };
+    let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
+    let new = || targets.iter().zip(&points).enumerate();
+    let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
+    let new: Vec<(usize, &Target)> = new.collect();
+    let fresh = match effort {
+        Effort::Checked => checked_points(&new, done)?,
+        Effort::Lean(_) => lean_points(&new, done)?,
+    };
+    for ((at, target), fresh) in new.into_iter().zip(fresh) {
+        if let Some(memory) = memory {
+            memory.keep(&target.plan, &fresh);
+        }
+        points[at] = Some(fresh);
+    }
+    let points = targets.iter().zip(points);
+    Ok(points
+        .filter_map(|(target, points)| target.own(points?))
+        .collect())
+}
+
+fn checked_points(
+    targets: &[(usize, &Target)],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Vec<Point>>, ReproduceError> {
+    let one = |(_, target): &(usize, &Target)| {
+        let point = checked(&target.plan, target.speed_m_s);
+        done();
+        point
+            .map(|point| vec![point])
+            .map_err(|error| target.failed(error))
+    };
+    targets.par_iter().map(one).collect()
+}
+
+/// Shots that are followed to their end run in the wave loop, the others side by
+/// side in the ensemble loop.
+fn lean_points(
+    targets: &[(usize, &Target)],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Vec<Point>>, ReproduceError> {
+    let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
+    let plans: Vec<Plan> = passing.map(|(_, target)| target.plan.clone()).collect();
+    let set = InstructionSet::default();
+    let mut passing = shoot_all(&plans, set, false, done).into_iter();
+    let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
+    let one = |(_, target): &&(usize, &Target)| {
+        let points = target.points(shoot(&target.plan));
+        done();
+        points
+    };
+    let mut followed = followed.par_iter().map(one).collect::<Vec<_>>().into_iter();
+    let in_order = targets
+        .iter()
+        .filter_map(|(_, target)| match target.plan.rebound {
+            true => followed.next(),
+            false => Some(target.points(passing.next()?)),
+        });
+    in_order.collect()
+}
+
+/// The plan of a shot of a case.
+pub(super) fn plan(
+    case: &str,
+    experiment: &Experiment,
+    speed_m_s: f64,
+    accuracy: f64,
+    change: Change<'_>,
+) -> Result<Plan, ReproduceError> {
+    // The cases' ν above 1/2 is the paper's and said in the reading.
+    let (mut plan, _warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
+    change(case, speed_m_s, &mut plan.chain);
+    plan.accuracy = accuracy;
+    Ok(plan)
+}

@@ -1,0 +1,28 @@
+//! Everything in the paper, computed anew.
+
+mod cases;
+mod closing;
+mod error;
+mod films;
+mod gather;
+mod leftovers;
+mod memory;
+mod point;
+mod progress;
+mod provenance;
+mod reproduction;
+mod speeds;
+mod tables;
+
+pub use cases::{CASES, Cases, OILS};
+pub use error::ReproduceError;
+pub(crate) use error::failed;
+pub use films::{FILM_SHOTS, Film, SIGNAL_SHOTS, SignalShot, films, signals};
+pub use gather::{Change, Effort, Gathering, gather, gather_remembering};
+pub use leftovers::remove_leftovers;
+pub use memory::Memory;
+pub use progress::{Progress, Silent};
+pub use provenance::{PROVENANCE, Provenance};
+pub use reproduction::{Options, Reproduction, reproduce};
+pub use speeds::SPEEDS_M_S;
+pub use tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};

@@ -1,0 +1,185 @@
+//! What one shot showed, and how sure that is.
+
+use super::closing::{close_gaps, reflected_s};
+use crate::claims::Point;
+use hertzchain_chain::observe::Passage;
+use hertzchain_sim::accuracy::{reached, tolerance};
+use hertzchain_sim::{Flight, Plan, Shot, StudyError, shoot};
+
+/// How many times as wrong as the accuracy asked the numbers of a shot are that was
+/// not computed again, at most: measured on the paper's chains and speeds at 1e-5
+/// to 1e-7 and rounded up. Times are twice as wrong behind a strong loss, where a
+/// loosened chain amplifies errors.
+mod unchecked {
+    /// ToFs, relative.
+    pub const TOF: f64 = 4.0;
+    /// Sensor, wall and returning peak, relative.
+    pub const PEAK: f64 = hertzchain_sim::OF_PEAKS;
+    /// Second returning peak, in returning peaks, where it is no mere shoulder.
+    pub const SECOND_PEAK: f64 = 200.0;
+    /// Widths, relative: that of a split pulse ends at a flat shoulder.
+    pub const WIDTH: f64 = 300.0;
+    /// Velocities of the striker, which gather the errors of all steps, in its
+    /// own speed.
+    pub const STRIKER: f64 = 30.0;
+    /// Loosening, relative.
+    pub const LOOSENED: f64 = 200.0;
+}
+
+/// Below this accuracy rounding decides, not the step.
+const FINEST: f64 = 1e-12;
+
+/// Computes a shot, and again at a tenth of the tolerance: what this changes tells
+/// the accuracy of every number. Where times of flight change by more than the
+/// accuracy asked, the finer shot takes its place.
+pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> {
+    let at = |accuracy: f64| {
+        let plan = plan.clone().with_accuracy(accuracy);
+        let shot = shoot(&plan)?;
+        let point = read_off(&plan, speed_m_s, &shot);
+        Ok::<_, StudyError>(Point {
+            excess_s: excess_s(&plan, &shot)?,
+            ..point
+        })
+    };
+    let mut accuracy = plan.accuracy;
+    let mut point = at(accuracy)?;
+    loop {
+        let finer = at(0.1 * accuracy)?;
+        let (tolerance, _) = tolerance(&plan.clone().with_accuracy(accuracy));
+        let judged = judged(point, &finer, tolerance);
+        if judged.accuracy_reached <= plan.accuracy || 0.1 * accuracy <= FINEST {
+            return Ok(judged);
+        }
+        accuracy *= 0.1;
+        point = finer;
+    }
+}
+
+/// A point whose accuracies follow from what a finer computation changes and from
+/// the tolerance of a step.
+fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
+    let largest = |number: &dyn Fn(&Point) -> Vec<f64>, relative: bool| {
+        let pairs = number(&point).into_iter().zip(number(finer));
+        let off = pairs.map(|(a, b)| {
+            let off = reached([(a - b).abs(), 0.0], 1.0, tolerance * b.abs());
+            off / if relative { b.abs() } else { 1.0 }
+        });
+        // What neither shot gave is not wrong.
+        off.filter(|off| !off.is_nan()).fold(0.0, f64::max)
+    };
+    let tofs = |p: &Point| vec![p.tof_incident_s, p.tof_reflected_s];
+    let peaks = |p: &Point| vec![p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
+    let striker = |p: &Point| vec![p.striker_separation_m_s, p.striker_rebound_m_s];
+    Point {
+        accuracy_reached: largest(&tofs, true),
+        peak_accuracy: largest(&peaks, true),
+        second_peak_accuracy_n: largest(&|p| vec![p.second_returning_peak_n], false),
+        width_accuracy: largest(&|p| p.widths_s.to_vec(), true),
+        striker_accuracy_m_s: largest(&striker, false),
+        excess_accuracy_s: largest(&|p| p.excess_s.to_vec(), false),
+        loosened_accuracy_m: largest(&|p| vec![p.loosened_m], false),
+        ..point
+    }
+}
+
+/// The numbers of a shot, one point a pick of its plan.
+pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<Point> {
+    let point = read_off(plan, speed_m_s, shot);
+    let flights = std::iter::once(&shot.flight).chain(&shot.compared);
+    let timed = |flight: &Option<Flight>| point.clone().timed(*flight);
+    flights.map(timed).collect()
+}
+
+impl Point {
+    fn timed(self, flight: Option<Flight>) -> Self {
+        Self {
+            tof_incident_s: flight.map_or(f64::NAN, |f| f.incident_s),
+            tof_reflected_s: flight.and_then(|f| f.reflected_s).unwrap_or(f64::NAN),
+            ..self
+        }
+    }
+}
+
+/// The numbers of a shot.
+pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
+    let passage = shot.passage.as_ref().ok();
+    let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let rebound = shot.rebound;
+    let returning_peak_n = or_nan(passage.and_then(|p| p.reflected).map(|peak| peak.value));
+    let loosened_m = or_nan(loosened(shot));
+    let asked = shot.accuracy_asked;
+    Point {
+        speed_m_s,
+        tof_incident_s: or_nan(shot.flight.map(|f| f.incident_s)),
+        tof_reflected_s: or_nan(shot.flight.and_then(|f| f.reflected_s)),
+        sensor_peak_n: or_nan(passage.map(|p| p.incident.value)),
+        wall_peak_n: or_nan(passage.map(|p| p.wall.value)),
+        returning_peak_n,
+        second_returning_peak_n: or_nan(passage.and_then(|p| second_return(plan, p))),
+        widths_s: [
+            or_nan(passage.and_then(|p| p.incident_width_s)),
+            or_nan(passage.and_then(|p| p.wall_width_s)),
+            or_nan(passage.and_then(|p| p.reflected_width_s)),
+        ],
+        striker_separation_m_s: or_nan(rebound.and_then(|r| r.first).map(|(_, v)| v)),
+        striker_rebound_m_s: or_nan(rebound.and_then(|r| r.end_m_s)),
+        excess_s: [f64::NAN; 2],
+        loosened_m,
+        accuracy_reached: shot.accuracy_reached.unwrap_or(unchecked::TOF * asked),
+        peak_accuracy: unchecked::PEAK * asked,
+        second_peak_accuracy_n: unchecked::SECOND_PEAK * asked * returning_peak_n,
+        width_accuracy: unchecked::WIDTH * asked,
+        striker_accuracy_m_s: unchecked::STRIKER * asked * speed_m_s,
+        excess_accuracy_s: unchecked::TOF * asked * or_nan(passage.and_then(both_ways_s)),
+        loosened_accuracy_m: unchecked::LOOSENED * asked * loosened_m.abs(),
+    }
+}
+
+/// Sum of both times of flight in s.
+fn both_ways_s(passage: &Passage) -> Option<f64> {
+    Some(passage.tof_incident_s() + passage.tof_reflected_s()?)
+}
+
+/// Reflected less incident ToF by peaks, in s: of a shot, and of the same with the
+/// gaps behind the pulse closed as it meets the wall. Not a number without a pulse.
+pub(super) fn excess_s(plan: &Plan, shot: &Shot) -> Result<[f64; 2], StudyError> {
+    let Ok(passage) = &shot.passage else {
+        return Ok([f64::NAN; 2]);
+    };
+    let closed_s = reflected_s(plan, passage, close_gaps)?;
+    let ways = [passage.tof_reflected_s(), closed_s];
+    Ok(ways.map(|way_s| way_s.unwrap_or(f64::NAN) - passage.tof_incident_s()))
+}
+
+/// Maxima closer than this part of the pulse's width are one top.
+const APART: f64 = 0.25;
+
+/// Largest returning maximum beside the first, in N. What comes later than twice
+/// the way from the sensor bead to the near end takes may be an echo from there.
+fn second_return(plan: &Plan, passage: &Passage) -> Option<f64> {
+    let (first, width) = (passage.reflected?, passage.reflected_width_s?);
+    let back = passage.tof_reflected_s()?;
+    let (n, beads) = (plan.sensor_bead as f64, plan.chain.beads.len() as f64);
+    let until = first.time_s + 2.0 * n / (beads - n) * back;
+    let others = passage.returning_maxima.iter().filter(|maximum| {
+        maximum.time_s < until && (maximum.time_s - first.time_s).abs() > APART * width
+    });
+    Some(others.map(|maximum| maximum.value).fold(0.0, f64::max))
+}
+
+/// By how much beads 1 and N stand farther apart than at rest, in m, at the end
+/// of the time in which the returning pulse is looked for.
+fn loosened(shot: &Shot) -> Option<f64> {
+    let (trace, passage) = (shot.trace.as_ref()?, shot.passage.as_ref().ok()?);
+    let until = passage.wall.time_s + 3.0 * passage.tof_incident_s();
+    let seen = trace.time_s.partition_point(|time| *time <= until);
+    let at = |column: usize| {
+        trace
+            .columns
+            .get(column)?
+            .get(seen.checked_sub(1)?)
+            .copied()
+    };
+    Some(at(1)? - at(0)?)
+}

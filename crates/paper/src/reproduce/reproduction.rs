@@ -1,0 +1,252 @@
+//! The whole of a reproduction, from shots to verdicts.
+
+use super::cases::{CASES, Cases};
+use super::films::{Film, SignalShot, films, signals};
+use super::gather::{Effort, Gathering, gather};
+use super::provenance::machine;
+use super::{
+    Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
+    power_laws_csv, ratios_csv, tof_csv,
+};
+use crate::claims::{
+    Evidence, Judged, MEANING, claims, claims_json, claims_markdown, judge_all_rounded,
+};
+use crate::readings::{
+    DryPoisson, Scan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
+};
+use hertzchain_experiment::Reading;
+use hertzchain_sim::commit;
+use hertzchain_sim::{Plan, shoot};
+use serde_json::json;
+use std::time::Instant;
+
+/// What to compute, and how well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Relative accuracy asked of the ToFs in the tables.
+    pub accuracy: f64,
+    /// Seed of the draws within rounding.
+    pub seed: u64,
+    /// Draws of the printed constants within their rounding.
+    pub draws: usize,
+    /// Most readings that are tried; 0 leaves the scan out.
+    pub readings: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            accuracy: 1e-8,
+            seed: 1,
+            draws: 64,
+            readings: 0,
+        }
+    }
+}
+
+impl Options {
+    /// With the scan over readings, and draws enough to see rare flips.
+    #[must_use]
+    pub fn with_readings(self) -> Self {
+        Self {
+            draws: 200,
+            readings: usize::MAX,
+            ..self
+        }
+    }
+}
+
+/// Accuracy of shots that decide claims in other readings, whose values are
+/// shown to six digits.
+const SCAN_ACCURACY: f64 = 1e-6;
+
+/// Everything that was computed.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    /// What the paper leaves open, as read here.
+    pub reading: Reading,
+    /// The paper's chains.
+    pub cases: Cases,
+    /// Times of flight, peaks and the rest.
+    pub evidence: Evidence,
+    /// The claims with their verdicts.
+    pub judged: Vec<Judged>,
+    /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
+    /// readings were asked for.
+    pub two_digits: Option<Vec<Judged>>,
+    /// The signals of Fig. 2.
+    pub signals: Vec<SignalShot>,
+    /// One dry and one wet shot bead by bead.
+    pub films: Vec<Film>,
+    /// Which claims hold in which reading, if that was asked for.
+    pub scan: Option<Scan>,
+    /// Where the numbers come from.
+    pub provenance: Provenance,
+}
+
+/// Computes everything in the paper, for the default reading.
+///
+/// # Errors
+/// The first shot that can't be computed.
+pub fn reproduce(
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Reproduction, ReproduceError> {
+    let start = Instant::now();
+    let reading = Reading::default();
+    let cases = Cases::new(&reading)?;
+    let done = || progress.advance();
+    progress.begin("times of flight", (CASES.len() * SPEEDS_M_S.len()) as u64);
+    let how = Gathering {
+        reading,
+        speeds_m_s: &SPEEDS_M_S,
+        accuracy: options.accuracy,
+        effort: Effort::Checked,
+    };
+    let evidence = gather(&how, &|_, _, _| {}, &done)?;
+    progress.begin("signals and films", 2);
+    let signals = signals(&cases, options.accuracy)?;
+    progress.advance();
+    let films = films(&cases)?;
+    progress.advance();
+    let (one_digit, two_digits) = (DryPoisson::OneDigit, DryPoisson::TwoDigits);
+    let verdicts = judged(options, (&reading, one_digit), &evidence, progress)?;
+    let (two_digits, scan) = match options.readings {
+        0 => (None, None),
+        most => {
+            let two_digits = judged(options, (&reading, two_digits), &evidence, progress)?;
+            let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
+            scan.flipped_by_rounding = flipped(&verdicts);
+            let closest = scan.closest().reading;
+            let how = Gathering {
+                reading: closest,
+                accuracy: SCAN_ACCURACY,
+                ..how
+            };
+            let evidence = gather(&how, &|_, _, _| {}, &|| {})?;
+            let rounded = judged(options, (&closest, one_digit), &evidence, progress)?;
+            scan.flipped_in_closest = flipped(&rounded);
+            (Some(two_digits), Some(scan))
+        }
+    };
+    Ok(Reproduction {
+        provenance: provenance(options, &cases, &evidence, start)?,
+        reading,
+        cases,
+        evidence,
+        judged: verdicts,
+        two_digits,
+        signals,
+        films,
+        scan,
+    })
+}
+
+/// The claims, decided on the tables and under rounding, in a reading.
+fn judged(
+    options: &Options,
+    (reading, dry_poisson): (&Reading, DryPoisson),
+    evidence: &Evidence,
+    progress: &dyn Progress,
+) -> Result<Vec<Judged>, ReproduceError> {
+    let judges = claims()?;
+    progress.begin("rounding of the printed constants", options.draws as u64);
+    let done = || progress.advance();
+    let draws = (options.seed, options.draws);
+    let draws = rounded_evidence(&judges, reading, draws, dry_poisson, &done)?;
+    Ok(judge_all_rounded(&judges, evidence, &draws))
+}
+
+/// Claims that rounding flips, by index.
+fn flipped(judged: &[Judged]) -> Vec<usize> {
+    let flipped = judged.iter().enumerate();
+    let flipped = flipped.filter(|(_, judged)| judged.flips_by_rounding());
+    flipped.map(|(claim, _)| claim).collect()
+}
+
+fn provenance(
+    options: &Options,
+    cases: &Cases,
+    evidence: &Evidence,
+    start: Instant,
+) -> Result<Provenance, ReproduceError> {
+    let no_case = || ReproduceError::NoCase("hertz".to_owned());
+    let hertz = cases.get("hertz").ok_or_else(no_case)?;
+    let (plan, _warnings) = Plan::from_experiment(hertz, None)?;
+    let shot = shoot(&plan.with_accuracy(options.accuracy))
+        .map_err(|error| super::failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
+    let points = evidence.curves.iter().flat_map(|curve| &curve.points);
+    Ok(Provenance {
+        version: env!("CARGO_PKG_VERSION"),
+        commit: commit(),
+        solver: shot.solver,
+        tolerance: shot.tolerance.unwrap_or(f64::NAN),
+        accuracy_asked: options.accuracy,
+        accuracy_reached: points.map(|p| p.accuracy_reached).fold(0.0, f64::max),
+        seed: options.seed,
+        draws: options.draws,
+        machine: machine(),
+        wall_time_s: start.elapsed().as_secs_f64(),
+    })
+}
+
+impl Reproduction {
+    /// The tables and claims as files: name and content.
+    ///
+    /// # Errors
+    /// An oil that can't be described.
+    pub fn tables(&self) -> Result<Vec<(&'static str, String)>, ReproduceError> {
+        let reading = stated(&self.reading);
+        let mut files = vec![
+            ("tof.csv", tof_csv(&self.evidence)),
+            ("ratios.csv", ratios_csv(&self.evidence)),
+            ("power_laws.csv", power_laws_csv(&self.evidence)),
+            (
+                "power_law_residuals.csv",
+                power_law_residuals_csv(&self.evidence),
+            ),
+            ("oils.csv", oils_csv(&self.cases)?),
+            (
+                "claims.json",
+                json(&json!({
+                    "reading": reading,
+                    "meaning": MEANING,
+                    "claims": claims_json(&self.judged),
+                })),
+            ),
+            ("claims.md", claims_markdown(&self.judged, &head(&reading))),
+        ];
+        if let Some(scan) = &self.scan {
+            files.push(("readings.csv", scan_csv(scan)));
+            let two_digits = self.two_digits.as_deref().unwrap_or_default();
+            let page = scan_markdown(scan) + &two_digits_markdown(&self.judged, two_digits);
+            files.push(("readings.md", page));
+        }
+        Ok(files)
+    }
+
+    /// The provenance as a file named [`PROVENANCE`](super::PROVENANCE), which lists itself and
+    /// the files of those names.
+    #[must_use]
+    pub fn provenance_json(&self, files: &[&str]) -> String {
+        json(&self.provenance.json(files))
+    }
+}
+
+/// The head of the page of claims.
+fn head(reading: &str) -> String {
+    format!("# What the paper says, and what its model shows\n\nRead as: {reading}.\n\n{MEANING}")
+}
+
+/// JSON as a file.
+fn json(value: &serde_json::Value) -> String {
+    format!("{value:#}\n")
+}
+
+/// A reading with every switch spelled out.
+fn stated(reading: &Reading) -> String {
+    let switches = Reading::switches().iter();
+    let options = switches.filter_map(|s| Some(format!("{} = {}", s.name, reading.get(s.name)?)));
+    let options: Vec<String> = options.collect();
+    format!("{reading} ({})", options.join(", "))
+}

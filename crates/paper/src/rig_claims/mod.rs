@@ -1,0 +1,32 @@
+//! What the paper says of its rig, held against virtual ones.
+//!
+//! The paper does not tell how its beads rub, how they are laid, how unlike
+//! they are, nor how its spring presses; so a [`Design`] of rigs is tried. Each runs
+//! campaigns with taps and without, and claims, rows of a data file, are judged on all
+//! rigs together and on each alone.
+
+mod design;
+mod evidence;
+mod observe;
+mod predicates;
+mod report;
+mod spread;
+
+pub use design::{Design, FACTORS, Factor, Rig};
+pub use evidence::{AtSpeed, Evidence, Observed, mean, rebound_m_s, spread_s};
+pub use observe::observe;
+pub use report::{MEANING, RigClaims, series_csv};
+pub use spread::{Estimate, root_mean_square, typical};
+
+use crate::claims::{ClaimError, Judge, read};
+
+/// The claims as they come with the program.
+static PAPER: &str = include_str!("../../data/rig_claims.toml");
+
+/// What the paper says of its rig, in the order of the data file.
+///
+/// # Errors
+/// When the data file is damaged, which a test rules out.
+pub fn claims() -> Result<Vec<Judge<Evidence>>, ClaimError> {
+    read(PAPER, predicates::find)
+}

@@ -1,0 +1,165 @@
+//! Predicates: code that decides a claim on what rigs have shown, by name.
+
+use super::evidence::{AtSpeed, Evidence, Observed, each, largest_m, rebound_m_s, spread_s, tof_s};
+use super::spread::{Estimate, deviation, mean_of, root_mean_square, typical};
+use crate::claims::{Branch, Claim, Finding, Needs, Predicate, Tally, Worst};
+use hertzchain_sim::rig::Shot;
+
+static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
+    ("rebounds-differ", rebounds_differ),
+    ("spread-beside-scatter", spread_beside_scatter),
+    ("taps-shrink-own", taps_shrink_own),
+    ("taps-shrink-seen", taps_shrink_seen),
+    ("return-longer", return_longer),
+    ("return-spreads-own", return_spreads_own),
+    ("return-spreads-seen", return_spreads_seen),
+    ("gaps-left", gaps_left),
+    ("gaps-closed", gaps_closed),
+    ("rebound-below", rebound),
+    ("rebound-above", rebound),
+];
+
+/// A predicate by its name.
+pub(super) fn find(name: &str) -> Option<Predicate<Evidence>> {
+    let row = PREDICATES.iter().find(|(known, _)| *known == name);
+    row.map(|(_, predicate)| *predicate)
+}
+
+/// A spread of rebounds that is no spread, in m/s.
+const LEAST_M_S: f64 = 1e-9;
+
+/// Strikers that all stay have a spread of 0: hence a root mean square.
+fn rebounds_differ(claim: &Claim, evidence: &Evidence) -> Finding {
+    let spread = |at: &AtSpeed| deviation(&each(&at.loose, rebound_m_s));
+    a_rig_each(claim, evidence, |observed| {
+        let of_series: Vec<f64> = within(claim, observed).map(spread).collect();
+        root_mean_square(&of_series, LEAST_M_S)
+    })
+}
+
+fn spread_beside_scatter(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_rig_each(claim, evidence, |observed| {
+        let series = observed.with_scatter_s(Branch::Incident);
+        let ratio = |(at, scatter_s): (&AtSpeed, f64)| incident_s(&at.loose) / scatter_s;
+        typical(&series.map(ratio).collect::<Vec<f64>>())
+    })
+}
+
+fn taps_shrink_own(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_rig_each(claim, evidence, |observed| {
+        let ratio = |at: &AtSpeed| incident_s(&at.loose) / incident_s(&at.tapped);
+        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
+    })
+}
+
+fn taps_shrink_seen(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_rig_each(claim, evidence, |observed| {
+        let series = observed.with_scatter_s(Branch::Incident);
+        let ratio = |(at, scatter_s): (&AtSpeed, f64)| {
+            incident_s(&at.loose).hypot(scatter_s) / incident_s(&at.tapped).hypot(scatter_s)
+        };
+        typical(&series.map(ratio).collect::<Vec<f64>>())
+    })
+}
+
+fn return_spreads_own(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_rig_each(claim, evidence, |observed| {
+        let ratio = |at: &AtSpeed| spread_s(&at.tapped, Branch::Reflected) / incident_s(&at.tapped);
+        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
+    })
+}
+
+fn return_spreads_seen(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_rig_each(claim, evidence, |observed| {
+        let [incident, reflected] = Branch::BOTH.map(|branch| {
+            let series = observed.with_scatter_s(branch);
+            series.map(move |(at, scatter_s)| spread_s(&at.tapped, branch).hypot(scatter_s))
+        });
+        let ratios = reflected.zip(incident).map(|(r, i)| r / i);
+        typical(&ratios.collect::<Vec<f64>>())
+    })
+}
+
+fn incident_s(shots: &[Shot]) -> f64 {
+    spread_s(shots, Branch::Incident)
+}
+
+fn return_longer(claim: &Claim, evidence: &Evidence) -> Finding {
+    a_series_each(claim, evidence, |at| {
+        let [incident, reflected] =
+            Branch::BOTH.map(|branch| mean_of(&each(&at.tapped, |shot| tof_s(shot, branch))));
+        let value = reflected.value / incident.value;
+        let relative = incident.error / incident.value + reflected.error / reflected.value;
+        Estimate {
+            value,
+            error: value * relative,
+        }
+    })
+}
+
+fn gaps_left(claim: &Claim, evidence: &Evidence) -> Finding {
+    let gap_m = |shot: &Shot| largest_m(&shot.gaps_after_m);
+    a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, gap_m)))
+}
+
+fn gaps_closed(claim: &Claim, evidence: &Evidence) -> Finding {
+    let gap_m = |shot: &Shot| largest_m(&shot.gaps_before_m);
+    a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, gap_m)))
+}
+
+fn rebound(claim: &Claim, evidence: &Evidence) -> Finding {
+    // Not a negation: a striker that stays has 0, not −0.
+    let away_m_s = |shot: &Shot| 0.0 - rebound_m_s(shot);
+    a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, away_m_s)))
+}
+
+/// The series of a claim's speeds.
+fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a AtSpeed> {
+    let speeds = claim.from_m_s..=claim.to_m_s;
+    let series = observed.speeds.iter();
+    series.filter(move |at| speeds.contains(&at.speed_m_s))
+}
+
+/// One comparison a rig, of the logarithm of what its series have together.
+fn a_rig_each(
+    claim: &Claim,
+    evidence: &Evidence,
+    log_of: impl Fn(&Observed) -> Estimate,
+) -> Finding {
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for observed in &evidence.rigs {
+        let log = log_of(observed);
+        let margin = log.value - claim.threshold.ln();
+        tally.margin(margin, log.error);
+        let value = log.value.exp();
+        worst.see(margin, value, value * log.error, || {
+            observed.rig.name.clone()
+        });
+    }
+    worst.finding(tally)
+}
+
+/// One comparison a series.
+fn a_series_each(
+    claim: &Claim,
+    evidence: &Evidence,
+    of_series: impl Fn(&AtSpeed) -> Estimate,
+) -> Finding {
+    let most = claim.at_most.unwrap_or(f64::INFINITY);
+    let side = match claim.needs {
+        Needs::Below => -1.0,
+        Needs::Above | Needs::Within => 1.0,
+    };
+    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    for observed in &evidence.rigs {
+        for at in within(claim, observed) {
+            let Estimate { value, error } = of_series(at);
+            let margin = (side * (value - claim.threshold)).min(most - value);
+            tally.margin(margin, error);
+            worst.see(margin, value, error, || {
+                format!("{}, {:.3} m/s", observed.rig.name, at.speed_m_s)
+            });
+        }
+    }
+    worst.finding(tally)
+}

@@ -1,0 +1,285 @@
+//! From the accuracy that is asked to a solver that delivers it.
+
+use crate::duration::has_wall;
+use crate::plan::{Plan, Solver};
+use hertzchain_chain::ensemble::Precision;
+use hertzchain_chain::wave::{DormandPrince, Method, Rk4, Verlet};
+use hertzchain_chain::{System, Tension};
+
+/// Tightest tolerance per step: below it rounding, not the step, decides.
+pub(crate) const TIGHTEST: f64 = 1e-13;
+
+/// Times of flight are twice as wrong as one step is allowed to be, up to
+/// thirteen times behind a strong loss, whose loosened chain amplifies errors.
+const OF_TIMES: f64 = 10.0;
+
+/// The residual of the energy budget sums over steps and is this much worse.
+const OF_BUDGET: f64 = 200.0;
+
+/// Chains longer than this take so many more steps that the sum needs more.
+const LONG_CHAIN: f64 = 200.0;
+
+/// A pulse loses a little energy, and with it speed, in every bead that it
+/// passes: in chains longer than this it shows. Measured: 1,000 Hertz beads at
+/// a tenth of 1e-6 are off by 5e-6.
+const FAR: f64 = 100.0;
+
+/// Errors of peak times go with the time of a contact, not with the time of flight:
+/// a flight over fewer beads than these asks for tighter steps.
+const NEAR: f64 = 10.0;
+
+/// The length of the flight in beads over [`NEAR`], at most 1.
+fn nearness(plan: &Plan) -> f64 {
+    if !has_wall(&plan.chain.far) {
+        return 1.0;
+    }
+    let beads = plan.chain.beads.len().saturating_sub(plan.sensor_bead) as f64;
+    ((beads + 0.5) / NEAR).min(1.0)
+}
+
+/// First step of a fixed-step method, in contact times.
+const FIRST_STEP: f64 = 1.0 / 20.0;
+
+/// Tolerance per step that gives a plan's accuracy, and whether rounding forbids it.
+pub fn tolerance(plan: &Plan) -> (f64, bool) {
+    let beads = plan.chain.beads.len() as f64;
+    let share = if plan.budget {
+        OF_BUDGET * (beads / LONG_CHAIN).max(1.0)
+    } else {
+        OF_TIMES * (beads / FAR).max(1.0)
+    };
+    let wanted = plan.accuracy * nearness(plan) / share;
+    (wanted.max(TIGHTEST), wanted < TIGHTEST)
+}
+
+/// A result is at most this many times as wrong as a finer run changes it, and
+/// as one that is ten times finer still: half the step at the lowest order, 1,
+/// leaves as much as it takes away.
+const OF_CHANGES: [f64; 2] = [2.0, 1.25];
+
+/// Runs may agree by chance; no result is trusted to less than this many
+/// tolerances of a step. Measured over the paper's chains and speeds: with both
+/// no error is larger than what is told, `docs/numerics.md`.
+const OF_TOLERANCE: f64 = 5.0;
+
+/// Laws of the rows on which margins of estimates were measured.
+const MEASURED: [&str; 3] = ["elastic_hertz", "damping_viscoelastic", "damping_cubic"];
+
+/// Whether a row has no other laws than those, no cut forces and no gaps.
+pub(crate) fn is_gentle(plan: &Plan) -> bool {
+    let chain = &plan.chain;
+    let mut laws = chain.sections.iter().flat_map(|section| &section.laws);
+    chain.tension == Tension::Allowed
+        && chain.gaps.is_empty()
+        && laws.all(|law| MEASURED.contains(&law.info().name))
+}
+
+/// Other rows are more wrong than the changes say in 14 to 19 of 10,000 results; with this margin
+/// in 3 to 6, by 1.6 times or less but for one (`docs/notes/2026-11-23-error-control.md`).
+const OF_SHARP: f64 = 2.0;
+
+/// Margin of an estimate of a plan's error.
+pub(crate) fn margin(plan: &Plan) -> f64 {
+    if is_gentle(plan) { 1.0 } else { OF_SHARP }
+}
+
+/// The accuracy reached, from the changes that finer runs make, with a margin, and the
+/// tolerance per step, 0 for fixed steps.
+pub fn reached(changes: [f64; 2], margin: f64, tolerance: f64) -> f64 {
+    let bounds = changes
+        .iter()
+        .zip(OF_CHANGES)
+        .map(|(change, of)| margin * of * change);
+    bounds.fold(OF_TOLERANCE * tolerance, f64::max)
+}
+
+/// Tolerances of the runs that estimate the error of a shot, over its own.
+pub(crate) const LOOSER: [f64; 2] = [10.0, 40.0];
+
+/// Error of a run over that of one with a tenth of its tolerance, at least: errors
+/// mostly go with the tolerance, and with its third root in short rows with laws
+/// whose force begins with an infinite slope.
+const LEAST_GAIN: f64 = 2.0;
+
+/// The error of a run, from the changes to runs that are this many times looser, with a
+/// margin, and from its own tolerance per step.
+pub(crate) fn estimated(changes: &[(f64, f64)], margin: f64, tolerance: f64) -> f64 {
+    let share = |(looseness, change): &(f64, f64)| {
+        let gain = LEAST_GAIN.powf(looseness.log10());
+        margin * change / (gain - 1.0)
+    };
+    let changes = changes.iter().map(share);
+    changes.fold(OF_TOLERANCE * tolerance, f64::max)
+}
+
+/// Tolerance per step with which errors that do not sum along a chain leave
+/// times of flight as right as a plan asks.
+pub(crate) fn of_times(plan: &Plan) -> f64 {
+    plan.accuracy / OF_TIMES
+}
+
+/// Steps of the ensemble loop, in contact times, with which rows of alike
+/// beads mostly reach an accuracy, and whether openings must be found: measured,
+/// `docs/numerics.md`. Each shot tells by two longer steps whether it has.
+const EQUAL_STEPS: [(f64, f64, bool); 5] = [
+    (1e-3, 0.13, false),
+    (1e-4, 0.1, false),
+    (1e-5, 0.07, true),
+    (1e-6, 0.036, true),
+    (1e-7, 0.013, true),
+];
+
+/// Chains longer than this lose more on the way than [`EQUAL_STEPS`] tells.
+const EQUAL_STEPS_FOR: f64 = 60.0;
+
+/// The step of the ensemble loop for a plan's accuracy, and whether openings
+/// must be found; `None` below what it can do.
+pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
+    let length = plan.chain.beads.len() as f64 / EQUAL_STEPS_FOR;
+    let accuracy = plan.accuracy * nearness(plan) / length.max(1.0);
+    let [(loosest, longest, _), ..] = EQUAL_STEPS;
+    if accuracy >= loosest {
+        return Some((longest, false));
+    }
+    let between = |pair: &[(f64, f64, bool)]| {
+        let [(looser, longer, _), (tighter, shorter, openings)] = *pair else {
+            return None;
+        };
+        let share = (accuracy / tighter).ln() / (looser / tighter).ln();
+        (0.0..=1.0)
+            .contains(&share)
+            .then(|| (shorter * (longer / shorter).powf(share), openings))
+    };
+    EQUAL_STEPS.windows(2).find_map(between)
+}
+
+/// Accuracies from this on are computed in single precision, whose rounding is
+/// measured in `docs/numerics.md`.
+const SINGLE_FROM: f64 = 5e-5;
+
+/// How long the numbers of the ensemble loop are for a plan: where a load
+/// presses beads together, single precision would lose the wave in it.
+pub(crate) fn precision(plan: &Plan, system: &System) -> Precision {
+    match plan.accuracy >= SINGLE_FROM && system.flies_free() {
+        true => Precision::Single,
+        false => Precision::Double,
+    }
+}
+
+/// The adaptive solver at a tolerance.
+pub fn adaptive(tolerance: f64) -> Box<dyn Method> {
+    Box::new(DormandPrince { tolerance })
+}
+
+/// A fixed-step solver and its step in s; `None` for the adaptive one.
+pub(crate) fn given_step(solver: Solver) -> Option<f64> {
+    match solver {
+        Solver::Adaptive => None,
+        Solver::Rk4 { step_s } | Solver::Verlet { step_s } => step_s,
+    }
+}
+
+/// The step in s that a search for a fixed step begins with.
+pub(crate) fn first_step_s(system: &System) -> f64 {
+    FIRST_STEP * system.scales().time_s
+}
+
+/// A fixed-step solver.
+pub(crate) fn fixed(solver: Solver, step_s: f64) -> Box<dyn Method> {
+    match solver {
+        Solver::Verlet { .. } => Box::new(Verlet { step_s }),
+        Solver::Rk4 { .. } | Solver::Adaptive => Box::new(Rk4 { step_s }),
+    }
+}
+
+/// A search for a fixed step halves it at most this often, down to some 1e-5
+/// of the contact time: beyond, adaptive steps are the only sane choice.
+pub(crate) const MOST_HALVINGS: u32 = 11;
+
+/// Changes of a result from which an order of convergence is read: the runs
+/// behind them take a hundredth of the time of the whole search.
+const SEEN: usize = 4;
+
+/// At impact an order of 1 is what every method has; less is scatter.
+const LEAST_ORDER: f64 = 1.0;
+
+/// How a result changes as a fixed step is halved again and again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Halvings {
+    changes: Vec<f64>,
+}
+
+/// What an accuracy would take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outlook {
+    /// Observed order of convergence, at least 1.
+    pub order: f64,
+    /// Halvings still to be made.
+    pub halvings: f64,
+}
+
+impl Halvings {
+    /// Notes the relative change that the latest halving made.
+    pub(crate) fn note(&mut self, change: f64) {
+        self.changes.push(change);
+    }
+
+    /// The latest change.
+    pub(crate) fn last(&self) -> f64 {
+        self.changes.last().copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The larger of the latest two changes: one small change may be two errors
+    /// that happen to be alike.
+    pub(crate) fn standing(&self) -> f64 {
+        match self.changes[..] {
+            [.., one, two] => one.max(two),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Halvings that an accuracy still takes at the order seen so far (Richardson);
+    /// `None` as long as too few changes are known.
+    pub(crate) fn outlook(&self, accuracy: f64) -> Option<Outlook> {
+        let seen = self.changes.get(self.changes.len().checked_sub(SEEN)?..)?;
+        let (first, last) = (seen.first()?, seen.last()?);
+        let order = (first / last).log2() / (SEEN - 1) as f64;
+        let order = order.is_finite().then_some(order.max(LEAST_ORDER))?;
+        let halvings = ((last / accuracy).log2() / order).ceil();
+        Some(Outlook { order, halvings })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn halvings(order: f64, first: f64, count: i32) -> Halvings {
+        let mut halvings = Halvings::default();
+        for i in 0..count {
+            halvings.note(first * (-order * f64::from(i)).exp2());
+        }
+        halvings
+    }
+
+    #[test]
+    fn halvings_to_come_follow_from_the_observed_order() {
+        for order in [1.0, 1.5, 2.0, 4.0] {
+            let seen = halvings(order, 1e-2, 5);
+            let outlook = seen.outlook(1e-9).unwrap();
+            assert!((outlook.order - order).abs() < 1e-12, "{outlook:?}");
+            let after = seen.last() * (-order * outlook.halvings).exp2();
+            // Just enough: one halving less would not do.
+            assert!(after <= 1e-9 && after * order.exp2() > 1e-9, "{outlook:?}");
+        }
+    }
+
+    #[test]
+    fn few_or_missing_results_give_no_outlook() {
+        assert_eq!(halvings(2.0, 1e-2, 3).outlook(1e-9), None);
+        let mut lost = halvings(2.0, f64::INFINITY, 2);
+        lost.note(1e-3);
+        lost.note(1e-4);
+        assert_eq!(lost.outlook(1e-9), None);
+    }
+}

@@ -1,0 +1,149 @@
+//! Names of work: a hash of everything that a result follows from.
+
+use crate::commit;
+use sha2::{Digest, Sha256};
+use std::fmt::{Debug, Display, Formatter, Result as Formatted};
+use std::str::FromStr;
+
+/// SHA-256 of all inputs of a result. Work of one fingerprint gives one result,
+/// wherever it runs; its text is 64 hexadecimal digits.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Fingerprint([u8; 32]);
+
+/// Digits of the short form: 64 bits, enough to tell works of one place apart.
+const SHORT: usize = 16;
+
+impl Fingerprint {
+    /// The first 16 digits, for names of files.
+    #[must_use]
+    pub fn short(&self) -> String {
+        self.to_string().chars().take(SHORT).collect()
+    }
+
+    /// Of the bytes of a result, to see that it is whole.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        Self(Sha256::digest(bytes).into())
+    }
+}
+
+impl Display for Fingerprint {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl Debug for Fingerprint {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
+        write!(f, "Fingerprint({self})")
+    }
+}
+
+/// A text that is no fingerprint.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no fingerprint: expected 64 hexadecimal digits")]
+pub struct NoFingerprint(String);
+
+impl FromStr for Fingerprint {
+    type Err = NoFingerprint;
+
+    fn from_str(text: &str) -> Result<Self, NoFingerprint> {
+        let refused = || NoFingerprint(text.to_owned());
+        let digits: Vec<u32> = text.chars().filter_map(|c| c.to_digit(16)).collect();
+        if digits.len() != 64 || text.chars().count() != 64 {
+            return Err(refused());
+        }
+        let pairs = digits
+            .chunks_exact(2)
+            .map(|pair| (16 * pair[0] + pair[1]) as u8);
+        let bytes: Vec<u8> = pairs.collect();
+        bytes.try_into().map(Self).map_err(|_| refused())
+    }
+}
+
+/// Inputs as they are gathered for a [`Fingerprint`]: each with its name and
+/// length, so that no two lists of inputs are the same bytes.
+#[derive(Clone, Debug)]
+pub struct Inputs(Sha256);
+
+impl Inputs {
+    /// Of work of a kind by this build of the program: another may make other bits.
+    #[must_use]
+    pub fn of(kind: &str) -> Self {
+        let inputs = Self(Sha256::new()).text("kind", kind);
+        inputs
+            .text("version", env!("CARGO_PKG_VERSION"))
+            .text("commit", &commit().unwrap_or_default())
+    }
+
+    /// With a text.
+    #[must_use]
+    pub fn text(self, name: &str, text: &str) -> Self {
+        self.bytes(name, text.as_bytes())
+    }
+
+    /// With numbers, bit for bit.
+    #[must_use]
+    pub fn numbers(self, name: &str, values: &[f64]) -> Self {
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|value| value.to_bits().to_le_bytes())
+            .collect();
+        self.bytes(name, &bytes)
+    }
+
+    /// With a whole number.
+    #[must_use]
+    pub fn count(self, name: &str, count: u64) -> Self {
+        self.bytes(name, &count.to_le_bytes())
+    }
+
+    /// With what another fingerprint stands for.
+    #[must_use]
+    pub fn work(self, name: &str, of: &Fingerprint) -> Self {
+        self.bytes(name, &of.0)
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn fingerprint(self) -> Fingerprint {
+        Fingerprint(self.0.finalize().into())
+    }
+
+    fn bytes(mut self, name: &str, bytes: &[u8]) -> Self {
+        for part in [name.as_bytes(), bytes] {
+            self.0.update((part.len() as u64).to_le_bytes());
+            self.0.update(part);
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// SHA-256 of "abc" as FIPS 180-2 prints it.
+    #[test]
+    fn the_hash_is_sha_256_and_is_read_back() {
+        let printed = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        let hash = Fingerprint::of_bytes(b"abc");
+        assert_eq!(hash.to_string(), printed);
+        assert_eq!(printed.parse(), Ok(hash));
+        assert_eq!(hash.short(), &printed[..16]);
+        assert!(printed[1..].parse::<Fingerprint>().is_err());
+        assert!(printed.replace('b', "x").parse::<Fingerprint>().is_err());
+    }
+
+    #[test]
+    fn lists_of_inputs_that_run_together_differ() {
+        let of = |parts: [&str; 2]| {
+            let inputs = Inputs::of("test").text("a", parts[0]).text("b", parts[1]);
+            inputs.fingerprint()
+        };
+        assert_ne!(of(["one", "two"]), of(["onet", "wo"]));
+        assert_eq!(of(["one", "two"]), of(["one", "two"]));
+        let zeros = [0.0, -0.0].map(|zero| Inputs::of("test").numbers("a", &[zero]).fingerprint());
+        assert_ne!(zeros[0], zeros[1]);
+    }
+}

@@ -1,0 +1,222 @@
+//! What is to be computed.
+
+use crate::error::StudyError;
+use hertzchain_chain::{Chain, Sensor};
+use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Warning};
+
+/// How the motion is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Solver {
+    /// Dormand–Prince 5(4) with steps that end at contact changes.
+    #[default]
+    Adaptive,
+    /// Classical Runge–Kutta; without a step, halved until the accuracy is reached.
+    Rk4 {
+        /// Step in s.
+        step_s: Option<f64>,
+    },
+    /// Velocity Verlet; without a step, halved until the accuracy is reached.
+    Verlet {
+        /// Step in s.
+        step_s: Option<f64>,
+    },
+}
+
+impl From<experiment::Solver> for Solver {
+    fn from(asked: experiment::Solver) -> Self {
+        let step_s = asked.step_s;
+        match asked.method {
+            experiment::Method::Adaptive => Self::Adaptive,
+            experiment::Method::Rk4 => Self::Rk4 { step_s },
+            experiment::Method::Verlet => Self::Verlet { step_s },
+        }
+    }
+}
+
+/// Where a pulse is timed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Pick {
+    /// At its maximum.
+    #[default]
+    Peak,
+    /// Where its rising flank passes this fraction of its maximum.
+    Flank(f64),
+    /// By the lag of the largest cross-correlation of the two pulses.
+    CrossCorrelation,
+}
+
+impl Pick {
+    /// Every way that an experiment file can ask for.
+    pub const ALL: [Self; 4] = [
+        Self::Peak,
+        Self::Flank(0.1),
+        Self::Flank(0.5),
+        Self::CrossCorrelation,
+    ];
+}
+
+impl From<experiment::Pick> for Pick {
+    fn from(pick: experiment::Pick) -> Self {
+        match pick {
+            experiment::Pick::Peak => Self::Peak,
+            experiment::Pick::Flank10 => Self::Flank(0.1),
+            experiment::Pick::Flank50 => Self::Flank(0.5),
+            experiment::Pick::CrossCorrelation => Self::CrossCorrelation,
+        }
+    }
+}
+
+/// What to sample while a shot runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watch {
+    /// Sensors, one column each.
+    pub sensors: Vec<Sensor>,
+    /// Sampling interval in s; a tenth of the contact time when `None`.
+    pub interval_s: Option<f64>,
+}
+
+/// One shot to be computed.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The chain with whatever sets it in motion.
+    pub chain: Chain,
+    /// Bead whose signal times the passing pulses.
+    pub sensor_bead: usize,
+    /// Relative accuracy asked of times of flight.
+    pub accuracy: f64,
+    /// How the motion is computed.
+    pub solver: Solver,
+    /// Duration in s; when `None` the shot ends once the reflected pulse has
+    /// passed the sensor bead and the striker is away for good, or all bodies
+    /// fly apart.
+    pub duration_s: Option<f64>,
+    /// Follow the striker until it is away for good; without, a shot ends once
+    /// the reflected pulse has passed and tells no rebound.
+    pub rebound: bool,
+    /// Where pulses are timed.
+    pub pick: Pick,
+    /// Other ways to time the same pulses, to compare with.
+    pub compare: Vec<Pick>,
+    /// Keep an energy budget.
+    pub budget: bool,
+    /// What to sample.
+    pub watch: Option<Watch>,
+}
+
+impl Plan {
+    /// A shot of a chain: peaks, the adaptive solver, an accuracy of 1e-6, no
+    /// budget, nothing sampled.
+    #[must_use]
+    pub fn new(chain: Chain, sensor_bead: usize) -> Self {
+        Self {
+            chain,
+            sensor_bead,
+            accuracy: experiment::Solver::DEFAULT_ACCURACY,
+            solver: Solver::Adaptive,
+            duration_s: None,
+            rebound: true,
+            pick: Pick::Peak,
+            compare: Vec::new(),
+            budget: false,
+            watch: None,
+        }
+    }
+
+    /// The shot of an experiment, at its own speed or another in m/s, with
+    /// what is odd about it.
+    ///
+    /// # Errors
+    /// A speed that the experiment can't have, with its place in the file.
+    pub fn from_experiment(
+        experiment: &Experiment,
+        speed_m_s: Option<f64>,
+    ) -> Result<(Self, Vec<Warning>), Mistakes> {
+        // What the physics refuses is reported at its place in the file.
+        let (_, warnings) = experiment.system(speed_m_s)?;
+        let (chain, _) = experiment.chain(speed_m_s)?;
+        let asked = experiment.solver();
+        let plan = Self {
+            accuracy: asked.accuracy,
+            solver: asked.into(),
+            duration_s: asked.duration_s,
+            pick: experiment.pick().into(),
+            ..Self::new(chain, experiment.sensor_bead())
+        };
+        Ok((plan, warnings))
+    }
+
+    /// This plan for times of flight alone, without the striker's rebound.
+    #[must_use]
+    pub fn for_flights(mut self) -> Self {
+        self.rebound = false;
+        self
+    }
+
+    /// This plan, timed by peaks, with all other ways to compare with.
+    #[must_use]
+    pub fn comparing_picks(mut self) -> Self {
+        self.pick = Pick::Peak;
+        self.compare = Pick::ALL[1..].to_vec();
+        self
+    }
+
+    /// Ways to time the pulses, the plan's own first.
+    pub fn picks(&self) -> impl Iterator<Item = Pick> + '_ {
+        std::iter::once(self.pick).chain(self.compare.iter().copied())
+    }
+
+    /// This plan with an energy budget.
+    #[must_use]
+    pub fn with_budget(mut self) -> Self {
+        self.budget = true;
+        self
+    }
+
+    /// This plan at another accuracy.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.accuracy = accuracy;
+        self
+    }
+
+    /// This plan with sensors sampled; a trace of more than
+    /// [`Tracer::MOST_NUMBERS`](hertzchain_chain::observe::Tracer::MOST_NUMBERS)
+    /// numbers is refused while the shot runs, since only then its end is known.
+    #[must_use]
+    pub fn watching(mut self, sensors: Vec<Sensor>, interval_s: Option<f64>) -> Self {
+        self.watch = Some(Watch {
+            sensors,
+            interval_s,
+        });
+        self
+    }
+
+    /// Refuses what no shot can be.
+    pub(crate) fn check(&self) -> Result<(), StudyError> {
+        let beads = self.chain.beads.len();
+        if !(1..=beads).contains(&self.sensor_bead) {
+            return Err(StudyError::SensorOutside {
+                bead: self.sensor_bead,
+                beads,
+            });
+        }
+        if !(1e-13..=1e-2).contains(&self.accuracy) {
+            return Err(StudyError::Accuracy(self.accuracy));
+        }
+        let step = match self.solver {
+            Solver::Adaptive => None,
+            Solver::Rk4 { step_s } | Solver::Verlet { step_s } => step_s,
+        };
+        positive("the step", step)?;
+        positive("the duration", self.duration_s)?;
+        let interval = self.watch.as_ref().and_then(|watch| watch.interval_s);
+        positive("the sampling interval", interval)
+    }
+}
+
+fn positive(what: &'static str, time_s: Option<f64>) -> Result<(), StudyError> {
+    match time_s {
+        Some(value) if !(value > 0.0 && value.is_finite()) => Err(StudyError::Time { what, value }),
+        _ => Ok(()),
+    }
+}

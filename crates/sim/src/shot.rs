@@ -1,0 +1,225 @@
+//! One shot from its plan to its numbers.
+
+use crate::error::StudyError;
+use crate::flight::{Flight, relative};
+use crate::gun::{Check, Gun};
+use crate::other_picks::OtherPick;
+use crate::plan::Plan;
+use hertzchain_chain::observe::{Competing, Maximum, Passage, PassageError, Pulse, Trace};
+use hertzchain_chain::wave::{Budget, Work};
+
+/// The striker's velocity after the impact, negative away from the chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rebound {
+    /// When it first let go of bead 1, in s, and its velocity then, in m/s.
+    pub first: Option<(f64, f64)>,
+    /// Its velocity in m/s at the end of the shot: once it is away for good, or
+    /// after six times the time that the pulse took to the wall. `None` when the plan does
+    /// not follow it, or when a duration that was asked for was over before.
+    pub end_m_s: Option<f64>,
+    /// When it had that velocity, in s: on an incline it changes in flight.
+    pub end_s: Option<f64>,
+}
+
+/// What one shot gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// Times of flight as picked; `None` when no pulse was seen to pass.
+    pub flight: Option<Flight>,
+    /// The same as the plan's other picks time them.
+    pub compared: Vec<Option<Flight>>,
+    /// Peaks and widths, or why there are none.
+    pub passage: Result<Passage, PassageError>,
+    /// Maxima of the sensor bead above 5 % of its largest, seen with or
+    /// without a pulse at the wall.
+    pub sensor_maxima: Vec<Maximum>,
+    /// Beads per second between sensor bead and wall contact, by their peaks:
+    /// (N − n + 1/2)/(tw − t7).
+    pub pulse_speed_beads_s: Option<f64>,
+    /// The striker afterwards; `None` without a striker.
+    pub rebound: Option<Rebound>,
+    /// Energy at the end, when a budget was asked for.
+    pub budget: Option<Budget>,
+    /// What was sampled, when that was asked for.
+    pub trace: Option<Trace>,
+    /// Duration in s.
+    pub duration_s: f64,
+    /// Whether the shot came to its own end before its longest duration.
+    pub finished: bool,
+    /// Velocities of all bodies at the end in m/s.
+    pub velocity_m_s: Vec<f64>,
+    /// What the (last) run cost.
+    pub work: Work,
+    /// Relative accuracy asked of times of flight.
+    pub accuracy_asked: f64,
+    /// A bound on the relative error of the times of flight (of the sensor's largest
+    /// peak time or the final velocities, where there are none), from runs that are
+    /// looser or tighter, or from twice or half the fixed step: [`shoot_estimated`],
+    /// [`shoot_checked`]; `None` from [`shoot`]. In an ensemble, always, from the
+    /// changes to steps 1.3 and 1.69 times as long. `work` does not count those shots.
+    pub accuracy_reached: Option<f64>,
+    /// How it was computed.
+    pub solver: String,
+    /// Tolerance per step of the adaptive solver.
+    pub tolerance: Option<f64>,
+    /// Step of a fixed-step solver in s.
+    pub step_s: Option<f64>,
+    /// Maxima that errors of heights could make a pulse's peak instead.
+    pub(crate) other_picks: Vec<OtherPick>,
+    /// What a reader of the numbers must know.
+    pub notes: Vec<String>,
+}
+
+impl Shot {
+    /// The wall's peak, with or without an incident one.
+    #[must_use]
+    pub fn wall(&self) -> Option<Maximum> {
+        match &self.passage {
+            Ok(passage) => Some(passage.wall),
+            Err(PassageError::NoIncidentPulse { wall }) => Some(*wall),
+            Err(PassageError::NoWallPulse { .. }) => None,
+        }
+    }
+
+    /// The highest maximum, over its pulse's peak, that could be the incident or the
+    /// wall's peak instead.
+    #[must_use]
+    pub fn competing_arrival(&self) -> Option<Maximum> {
+        self.competing(&[Pulse::Incident, Pulse::Wall])
+    }
+
+    /// The same of the reflected pulse.
+    #[must_use]
+    pub fn competing_reflected(&self) -> Option<Maximum> {
+        self.competing(&[Pulse::Reflected])
+    }
+
+    fn competing(&self, pulses: &[Pulse]) -> Option<Maximum> {
+        let passage = self.passage.as_ref().ok()?;
+        passage.highest_competing(pulses).map(|other| other.maximum)
+    }
+
+    /// Largest relative difference of two computations of one shot.
+    pub(crate) fn change(&self, other: &Self) -> f64 {
+        if let Some(change) = self.flights_change(other) {
+            return change;
+        }
+        match (highest(&self.sensor_maxima), highest(&other.sensor_maxima)) {
+            (Some(one), Some(two)) => relative(one.time_s, two.time_s),
+            _ => velocity_change(&self.velocity_m_s, &other.velocity_m_s),
+        }
+    }
+
+    /// Largest difference of the heights of incident and wall peak over the higher; infinite
+    /// where one computation has none.
+    pub(crate) fn height_change(&self, other: &Self) -> f64 {
+        match (&self.passage, &other.passage) {
+            (Ok(one), Ok(two)) => {
+                let incident = (one.incident.value - two.incident.value).abs();
+                let wall = (one.wall.value - two.wall.value).abs();
+                incident.max(wall) / one.incident.value.max(one.wall.value)
+            }
+            (Err(_), Err(_)) => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Largest relative difference of times of flight, however picked; `None`
+    /// where neither computation has any.
+    fn flights_change(&self, other: &Self) -> Option<f64> {
+        let all = |shot: &Self| std::iter::once(shot.flight).chain(shot.compared.clone());
+        let changes = all(self).zip(all(other)).filter_map(|pair| match pair {
+            (Some(one), Some(two)) => Some(one.change(&two)),
+            (None, None) => None,
+            _ => Some(f64::INFINITY),
+        });
+        changes.reduce(f64::max)
+    }
+}
+
+fn highest(maxima: &[Maximum]) -> Option<&Maximum> {
+    maxima
+        .iter()
+        .reduce(|best, peak| if peak.value > best.value { peak } else { best })
+}
+
+/// Largest difference of velocities over the largest velocity.
+fn velocity_change(one: &[f64], two: &[f64]) -> f64 {
+    let most = two
+        .iter()
+        .fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()));
+    let pairs = one.iter().zip(two);
+    pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / most
+}
+
+/// Runs a shot, once.
+///
+/// Fixed-step solvers without a step start from a twentieth of the contact
+/// time and halve it until times of flight change by less than the accuracy.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn shoot(plan: &Plan) -> Result<Shot, StudyError> {
+    Gun::load(plan)?.shoot(Check::Unchecked)
+}
+
+/// Runs a shot with an estimate of its error.
+///
+/// With an energy budget, which asks for tight steps, two runs for times of flight
+/// alone at looser tolerances estimate it; else two at a tenth and a hundredth of the tolerance,
+/// as [`shoot_checked`]; a fixed step by one of twice its length. A shot whose estimate is above the accuracy asked is computed
+/// more tightly.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn shoot_estimated(plan: &Plan) -> Result<Shot, StudyError> {
+    Gun::load(plan)?.shoot(Check::Estimated)
+}
+
+/// Runs a shot and again at a tenth and a hundredth of the tolerance (or at half the
+/// fixed step), to learn which accuracy was reached.
+///
+/// # Errors
+/// See [`StudyError`].
+pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
+    Gun::load(plan)?.shoot(Check::Again)
+}
+
+/// Errors of peaks over the accuracy asked of times, at most.
+pub const OF_PEAKS: f64 = 50.0;
+
+/// Pulses whose peak could be another maximum: as high as far as the accuracy allows to
+/// know, so that the next computation may pick the other, or at the sensor bead or the
+/// wall on the way in.
+pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
+    let note = |pulse: Pulse| {
+        let of_pulse = |other: &&Competing| other.pulse == pulse;
+        let others = || passage.competing.iter().filter(of_pulse);
+        let highest = others().max_by(|a, b| a.share.total_cmp(&b.share))?;
+        let Competing { share, maximum, .. } = highest;
+        let (name, time) = (pulse.name(), maximum.time_s);
+        if (1.0 - share).abs() <= OF_PEAKS * accuracy {
+            return Some(format!(
+                "the {name} pulse has two maxima whose heights differ by less than an accuracy of {accuracy:e} \
+                 resolves: its time is that of the higher, the other is at t = {time:.6e}"
+            ));
+        }
+        let count = others().count();
+        (pulse != Pulse::Reflected).then(|| {
+            format!(
+                "the arrival is ambiguous: the {name} pulse has {count} other maxim{}, the highest {share:.3} times \
+                 as high as its peak, at t = {time:.6e}",
+                if count == 1 { "um" } else { "a" },
+            )
+        })
+    };
+    let pulses = [Pulse::Incident, Pulse::Wall, Pulse::Reflected];
+    pulses.into_iter().filter_map(note).collect()
+}
+
+/// Maxima above 5 % of the largest.
+pub(crate) fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
+    let most = highest(maxima).map_or(0.0, |peak| peak.value);
+    let large = |peak: &&Maximum| most > 0.0 && peak.value >= 0.05 * most;
+    maxima.iter().filter(large).copied().collect()
+}

@@ -1,0 +1,16 @@
+//! The virtual rig.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that cannot go on should fail"
+)]
+
+mod amplifier;
+mod campaign;
+mod instruments;
+mod outlook;
+mod poisoned;
+mod record;
+mod series;
+mod small;
+mod wave;

@@ -1,0 +1,188 @@
+//! Sweeps in parts: what a part is does not depend on how the whole is cut.
+
+use hertzchain_experiment::{Experiment, preset};
+use hertzchain_sim::{How, Judges, Rows, Run, Settings, Shard, parse_speeds, sweep};
+
+/// Forty beads take a while: twelve do.
+fn row(name: &str) -> Experiment {
+    let experiment = preset(name).unwrap();
+    experiment.set(&[("beads[0].count", 12.0)]).unwrap()
+}
+
+fn how(experiment: &Experiment, judges: Judges) -> How {
+    How {
+        judges,
+        ..How::of(experiment)
+    }
+}
+
+fn bits(rows: &Rows) -> Vec<u64> {
+    let values = rows.columns.iter().flatten();
+    values.map(|value| value.to_bits()).collect()
+}
+
+fn cut(run: &Run, of: usize) -> Rows {
+    // The last part first: the order does not matter either.
+    let mut parts: Vec<Rows> = Shard::all(of)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .rev()
+        .map(|shard| run.part(shard, &|| {}).rows)
+        .collect();
+    parts.reverse();
+    Rows::dealt(&parts)
+}
+
+#[test]
+fn parts_have_the_bits_of_the_sweep_whoever_judges() {
+    let dry = row("dry");
+    let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
+    for judges in [Judges::Each, Judges::Pilots] {
+        let settings = Settings {
+            adjust: &|plan| plan.rebound = false,
+            judges,
+            ..Settings::default()
+        };
+        let swept = sweep(&dry, &speeds, &settings);
+        let whole = Rows::of(&swept.points);
+        let run = Run::new(&dry, speeds.clone(), how(&dry, judges)).unwrap();
+        assert_eq!(swept.tuned.is_some(), judges == Judges::Pilots);
+        for of in [1, 2, 7] {
+            assert_eq!(bits(&cut(&run, of)), bits(&whole), "{judges:?} in {of}");
+        }
+    }
+}
+
+#[test]
+fn pilots_of_a_part_are_those_of_the_whole_run() {
+    let dry = row("dry");
+    let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
+    let run = Run::new(&dry, speeds, how(&dry, Judges::Pilots)).unwrap();
+    let [first, last] = [1, 27].map(|number| {
+        let part = run.part(Shard::new(number, 27).unwrap(), &|| {});
+        (part.rows.len(), part.tuned.unwrap())
+    });
+    // Two shots, and one: too few for forty pilots of their own.
+    assert_eq!((first.0, last.0), (2, 1));
+    assert_eq!(first.1, last.1);
+    assert!(first.1.contains("40 pilots"), "{}", first.1);
+}
+
+#[test]
+fn a_poisoned_shot_is_told_and_changes_no_other() {
+    let dry = row("dry");
+    let sound = vec![0.2, 0.4, 0.6, 0.8];
+    let poisoned = vec![0.2, f64::NAN, 0.4, -1.0, 0.6, 1e300, 0.8];
+    let rows =
+        |speeds: Vec<f64>, judges, of| cut(&Run::new(&dry, speeds, how(&dry, judges)).unwrap(), of);
+    for of in [1, 3] {
+        let found = rows(poisoned.clone(), Judges::Each, of);
+        let places: Vec<usize> = found.failed.iter().map(|failed| failed.place).collect();
+        assert_eq!(places, [1, 3, 5]);
+        assert!(found.failed.iter().all(|failed| !failed.why.is_empty()));
+        assert_eq!(
+            found.flights(),
+            rows(sound.clone(), Judges::Each, 1).flights()
+        );
+        let tuned = [1, 3].map(|of| bits(&rows(poisoned.clone(), Judges::Pilots, of)));
+        assert_eq!(tuned[0], tuned[1]);
+    }
+}
+
+#[test]
+fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own() {
+    let dry = row("dry");
+    let moduli = [180e9, 200e9, -1.0, 220e9];
+    let run = Run::new(&dry, vec![0.5; 4], How::of(&dry)).unwrap();
+    let run = run.with_number("young_modulus", moduli.to_vec()).unwrap();
+    let rows = cut(&run, 3);
+    assert_eq!(rows.failed.len(), 1);
+    for (flight, modulus) in rows.flights().into_iter().zip([180e9, 200e9, 220e9]) {
+        let own = dry.set(&[("young_modulus", modulus)]).unwrap();
+        let own = Run::new(&own, vec![0.5], How::of(&own)).unwrap();
+        assert_eq!(vec![flight], own.part(Shard::WHOLE, &|| {}).rows.flights());
+    }
+    let refused = |path: &str, values: usize| {
+        let run = Run::new(&dry, vec![0.5; 4], How::of(&dry)).unwrap();
+        run.with_number(path, vec![1.0; values])
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(refused("young_modulus", 3).contains("3 values for 4 shots"));
+    assert!(refused("yong_modulus", 4).contains("young_modulus"));
+}
+
+#[test]
+fn a_name_follows_from_every_input_and_from_nothing_else() {
+    let dry = row("dry");
+    let name = |experiment: &Experiment, speeds: &[f64], how: How| {
+        let run = Run::new(experiment, speeds.to_vec(), how).unwrap();
+        run.name(Shard::new(1, 2).unwrap())
+    };
+    let plain = name(&dry, &[0.5, 1.0], How::of(&dry));
+    assert!(
+        plain.starts_with("sweep-") && plain.ends_with("-1-of-2"),
+        "{plain}"
+    );
+    let moved = Experiment::from_text("/elsewhere/row.toml", dry.text()).unwrap();
+    let moved = moved.set(&[("beads[0].count", 12.0)]).unwrap();
+    assert_eq!(name(&moved, &[0.5, 1.0], How::of(&dry)), plain);
+    let how = How::of(&dry);
+    let others = [
+        name(&row("hertz"), &[0.5, 1.0], how),
+        name(&dry, &[1.0, 0.5], how),
+        name(&dry, &[0.5, 1.0_f64.next_up()], how),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                accuracy: 1e-5,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                rebound: true,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                checked: true,
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                duration_s: Some(1e-3),
+                ..how
+            },
+        ),
+        name(
+            &dry,
+            &[0.5, 1.0],
+            How {
+                judges: Judges::Pilots,
+                ..how
+            },
+        ),
+    ];
+    for (at, other) in others.iter().enumerate() {
+        assert_ne!(other, &plain, "{at}");
+        assert!(!others[..at].contains(other), "{at}");
+    }
+    let run = Run::new(&dry, vec![0.5, 1.0], how).unwrap();
+    // It is kept once it was asked for, but not by a run with other numbers.
+    assert_eq!(run.fingerprint(), run.clone().fingerprint());
+    let numbered = run
+        .clone()
+        .with_number("poisson_ratio", vec![0.3, 0.3])
+        .unwrap();
+    assert_ne!(numbered.fingerprint(), run.fingerprint());
+}
