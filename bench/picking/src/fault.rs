@@ -15,22 +15,22 @@ const SPEED_STD: f64 = 0.003;
 const EXPONENT: f64 = -0.2;
 
 /// How an amplifier saturates: from the voltage and the level where it ends.
-pub type Clip = fn(f64, f64) -> f64;
+pub(crate) type Clip = fn(f64, f64) -> f64;
 
-pub const HARD: Clip = |volts, end| volts.min(end);
-pub const TANH: Clip = |volts, end| end * (volts / end).tanh();
-pub const SHORT_KNEE: Clip = |volts, end| {
+pub(crate) const HARD: Clip = |volts, end| volts.min(end);
+pub(crate) const TANH: Clip = |volts, end| end * (volts / end).tanh();
+pub(crate) const SHORT_KNEE: Clip = |volts, end| {
     let rest = 0.1 * end;
     volts.min(0.9 * end) + rest * ((volts - 0.9 * end).max(0.0) / rest).tanh()
 };
-pub const KNEE: Clip = |volts, end| match volts > 0.0 {
+pub(crate) const KNEE: Clip = |volts, end| match volts > 0.0 {
     true => volts / (1.0 + (volts / end).powi(8)).powf(0.125),
     false => volts,
 };
 
 /// What is done to a shot's signals.
 #[derive(Clone)]
-pub struct Fault {
+pub(crate) struct Fault {
     pub rate_hz: f64,
     pub noise_db: f64,
     /// The saturation, and the share of the wall's pulse at which it ends.
@@ -65,7 +65,7 @@ impl Default for Fault {
 }
 
 /// Voltages of the channels without noise, at the trace's interval.
-pub fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
+pub(crate) fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
     let [mut sensor, mut wall] = row.forces.clone();
     if fault.without_return {
         let half = 0.5 * (row.maxima_s[0] + row.maxima_s[1]);
@@ -118,7 +118,7 @@ fn filter(low_pass: Bandwidth, channel: &mut [f64]) {
 }
 
 /// One shot's samples a channel, from a random moment on and in noise, and its striker's speed.
-pub fn record(
+pub(crate) fn record(
     row: &Row,
     volts: &[Vec<f64>],
     fault: &Fault,

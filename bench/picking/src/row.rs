@@ -5,10 +5,10 @@ use hertzchain_sim::{Plan, shoot};
 use std::error::Error;
 
 /// Interval in s of computed traces.
-pub const FINE_S: f64 = 1e-7;
+pub(crate) const FINE_S: f64 = 1e-7;
 
 /// A preset's row at one speed: forces at the sensor bead and the wall over the incident maximum.
-pub struct Row {
+pub(crate) struct Row {
     pub preset: &'static str,
     pub speed_m_s: f64,
     pub forces: [Vec<f64>; 2],
@@ -20,7 +20,7 @@ pub struct Row {
 
 impl Row {
     /// Followed until three incident times after the wall's maximum.
-    pub fn compute(preset: &'static str, speed_m_s: f64) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn compute(preset: &'static str, speed_m_s: f64) -> Result<Self, Box<dyn Error>> {
         let experiment = hertzchain_experiment::preset(preset)?;
         let (mut plan, _) = Plan::from_experiment(&experiment, Some(speed_m_s))?;
         plan.accuracy = 1e-8;
@@ -46,7 +46,7 @@ impl Row {
     }
 
     /// Incident and reflected time of flight in s.
-    pub fn flights_s(&self) -> [f64; 2] {
+    pub(crate) fn flights_s(&self) -> [f64; 2] {
         let [passing, wall, back] = self.maxima_s;
         [wall - passing, back - wall]
     }

@@ -15,11 +15,11 @@ const WITHIN: f64 = 1.96;
 
 /// Errors of incident and reflected times over the stated ones.
 #[derive(Default)]
-pub struct Pulls([Vec<f64>; 2]);
+pub(crate) struct Pulls([Vec<f64>; 2]);
 
 /// What came of one kind of records.
 #[derive(Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     pub shots: u64,
     /// Shots with times, and those of them that count in means.
     pub timed: usize,
@@ -43,7 +43,7 @@ impl Pulls {
     }
 
     /// Per cent within 1.96 and root mean square, of either time.
-    pub fn cells(&self) -> String {
+    pub(crate) fn cells(&self) -> String {
         let cell = |pulls: &Vec<f64>| match coverage(pulls, WITHIN) {
             Some(of) => format!("{:.1} | {:.2}", 100.0 * of.share, of.scale),
             None => "– | –".to_owned(),
@@ -52,7 +52,7 @@ impl Pulls {
     }
 
     /// Sum of squares and count, of either time.
-    pub fn squares(&self) -> String {
+    pub(crate) fn squares(&self) -> String {
         let cell = |pulls: &Vec<f64>| {
             let sum: f64 = pulls.iter().map(|pull| pull * pull).sum();
             format!("{sum:.0} of {}", pulls.len())
@@ -61,14 +61,14 @@ impl Pulls {
     }
 
     /// How many reflected times there are.
-    pub fn returns(&self) -> usize {
+    pub(crate) fn returns(&self) -> usize {
         self.0[1].len()
     }
 }
 
 impl Tally {
     /// Of so many shots of each row.
-    pub fn of(rows: &[Row], fault: &Fault, shots: u64, seed: u64, each: bool) -> Self {
+    pub(crate) fn of(rows: &[Row], fault: &Fault, shots: u64, seed: u64, each: bool) -> Self {
         let mut tally = Self {
             worst: [(100.0, String::new()), (100.0, String::new())],
             ..Self::default()

@@ -12,11 +12,11 @@ const OTHERS: f64 = 0.5;
 const ECHO: f64 = 2.0;
 
 /// Names of the pulses, in the order of all arrays here.
-pub const PULSES: [&str; 3] = ["incident", "wall", "reflected"];
+pub(crate) const PULSES: [&str; 3] = ["incident", "wall", "reflected"];
 
 /// Maxima of the sensor bead and of the wall, and the least height times time of a pulse.
 #[derive(Clone, Copy)]
-pub struct Signals<'a> {
+pub(crate) struct Signals<'a> {
     pub sensor: &'a [Maximum],
     pub wall: &'a [Maximum],
     pub least_n_s: f64,
@@ -24,14 +24,14 @@ pub struct Signals<'a> {
 
 /// How wrong a run may be that is to be compared: relative errors of heights and of times.
 #[derive(Clone, Copy)]
-pub struct Margin {
+pub(crate) struct Margin {
     pub height: f64,
     pub time: f64,
 }
 
 /// The peaks: that of the wall, and where they are, those of the sensor bead.
 #[derive(Clone, Copy, Debug)]
-pub struct Arrival {
+pub(crate) struct Arrival {
     pub incident: Option<Maximum>,
     pub wall: Maximum,
     pub reflected: Option<Maximum>,
@@ -39,14 +39,14 @@ pub struct Arrival {
 
 impl Arrival {
     /// When the search for the wall's peak and the reflected pulse ends, in s.
-    pub fn search_ends_s(&self) -> f64 {
+    pub(crate) fn search_ends_s(&self) -> f64 {
         let flight_s = self.incident.map_or(0.0, |it| self.wall.time_s - it.time_s);
         (WITHIN * self.wall.time_s).max(self.wall.time_s + WITHIN * flight_s)
     }
 }
 
 /// The largest maximum of those wanted.
-pub fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
+pub(crate) fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
     let wanted = maxima.iter().copied().filter(|maximum| wanted(maximum));
     wanted.max_by(|a, b| a.height_n.total_cmp(&b.height_n))
 }
@@ -58,7 +58,7 @@ impl Signals<'_> {
     }
 
     /// The arrival, as far as these maxima go; none where no maximum of the wall is a pulse.
-    pub fn arrival(&self) -> Option<Arrival> {
+    pub(crate) fn arrival(&self) -> Option<Arrival> {
         let pulses = self
             .wall
             .iter()
@@ -96,7 +96,11 @@ impl Signals<'_> {
     }
 
     /// The first pulse of which a pick is not the peak, within a margin; its peak here.
-    pub fn refutes(&self, picked: &Arrival, margin: Margin) -> Option<(usize, Option<Maximum>)> {
+    pub(crate) fn refutes(
+        &self,
+        picked: &Arrival,
+        margin: Margin,
+    ) -> Option<(usize, Option<Maximum>)> {
         let Margin { height, time } = margin;
         let right = self.arrival();
         let wall_s = picked.wall.time_s;
@@ -135,7 +139,7 @@ impl Signals<'_> {
 
     /// Maxima that compete with the peaks, with their share of the peak: until which shares
     /// from which on they do.
-    pub fn competing(&self, arrival: &Arrival, pulse: usize) -> Vec<(Maximum, f64)> {
+    pub(crate) fn competing(&self, arrival: &Arrival, pulse: usize) -> Vec<(Maximum, f64)> {
         let (wall_s, flight_s) = match (arrival.incident, pulse) {
             (None, 0) => return Vec::new(),
             (incident, _) => {

@@ -23,7 +23,7 @@ const EARLY: f64 = 0.1;
 
 /// What was found wrong with a run, if anything.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub(crate) enum Finding {
     /// Larger error than asked, or than the accuracy reached that was stated: the larger excess.
     Inaccurate { error: f64, over: f64 },
     /// A peak that the reference does not have.
@@ -44,7 +44,7 @@ pub enum Finding {
 
 impl Finding {
     /// A word for the table.
-    pub fn word(&self) -> &'static str {
+    pub(crate) fn word(&self) -> &'static str {
         match self {
             Self::Inaccurate { .. } => "inaccurate",
             Self::NoSuchMaximum(_) => "no such maximum",
@@ -58,13 +58,13 @@ impl Finding {
 }
 
 /// Relative error of the times of flight, and what was found.
-pub struct Verdict {
+pub(crate) struct Verdict {
     pub error: Option<f64>,
     pub finding: Option<Finding>,
 }
 
 /// Compares a run with the reference.
-pub fn compare(answer: &Answer, reference: &Reference) -> Verdict {
+pub(crate) fn compare(answer: &Answer, reference: &Reference) -> Verdict {
     let none = |finding| Verdict {
         error: None,
         finding,

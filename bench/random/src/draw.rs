@@ -5,11 +5,11 @@ use crate::row::{Ball, Far, GRAVITY, Law, Material, Push, Row};
 use std::f64::consts::PI;
 
 /// SplitMix64: one stream a row, whatever was drawn for the others.
-pub struct Chance(u64);
+pub(crate) struct Chance(u64);
 
 impl Chance {
     /// The stream of a row.
-    pub fn new(seed: u64, row: u64) -> Self {
+    pub(crate) fn new(seed: u64, row: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ row.wrapping_mul(0xD1B5_4A32_D192_ED03))
     }
 
@@ -21,12 +21,12 @@ impl Chance {
     }
 
     /// Even between two numbers.
-    pub fn even(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn even(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Even in the logarithm.
-    pub fn decades(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn decades(&mut self, least: f64, most: f64) -> f64 {
         self.even(least.ln(), most.ln()).exp()
     }
 
@@ -64,7 +64,7 @@ impl Sizes {
 
 /// Rows of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
+pub(crate) enum Family {
     /// Strikers of 1/1000 to 1/10 of bead 1.
     Light,
     /// Strikers of 10 to 1000 times bead 1.
@@ -79,7 +79,7 @@ pub enum Family {
 
 impl Family {
     /// By its name.
-    pub fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         let all = [
             Self::Light,
             Self::Heavy,
@@ -121,7 +121,7 @@ impl Family {
 }
 
 /// Row number `at` of a seed, of a family or any.
-pub fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
+pub(crate) fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
     let mut chance = Chance::new(seed, at);
     let fewest = if family.is_some() { 3.0 } else { 1.0 };
     let count = chance.decades(fewest, 101.0) as usize;

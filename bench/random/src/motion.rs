@@ -18,14 +18,14 @@ enum Mode {
 
 /// Time and height of a local maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Maximum {
+pub(crate) struct Maximum {
     pub time_s: f64,
     pub height_n: f64,
 }
 
 /// Why a reference could not be computed.
 #[derive(Debug)]
-pub struct Stuck;
+pub(crate) struct Stuck;
 
 /// Substeps of the columns of the extrapolation.
 const SUBSTEPS: [usize; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
@@ -40,7 +40,7 @@ const FLOOR: f64 = 1e-6;
 
 /// Scales and accuracy of an integration.
 #[derive(Clone, Copy, Debug)]
-pub struct Scales {
+pub(crate) struct Scales {
     /// Speed of the striker in m/s.
     pub speed_m_s: f64,
     /// Shortest time in s in which two bodies turn round at that speed.
@@ -52,7 +52,7 @@ pub struct Scales {
 }
 
 /// A row in motion, with the maxima of two signals so far: sensor bead and wall.
-pub struct Motion {
+pub(crate) struct Motion {
     equations: Equations,
     scales: Scales,
     sensor: usize,
@@ -74,7 +74,7 @@ pub struct Motion {
 
 impl Motion {
     /// At the striker's touch.
-    pub fn new(equations: Equations, sensor: usize, scales: Scales) -> Self {
+    pub(crate) fn new(equations: Equations, sensor: usize, scales: Scales) -> Self {
         let bodies = equations.inverse_mass.len();
         let mut y = vec![0.0; 2 * bodies];
         y[bodies] = scales.speed_m_s;
@@ -108,7 +108,7 @@ impl Motion {
     }
 
     /// Goes on until a time.
-    pub fn run(&mut self, until_s: f64) -> Result<(), Stuck> {
+    pub(crate) fn run(&mut self, until_s: f64) -> Result<(), Stuck> {
         while self.time_s < until_s {
             if self.forces.get() > MOST_FORCES {
                 return Err(Stuck);
@@ -119,7 +119,7 @@ impl Motion {
     }
 
     /// Its scales and accuracy.
-    pub fn scales(&self) -> Scales {
+    pub(crate) fn scales(&self) -> Scales {
         self.scales
     }
 

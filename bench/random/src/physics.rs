@@ -4,7 +4,7 @@ use crate::row::{Ball, Far, GRAVITY, Law, Material, Row};
 use std::f64::consts::PI;
 
 /// Product over sum; the other one where one is infinite.
-pub fn reduced(one: f64, other: f64) -> f64 {
+pub(crate) fn reduced(one: f64, other: f64) -> f64 {
     match (one.is_infinite(), other.is_infinite()) {
         (true, _) => other,
         (_, true) => one,
@@ -17,7 +17,7 @@ fn compliance(material: &Material) -> f64 {
 }
 
 /// K of two spheres by radius and material.
-pub fn hertz_stiffness(one: (f64, &Material), other: (f64, &Material)) -> f64 {
+pub(crate) fn hertz_stiffness(one: (f64, &Material), other: (f64, &Material)) -> f64 {
     let soft = compliance(one.1) + compliance(other.1);
     4.0 / 3.0 * reduced(one.0, other.0).sqrt() / soft
 }
@@ -38,7 +38,7 @@ fn relaxation_1996_s(material: &Material) -> f64 {
 
 /// A law with its numbers for one contact.
 #[derive(Clone, Copy, Debug)]
-pub enum Term {
+pub(crate) enum Term {
     /// K δ^{3/2}.
     Hertz(f64),
     /// k δ^n.
@@ -156,7 +156,7 @@ fn plastic([hertz, yields, slope, modulus, pressure]: [f64; 5], d: f64, largest:
 
 /// One contact of a row.
 #[derive(Clone, Debug)]
-pub struct Contact {
+pub(crate) struct Contact {
     terms: Vec<Term>,
     /// Overlap at rest in m, minus the gap.
     pub rest_m: f64,
@@ -168,7 +168,7 @@ pub struct Contact {
 impl Contact {
     /// Force of a closed contact, uncut.
     #[inline(always)]
-    pub fn closed(&self, d: f64, r: f64, largest: f64) -> f64 {
+    pub(crate) fn closed(&self, d: f64, r: f64, largest: f64) -> f64 {
         let d = d.max(0.0);
         self.terms
             .iter()
@@ -178,7 +178,7 @@ impl Contact {
 
     /// Force of an open contact.
     #[inline(always)]
-    pub fn open(&self, r: f64) -> f64 {
+    pub(crate) fn open(&self, r: f64) -> f64 {
         let ungated = self
             .terms
             .iter()
@@ -187,7 +187,7 @@ impl Contact {
     }
 
     /// Derivatives of the force by overlap and by rate, of a closed or an open contact.
-    pub fn slopes(&self, is_open: bool, d: f64, r: f64, largest: f64) -> [f64; 2] {
+    pub(crate) fn slopes(&self, is_open: bool, d: f64, r: f64, largest: f64) -> [f64; 2] {
         let acts = |term: &&Term| !is_open || matches!(term, Term::Ungated(_));
         let slopes = self
             .terms
@@ -225,7 +225,7 @@ impl Contact {
 
 /// A row as equations of motion.
 #[derive(Clone, Debug)]
-pub struct Equations {
+pub(crate) struct Equations {
     /// Of striker, beads and stop; 0 for what does not move.
     pub inverse_mass: Vec<f64>,
     /// Constant force on each body in N.
@@ -237,7 +237,7 @@ pub struct Equations {
 }
 
 impl Equations {
-    pub fn new(row: &Row) -> Self {
+    pub(crate) fn new(row: &Row) -> Self {
         let slope = GRAVITY * row.incline_deg.to_radians().sin();
         let stop_kg = match row.far {
             Far::Stop { mass_kg } | Far::PlaneStop { mass_kg } => mass_kg,

@@ -13,20 +13,20 @@ const PATIENCE_S: f64 = 5.0;
 
 /// One way to ask the program.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ask {
+pub(crate) struct Ask {
     /// `shot` or `sweep`.
     pub verb: &'static str,
     pub options: Vec<String>,
 }
 
 impl Ask {
-    pub fn new(verb: &'static str, options: &[&str]) -> Self {
+    pub(crate) fn new(verb: &'static str, options: &[&str]) -> Self {
         let options = options.iter().map(|&option| option.to_owned()).collect();
         Self { verb, options }
     }
 
     /// As typed after the file's name.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         let words: Vec<&str> = std::iter::once(self.verb)
             .chain(self.options.iter().map(String::as_str))
             .collect();
@@ -36,7 +36,7 @@ impl Ask {
 
 /// What a run said.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// The peaks, or why there are none.
     pub peaks: Result<Arrival, String>,
     pub asked: f64,
@@ -52,14 +52,19 @@ pub struct Answer {
 
 /// Why a run said nothing.
 #[derive(Clone, Debug)]
-pub enum Silence {
+pub(crate) enum Silence {
     /// With its first line.
     Refused(String),
     TooSlow,
 }
 
 /// Asks the program about an experiment file.
-pub fn ask(program: &Path, file: &Path, speed_m_s: f64, ask: &Ask) -> Result<Answer, Silence> {
+pub(crate) fn ask(
+    program: &Path,
+    file: &Path,
+    speed_m_s: f64,
+    ask: &Ask,
+) -> Result<Answer, Silence> {
     let mut command = Command::new(program);
     command
         .arg(ask.verb)

@@ -13,7 +13,7 @@ const TIGHT: [f64; 2] = [1e-13, 3e-12];
 /// striker's speed: docs/conventions.md.
 const FAINTEST: f64 = 1e-3;
 /// The reference goes on for this many times what is needed.
-pub const BEYOND: f64 = 1.02;
+pub(crate) const BEYOND: f64 = 1.02;
 /// Longest step over the shortest time of the contacts that are watched.
 const LONGEST_STEP: f64 = 0.1;
 
@@ -21,7 +21,7 @@ const LONGEST_STEP: f64 = 0.1;
 const PROMINENT: f64 = 1e-2;
 
 /// A row's signals by the independent integration.
-pub struct Reference {
+pub(crate) struct Reference {
     least_n_s: f64,
     /// The reference, and where its error is to be known a looser one.
     runs: Vec<Motion>,
@@ -61,12 +61,12 @@ fn scales(row: &Row, equations: &Equations, tolerance: f64) -> Scales {
 
 impl Reference {
     /// Of a row, quickly: how right it is remains unknown.
-    pub fn quick(row: &Row) -> Self {
+    pub(crate) fn quick(row: &Row) -> Self {
         Self::with(row, &[QUICK])
     }
 
     /// Of a row, as right as can be, and how right.
-    pub fn tight(row: &Row) -> Self {
+    pub(crate) fn tight(row: &Row) -> Self {
         Self::with(row, &TIGHT)
     }
 
@@ -85,7 +85,7 @@ impl Reference {
     }
 
     /// Goes on until a time at least, and until the search for the arrival is over.
-    pub fn cover(&mut self, until_s: f64) -> Result<(), Stuck> {
+    pub(crate) fn cover(&mut self, until_s: f64) -> Result<(), Stuck> {
         // Without a time, growing ones until there is an arrival.
         let mut until_s = until_s;
         if until_s <= 0.0 {
@@ -120,7 +120,7 @@ impl Reference {
     }
 
     /// The maxima of both signals.
-    pub fn signals(&self) -> Signals<'_> {
+    pub(crate) fn signals(&self) -> Signals<'_> {
         let [sensor, wall] = &self.runs[0].maxima;
         Signals {
             sensor,
@@ -130,12 +130,12 @@ impl Reference {
     }
 
     /// Those maxima of the sensor bead and of the wall that stand out on both sides.
-    pub fn prominent(&self) -> &[Vec<Maximum>; 2] {
+    pub(crate) fn prominent(&self) -> &[Vec<Maximum>; 2] {
         &self.prominent
     }
 
     /// How uncertain the time of a maximum of the sensor (0) or wall (1) is, in s.
-    pub fn error_s(&self, signal: usize, maximum: &Maximum) -> f64 {
+    pub(crate) fn error_s(&self, signal: usize, maximum: &Maximum) -> f64 {
         let Some(looser) = self.runs.get(1) else {
             return 0.0;
         };
@@ -155,7 +155,7 @@ fn prominent(maxima: &[Maximum], dips: &[f64]) -> Vec<Maximum> {
 }
 
 /// The maximum nearest to a time.
-pub fn nearest(maxima: &[Maximum], time_s: f64) -> Option<Maximum> {
+pub(crate) fn nearest(maxima: &[Maximum], time_s: f64) -> Option<Maximum> {
     let distance = |maximum: &Maximum| (maximum.time_s - time_s).abs();
     maxima
         .iter()

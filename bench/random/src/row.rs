@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 /// Gravity in m/s².
-pub const GRAVITY: f64 = 9.80665;
+pub(crate) const GRAVITY: f64 = 9.80665;
 
 /// An isotropic viscoelastic solid; its bulk viscosity equals the shear viscosity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
+pub(crate) struct Material {
     pub young_pa: f64,
     pub poisson: f64,
     pub viscosity_pa_s: f64,
@@ -15,7 +15,7 @@ pub struct Material {
 
 /// A ball, with the index of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub(crate) struct Ball {
     pub radius_m: f64,
     pub mass_kg: f64,
     pub material: usize,
@@ -23,7 +23,7 @@ pub struct Ball {
 
 /// One term of a contact force, by the names of `hertzchain laws`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
+pub(crate) enum Law {
     ElasticHertz,
     ElasticPower {
         stiffness: f64,
@@ -58,7 +58,7 @@ pub enum Law {
 
 /// What the last bead leans on, of the same material as the last bead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Far {
+pub(crate) enum Far {
     HalfBead,
     Plane,
     Stop { mass_kg: f64 },
@@ -67,14 +67,14 @@ pub enum Far {
 
 /// What pushes bead 1: a force at rest, and the stiffness of a spring or 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Push {
+pub(crate) struct Push {
     pub force_n: f64,
     pub stiffness_n_m: f64,
 }
 
 /// One chain with its striker.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     pub title: String,
     pub materials: Vec<Material>,
     pub striker: Ball,
@@ -157,7 +157,7 @@ impl Ball {
 
 impl Row {
     /// The experiment file.
-    pub fn toml(&self) -> String {
+    pub(crate) fn toml(&self) -> String {
         let mut text = format!("title = \"{}\"\n", self.title);
         if self.clipped {
             text += "tension = \"clipped\"\n";

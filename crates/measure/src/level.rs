@@ -47,7 +47,7 @@ struct UnderWay {
 }
 
 impl<I: Iterator<Item = Result<Record, RecordError>>> AtLevel<I> {
-    pub fn new(pieces: I, level: Level) -> Self {
+    pub(crate) fn new(pieces: I, level: Level) -> Self {
         Self {
             pieces,
             level,

@@ -12,7 +12,7 @@ pub(crate) struct Speeds {
 
 impl Speeds {
     /// Takes down what the file of a record tells.
-    pub fn hear(&mut self, record: &Record) {
+    pub(crate) fn hear(&mut self, record: &Record) {
         let known = self
             .files
             .last()
@@ -25,7 +25,12 @@ impl Speeds {
 
     /// Gives every shot its speed. Where there are not as many speeds as shots, nobody knows
     /// whose they are: shots that the list tells nothing of have none then, and that is told.
-    pub fn deal(self, measurement: &mut Measurement, options: &Options, refused: &[PathBuf]) {
+    pub(crate) fn deal(
+        self,
+        measurement: &mut Measurement,
+        options: &Options,
+        refused: &[PathBuf],
+    ) {
         for (file, speeds) in self.files {
             let of_file = |shot: &&mut Shot| shot.file == file;
             let shots: Vec<&mut Shot> = measurement.shots.iter_mut().filter(of_file).collect();

@@ -58,18 +58,18 @@ fn sensor_peak(shot: &Shot) -> Option<f64> {
 
 /// One number a shot and column; NaN where there is none.
 #[derive(Debug, Default)]
-pub struct Columns([Vec<f64>; COLUMNS.len()]);
+pub(crate) struct Columns([Vec<f64>; COLUMNS.len()]);
 
 impl Columns {
     /// One shot more; a row of NaN for none.
-    pub fn push(&mut self, shot: Option<&Shot>) {
+    pub(crate) fn push(&mut self, shot: Option<&Shot>) {
         for (values, (_, number)) in self.0.iter_mut().zip(COLUMNS) {
             values.push(shot.and_then(number).unwrap_or(f64::NAN));
         }
     }
 
     /// Arrays by name.
-    pub fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    pub(crate) fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let all = PyDict::new(py);
         for (values, (name, _)) in self.0.into_iter().zip(COLUMNS) {
             all.set_item(name, values.into_pyarray(py))?;
@@ -82,7 +82,7 @@ impl Columns {
 const LOOK_EVERY: usize = 1 << 16;
 
 /// Numbers of an array of any layout, in the order of a C array; broken off by a signal.
-pub fn copied(py: Python<'_>, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
+pub(crate) fn copied(py: Python<'_>, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
     let array = array.as_array();
     let mut copy = Vec::with_capacity(array.len());
     for (at, number) in array.iter().enumerate() {
@@ -95,7 +95,7 @@ pub fn copied(py: Python<'_>, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<V
 }
 
 /// Rows as a list; broken off by a signal.
-pub fn list<'py, T: IntoPyObject<'py>>(
+pub(crate) fn list<'py, T: IntoPyObject<'py>>(
     py: Python<'py>,
     rows: impl IntoIterator<Item = T>,
 ) -> PyResult<Bound<'py, PyList>> {
@@ -110,9 +110,9 @@ pub fn list<'py, T: IntoPyObject<'py>>(
 }
 
 /// The first shot of which there is something to say, what, and of how many.
-pub type Told = (usize, Vec<String>, usize);
+pub(crate) type Told = (usize, Vec<String>, usize);
 
 /// What is odd, if anything is.
-pub fn told(odd: Option<Odd>) -> Option<Told> {
+pub(crate) fn told(odd: Option<Odd>) -> Option<Told> {
     odd.map(|odd| (odd.place, odd.lines, odd.shots))
 }

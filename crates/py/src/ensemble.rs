@@ -208,7 +208,7 @@ impl Fired {
 /// Shots of rows of speeds and numbers.
 #[pyfunction]
 #[pyo3(signature = (experiment, speeds_m_s, names, values, asked, progress))]
-pub fn ensemble<'py>(
+pub(crate) fn ensemble<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speeds_m_s: PyReadonlyArrayDyn<'py, f64>,
@@ -250,7 +250,7 @@ pub fn ensemble<'py>(
 }
 
 /// Numbers of several arrays.
-pub fn all_copied(
+pub(crate) fn all_copied(
     py: Python<'_>,
     arrays: &[PyReadonlyArrayDyn<'_, f64>],
 ) -> PyResult<Vec<Vec<f64>>> {

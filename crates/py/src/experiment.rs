@@ -309,7 +309,7 @@ impl Experiment {
 
 /// Names and titles of the experiments that come with the program.
 #[pyfunction]
-pub fn presets() -> Vec<(&'static str, &'static str)> {
+pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
     let lists = [
         experiment::presets(),
         experiment::examples(),
@@ -321,6 +321,6 @@ pub fn presets() -> Vec<(&'static str, &'static str)> {
 
 /// The JSON Schema of experiment files, as text.
 #[pyfunction]
-pub fn schema() -> String {
+pub(crate) fn schema() -> String {
     format!("{:#}", experiment::schema())
 }

@@ -20,7 +20,7 @@ impl<E: Into<Failure>> From<E> for Failed {
 }
 
 /// A path or its value; what is wrong in the file has its place.
-pub fn of_path(error: PathError) -> Failure {
+pub(crate) fn of_path(error: PathError) -> Failure {
     match error {
         PathError::Mistakes(mistakes) => mistakes.into(),
         other => Failure::User(other.to_string()),
@@ -28,7 +28,7 @@ pub fn of_path(error: PathError) -> Failure {
 }
 
 /// A file that can't be used.
-pub fn of_file(error: OpenError) -> Failure {
+pub(crate) fn of_file(error: OpenError) -> Failure {
     match error {
         OpenError::Mistakes(mistakes) => mistakes.into(),
         other => Failure::User(other.to_string()),
@@ -63,7 +63,7 @@ fn findings<'py>(py: Python<'py>, mistakes: &Mistakes) -> PyResult<Vec<Bound<'py
 }
 
 /// What, where, what was expected.
-pub fn finding<'py>(py: Python<'py>, found: &Finding) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn finding<'py>(py: Python<'py>, found: &Finding) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("file", found.file())?;
     told.set_item("line", found.line())?;

@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// A table by name and text.
-pub type Table = (String, String);
+pub(crate) type Table = (String, String);
 
 fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Result<Data, Failure> {
     data(
@@ -32,7 +32,7 @@ fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Res
 /// Contact parameters from times of flight.
 #[pyfunction]
 #[pyo3(signature = (table, experiment, options, progress))]
-pub fn fit<'py>(
+pub(crate) fn fit<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
@@ -48,7 +48,7 @@ pub fn fit<'py>(
 }
 
 /// Leaves walkers in the output folder, if there is one.
-pub fn left(inferred: &fitting::Inferred, arguments: &Fit) -> Result<(), Failure> {
+pub(crate) fn left(inferred: &fitting::Inferred, arguments: &Fit) -> Result<(), Failure> {
     let out = arguments.out.as_deref();
     out.map_or(Ok(()), |out| fitting::leave(inferred, out))
 }
@@ -67,7 +67,7 @@ fn found<'py>(
 
 /// Whether a file is a table of curves; what else can be read is a recording.
 #[pyfunction]
-pub fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<bool> {
+pub(crate) fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<bool> {
     let found = hertzchain::inference::is_table(&path, with_options_of_recordings);
     Ok(found.map_err(Failed::from)?)
 }
@@ -75,7 +75,7 @@ pub fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<boo
 /// Contact parameters from whole pulses of recordings.
 #[pyfunction]
 #[pyo3(signature = (experiment, options, progress))]
-pub fn fit_pulses<'py>(
+pub(crate) fn fit_pulses<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     options: Vec<String>,
@@ -97,7 +97,7 @@ pub fn fit_pulses<'py>(
 }
 
 /// What is to be fitted to what.
-pub fn posed(
+pub(crate) fn posed(
     table: &Table,
     experiment: &Experiment,
     arguments: &Fit,
@@ -110,7 +110,7 @@ pub fn posed(
 }
 
 /// A fit as Python is told of it.
-pub struct Found {
+pub(crate) struct Found {
     fit: serde_json::Value,
     rows: serde_json::Value,
     samples: Option<(usize, Vec<f64>)>,
@@ -118,7 +118,7 @@ pub struct Found {
 
 impl Found {
     /// Of a fit.
-    pub fn of(fitted: &fitting::Fitted, arguments: &Fit) -> Self {
+    pub(crate) fn of(fitted: &fitting::Fitted, arguments: &Fit) -> Self {
         Self {
             fit: fitting::json(fitted, arguments),
             rows: fitting::rows_json(fitted),
@@ -127,7 +127,7 @@ impl Found {
     }
 
     /// As a dict.
-    pub fn told(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    pub(crate) fn told(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let told = json::object(py, &self.fit)?.cast_into::<PyDict>()?;
         told.set_item("rows", json::object(py, &self.rows)?)?;
         if let Some((parameters, samples)) = self.samples {
@@ -157,7 +157,7 @@ fn samples(inferred: &fitting::Inferred) -> Option<(usize, Vec<f64>)> {
 /// What to measure next.
 #[pyfunction]
 #[pyo3(signature = (table, experiment, options, progress))]
-pub fn design<'py>(
+pub(crate) fn design<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
@@ -183,7 +183,7 @@ pub fn design<'py>(
 /// Which oil is on the contacts.
 #[pyfunction]
 #[pyo3(signature = (tables, experiments, more_oils, options, progress))]
-pub fn gauge<'py>(
+pub(crate) fn gauge<'py>(
     py: Python<'py>,
     tables: (Table, Table),
     experiments: (PyRef<'py, Experiment>, PyRef<'py, Experiment>),

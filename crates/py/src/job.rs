@@ -20,7 +20,7 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// Where a job is computed.
 #[derive(Clone, Copy, Debug)]
-pub enum Threads {
+pub(crate) enum Threads {
     /// In one thread.
     One,
     /// In so many, all cores' if 0.
@@ -28,7 +28,7 @@ pub enum Threads {
 }
 
 /// A job's way to Python: whom it tells what is done, and how it is stopped.
-pub struct Job<'py> {
+pub(crate) struct Job<'py> {
     /// Called with what is done since the last time.
     pub progress: Option<Bound<'py, PyAny>>,
     /// Where it is computed.
@@ -41,7 +41,7 @@ pub struct Job<'py> {
 
 impl<'py> Job<'py> {
     /// With a pool of threads.
-    pub fn pooled(progress: Option<Bound<'py, PyAny>>, threads: usize) -> Self {
+    pub(crate) fn pooled(progress: Option<Bound<'py, PyAny>>, threads: usize) -> Self {
         Self {
             progress,
             threads: Threads::Many(threads),
@@ -51,7 +51,7 @@ impl<'py> Job<'py> {
     }
 
     /// In one thread, without progress.
-    pub fn alone() -> Self {
+    pub(crate) fn alone() -> Self {
         Self {
             progress: None,
             threads: Threads::One,
@@ -61,7 +61,7 @@ impl<'py> Job<'py> {
     }
 
     /// In one thread, telling of the steps of a single shot.
-    pub fn of_steps(progress: Option<Bound<'py, PyAny>>) -> Self {
+    pub(crate) fn of_steps(progress: Option<Bound<'py, PyAny>>) -> Self {
         Self {
             progress,
             counted: Stop::steps,
@@ -75,7 +75,7 @@ impl<'py> Job<'py> {
     ///
     /// # Errors
     /// What Python raised meanwhile, or what `work` says.
-    pub fn run<T: Send>(
+    pub(crate) fn run<T: Send>(
         self,
         py: Python<'py>,
         work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
@@ -89,7 +89,7 @@ impl<'py> Job<'py> {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn run_apart<T: Send + 'static>(
+    pub(crate) fn run_apart<T: Send + 'static>(
         self,
         py: Python<'py>,
         work: impl FnOnce(&Stop) -> Result<T, Failure> + Send + 'static,

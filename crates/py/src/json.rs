@@ -5,7 +5,7 @@ use pyo3::types::{PyDict, PyList};
 use serde_json::{Number, Value};
 
 /// Dicts, lists, strings, numbers, None; no digit is lost on the way. Broken off by a signal.
-pub fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     match value {
         Value::Null => Ok(py.None().into_bound(py)),
         Value::Bool(flag) => Ok(flag.into_pyobject(py)?.to_owned().into_any()),

@@ -163,14 +163,14 @@ impl Law for OfPython {
 }
 
 /// Laws of Python for one shot.
-pub struct Replacing {
+pub(crate) struct Replacing {
     laws: Vec<(RangeInclusive<usize>, bool, Arc<OfPython>)>,
     raised: Raised,
 }
 
 impl Replacing {
     /// Of these forces; an exception asks to stop.
-    pub fn of(forces: &[Bound<'_, Force>], stop: &Stop) -> Self {
+    pub(crate) fn of(forces: &[Bound<'_, Force>], stop: &Stop) -> Self {
         let raised = Raised::default();
         let law = |force: &Bound<'_, Force>| {
             let py = force.py();
@@ -192,18 +192,18 @@ impl Replacing {
     }
 
     /// Whether the energy of all contacts is known.
-    pub fn have_energy(&self) -> bool {
+    pub(crate) fn have_energy(&self) -> bool {
         self.laws.iter().all(|(_, _, law)| law.energy.is_some())
     }
 
     /// What was raised, if anything.
-    pub fn raised(&self, _py: Python<'_>) -> PyResult<()> {
+    pub(crate) fn raised(&self, _py: Python<'_>) -> PyResult<()> {
         let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
         raised.take().map_or(Ok(()), Err)
     }
 
     /// Puts the laws on their contacts; sections are cut where they begin and end.
-    pub fn put_into(&self, chain: &mut Chain) -> Result<(), Failure> {
+    pub(crate) fn put_into(&self, chain: &mut Chain) -> Result<(), Failure> {
         let wall = chain.beads.len();
         for (contacts, beside, law) in &self.laws {
             if *contacts.start() > wall {

@@ -28,7 +28,7 @@ fn failure(error: RigError) -> Failure {
 /// How many series a campaign has.
 #[pyfunction]
 #[pyo3(signature = (experiment, seed))]
-pub fn campaign_series(experiment: &Experiment, seed: Option<u64>) -> Result<usize, Failed> {
+pub(crate) fn campaign_series(experiment: &Experiment, seed: Option<u64>) -> Result<usize, Failed> {
     let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
     Ok(plan.series.len())
 }
@@ -36,7 +36,7 @@ pub fn campaign_series(experiment: &Experiment, seed: Option<u64>) -> Result<usi
 /// Runs the series of a campaign that a folder does not have yet.
 #[pyfunction]
 #[pyo3(signature = (experiment, out, shard, seed, threads, progress))]
-pub fn campaign<'py>(
+pub(crate) fn campaign<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     out: PathBuf,
@@ -86,7 +86,7 @@ impl Watch for Counted<'_> {
 /// Times of flight from recordings.
 #[pyfunction]
 #[pyo3(signature = (options, threads, progress))]
-pub fn measure<'py>(
+pub(crate) fn measure<'py>(
     py: Python<'py>,
     options: Vec<String>,
     threads: usize,

@@ -137,7 +137,7 @@ impl Run {
 /// Computes a shard into a folder unless it is there; tells whether it was.
 #[pyfunction]
 #[pyo3(signature = (run, number, of, folder, threads, progress))]
-pub fn shard<'py>(
+pub(crate) fn shard<'py>(
     py: Python<'py>,
     run: &Run,
     number: usize,
@@ -156,7 +156,7 @@ pub fn shard<'py>(
 
 /// All shards of a folder put together.
 #[pyfunction]
-pub fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let whole = Job::alone().run(py, |_| {
         hertzchain_sim::shards::gather(&[Path::new(&folder)]).map_err(failure)
     })?;

@@ -64,7 +64,7 @@ const fn name(sensor: Sensor) -> (&'static str, usize) {
 /// by kind and number, with the interval of their samples in s.
 #[pyfunction]
 #[pyo3(signature = (experiment, speed, options, watch, forces, progress))]
-pub fn shot<'py>(
+pub(crate) fn shot<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speed: Option<String>,

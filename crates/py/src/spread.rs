@@ -158,7 +158,7 @@ impl Elsewhere {
 /// without `compute`.
 #[pyfunction]
 #[pyo3(signature = (likelihood, size, workers, compute, progress))]
-pub fn fit_spread<'py>(
+pub(crate) fn fit_spread<'py>(
     py: Python<'py>,
     likelihood: &Likelihood,
     size: usize,

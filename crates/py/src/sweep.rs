@@ -18,14 +18,14 @@ use pyo3::types::PyDict;
 
 /// Speeds from text: "0.1,0.2", "FROM:TO:COUNT", "log:FROM:TO:COUNT".
 #[pyfunction]
-pub fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+pub(crate) fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let list = parse_speeds(text);
     let list = list.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
     Ok(list.into_pyarray(py))
 }
 
 /// Who judges, by name.
-pub fn judges(name: &str) -> Result<Judges, Failure> {
+pub(crate) fn judges(name: &str) -> Result<Judges, Failure> {
     match name {
         "each" => Ok(Judges::Each),
         "pilots" => Ok(Judges::Pilots),
@@ -38,7 +38,7 @@ pub fn judges(name: &str) -> Result<Judges, Failure> {
 /// What a sweep asks for beside its speeds.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Asked {
+pub(crate) struct Asked {
     /// Options as on the command line.
     pub options: Vec<String>,
     /// Follow the striker.
@@ -52,7 +52,7 @@ pub struct Asked {
 /// Shots at many speeds and their power laws.
 #[pyfunction]
 #[pyo3(signature = (experiment, speeds_m_s, asked, progress))]
-pub fn sweep<'py>(
+pub(crate) fn sweep<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speeds_m_s: PyReadonlyArrayDyn<'py, f64>,
@@ -127,7 +127,7 @@ impl Swept {
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.
-pub fn representative(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
+pub(crate) fn representative(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
     let inner = &experiment.inner;
     inner.needs_striker("shots at several speeds need a chain with a striker")?;
     input::check_times(how, inner)?;

@@ -41,7 +41,7 @@ fn told<'py>(
 /// What was understood, in SI, and what follows from it.
 #[pyfunction]
 #[pyo3(signature = (experiment, speed))]
-pub fn check<'py>(
+pub(crate) fn check<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speed: Option<String>,
@@ -52,7 +52,7 @@ pub fn check<'py>(
 /// What theory says of a chain's waves.
 #[pyfunction]
 #[pyo3(signature = (experiment, speed))]
-pub fn theory<'py>(
+pub(crate) fn theory<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speed: Option<String>,
@@ -63,7 +63,7 @@ pub fn theory<'py>(
 /// Contact laws with equation, parameters, units and source.
 #[pyfunction]
 #[pyo3(signature = (name))]
-pub fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
     let infos = hertzchain::laws::infos(name).map_err(Failed::from)?;
     json::object(py, &hertzchain::laws::json(&infos))
 }
@@ -86,6 +86,6 @@ pub fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyA
 /// ----------
 /// What must be the same on all machines: docs/across-machines.md.
 #[pyfunction]
-pub fn instruction_set() -> PyResult<&'static str> {
+pub(crate) fn instruction_set() -> PyResult<&'static str> {
     Ok(input::instruction_set().map_err(Failed::from)?.name())
 }

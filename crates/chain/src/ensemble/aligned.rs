@@ -18,7 +18,7 @@ pub(super) struct Aligned<T> {
 
 impl<T: Copy> Aligned<T> {
     /// That many times a value.
-    pub fn of(value: T, length: usize) -> Self {
+    pub(super) fn of(value: T, length: usize) -> Self {
         // Room to move the first number to the beginning of a line.
         let spare = LINE / size_of::<T>();
         let values = vec![value; length + spare];

@@ -34,7 +34,7 @@ pub(super) struct Behind<const W: usize> {
 
 impl<const W: usize> Behind<W> {
     /// For chains of as many contacts; the wall is the second sensor.
-    pub fn new(lanes: usize, contacts: usize, sensors: &[Sensor]) -> Self {
+    pub(super) fn new(lanes: usize, contacts: usize, sensors: &[Sensor]) -> Self {
         let place = |sensor: &Sensor| match *sensor {
             Sensor::Bead(at)
             | Sensor::Contact(at)
@@ -56,7 +56,7 @@ impl<const W: usize> Behind<W> {
     /// Looks where the crests are, from the forces of all contacts, of which
     /// some chunks are awake; gives, lane by lane, the bodies that are left
     /// behind since the last look.
-    pub fn look<N: Number<W>>(
+    pub(super) fn look<N: Number<W>>(
         &mut self,
         set: InstructionSet,
         force: &[N],

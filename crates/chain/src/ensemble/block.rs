@@ -73,7 +73,7 @@ pub(super) struct Block<'a, N, const W: usize> {
 
 impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// Shots of systems that share their shape; one or `W` of them.
-    pub fn new(
+    pub(super) fn new(
         systems: &'a [&'a System],
         step_s: &[f64],
         schedule: &'a Schedule,
@@ -181,7 +181,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
     /// One step of all lanes; the forces are then those of the new positions.
     #[inline(always)]
-    pub fn step<S: Simd>(&mut self, simd: S) {
+    pub(super) fn step<S: Simd>(&mut self, simd: S) {
         // What few chains need is not even called for the others.
         if let Some(external) = self.motion.external.take() {
             self.push(external);
@@ -208,7 +208,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Forces of all contacts that are awake.
-    pub fn forces(&mut self) {
+    pub(super) fn forces(&mut self) {
         let lanes = self.lanes;
         let awake = self.window.contacts.clone();
         let force = &mut self.force_n[lanes..][..awake.end * W];
@@ -240,7 +240,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Lets sleep what stays as it is for a number of steps.
-    pub fn look(&mut self, steps: usize) {
+    pub(super) fn look(&mut self, steps: usize) {
         let ahead_s = self
             .paces
             .map(|pace| N::of((steps + 1) as f64 * pace.step_s));
@@ -248,7 +248,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Lets go of what each lane's reflected pulse has left behind.
-    pub fn leave_behind(&mut self, behind: &mut Behind<W>) {
+    pub(super) fn leave_behind(&mut self, behind: &mut Behind<W>) {
         let force = &self.force_n[self.lanes..];
         let left = behind.look(self.set, force, self.window.contacts.clone());
         for (lane, bodies) in left {
@@ -391,7 +391,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
     /// What a sensor shows now in every lane.
     #[inline(always)]
-    pub fn signals<const LANES: usize>(&self, sensor: Sensor) -> [N; LANES] {
+    pub(super) fn signals<const LANES: usize>(&self, sensor: Sensor) -> [N; LANES] {
         let row = |values: &[N], at: usize| -> [N; LANES] {
             let row = values[at * LANES..].first_chunk();
             row.copied().unwrap_or([N::default(); LANES])
@@ -416,7 +416,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Steps for which no contact of a lane is closed, if nothing but contacts acts; else 0.
-    pub fn fly_for(&self, lane: usize) -> f64 {
+    pub(super) fn fly_for(&self, lane: usize) -> f64 {
         let system = self.systems[lane];
         let [x, v] = [&self.motion.x, &self.motion.v];
         let of = |values: &[N], body: usize| values[body * self.lanes + lane].into();
@@ -439,14 +439,14 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Velocities of all bodies of a lane in m/s.
-    pub fn velocities(&self, lane: usize) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn velocities(&self, lane: usize) -> impl Iterator<Item = f64> + '_ {
         let v = &self.motion.v;
         (0..self.systems[0].bodies()).map(move |body| v[body * self.lanes + lane].into())
     }
 
     /// How much correcting the last step changed any velocity of each lane, in
     /// m/s; NaN where anything is.
-    pub fn corrections(&self) -> [f64; W] {
+    pub(super) fn corrections(&self) -> [f64; W] {
         let worst = dispatch!(self.set.level(), simd => simd.vectorize(
             #[inline(always)]
             || self.worst_correction(simd)

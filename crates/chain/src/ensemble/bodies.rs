@@ -54,7 +54,7 @@ pub(super) struct Scaled<N, const W: usize> {
 
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
     /// Of lanes that step so.
-    pub fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
+    pub(super) fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
         let none = [N::default(); W];
         let (mut velocity, mut position) = ([none; USED], [none; USED]);
         for (lane, pace) in paces.iter().enumerate() {
@@ -76,7 +76,12 @@ impl<N: Number<W>, const W: usize> Scaled<N, W> {
 
 impl<N: Number<W>, const W: usize> Motion<N, W> {
     /// From positions and velocities, with nothing accelerated yet.
-    pub fn new(x: Aligned<N>, v: Aligned<N>, inverse_mass: Column<N, W>, external: bool) -> Self {
+    pub(super) fn new(
+        x: Aligned<N>,
+        v: Aligned<N>,
+        inverse_mass: Column<N, W>,
+        external: bool,
+    ) -> Self {
         let zeros = || Aligned::of(N::default(), x.len());
         Self {
             accelerations: std::array::from_fn(|_| zeros()),
@@ -89,12 +94,12 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
     }
 
     /// Accelerations of a step, 0 the newest.
-    pub fn accelerations(&self, age: usize) -> &[N] {
+    pub(super) fn accelerations(&self, age: usize) -> &[N] {
         &self.accelerations[(self.newest + age) % USED]
     }
 
     /// Sets a body where no other is; nothing has ever moved it.
-    pub fn set_apart(&mut self, at: usize, x: N) {
+    pub(super) fn set_apart(&mut self, at: usize, x: N) {
         self.x[at] = x;
         for accelerations in &mut self.accelerations {
             accelerations[at] = N::default();
@@ -102,14 +107,14 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
     }
 
     /// The newest accelerations.
-    pub fn newest_mut(&mut self) -> &mut [N] {
+    pub(super) fn newest_mut(&mut self) -> &mut [N] {
         &mut self.accelerations[self.newest]
     }
 
     /// One step of what the wave has reached: `force` holds the dynamic force
     /// on each body from the left, and `lanes` further on from the right.
     #[inline(always)]
-    pub fn step<S: Simd>(
+    pub(super) fn step<S: Simd>(
         &mut self,
         simd: S,
         window: &Window,

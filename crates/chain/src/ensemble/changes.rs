@@ -15,7 +15,7 @@ pub(super) struct Changes<const W: usize> {
 }
 
 impl<const W: usize> Changes<W> {
-    pub fn new(chunks: usize) -> Self {
+    pub(super) fn new(chunks: usize) -> Self {
         Self {
             open: vec![0; chunks],
             changed: Vec::with_capacity(chunks * W),
@@ -23,12 +23,12 @@ impl<const W: usize> Changes<W> {
     }
 
     /// A contact, by its place in the flat array, is open from now on.
-    pub fn opened(&mut self, at: usize) {
+    pub(super) fn opened(&mut self, at: usize) {
         self.open[at / W] |= 1 << (at % W);
     }
 
     /// Notes what has changed since the last look.
-    pub fn look<N: Number<W>>(
+    pub(super) fn look<N: Number<W>>(
         &mut self,
         set: InstructionSet,
         (awake, lanes): (Range<usize>, usize),
@@ -82,7 +82,7 @@ pub(super) struct Opening {
 impl Opening {
     /// Time since the overlap was 0, in s, at most a step; `None` if it has
     /// not just become negative.
-    pub fn since_s(&self, step_s: f64) -> Option<f64> {
+    pub(super) fn since_s(&self, step_s: f64) -> Option<f64> {
         if self.depth_m >= 0.0 || self.rate_m_s >= 0.0 {
             return None;
         }
@@ -93,7 +93,7 @@ impl Opening {
     }
 
     /// Overlap and its rate a time before now, taken as not below 0.
-    pub fn at(&self, before_s: f64) -> (f64, f64) {
+    pub(super) fn at(&self, before_s: f64) -> (f64, f64) {
         let depth = self.depth_m - before_s * (self.rate_m_s - 0.5 * self.change_m_s2 * before_s);
         (depth.max(0.0), self.rate_m_s - self.change_m_s2 * before_s)
     }

@@ -26,7 +26,7 @@ pub(super) struct Column<N, const W: usize> {
 impl<N: Number<W>, const W: usize> Column<N, W> {
     /// From values of element `j` of chain `l`: of all lanes, or of the one
     /// that all share. `rest` fills the last chunk up.
-    pub fn new(
+    pub(super) fn new(
         count: usize,
         (lanes, chains): (usize, usize),
         rest: f64,
@@ -57,7 +57,7 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
 
     /// All its chunks, if they are equal, as one.
     #[inline(always)]
-    pub fn uniform(&self) -> Option<&[N; W]> {
+    pub(super) fn uniform(&self) -> Option<&[N; W]> {
         self.values
             .as_chunks()
             .0
@@ -67,13 +67,13 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
 
     /// Whether all its numbers are this one.
     #[inline(always)]
-    pub fn is_all(&self, value: f64) -> bool {
+    pub(super) fn is_all(&self, value: f64) -> bool {
         self.only == Some(N::of(value))
     }
 
     /// A reader of chunks.
     #[inline(always)]
-    pub fn reader(&self) -> Reader<'_, N, W> {
+    pub(super) fn reader(&self) -> Reader<'_, N, W> {
         Reader {
             chunks: self.values.as_chunks().0,
             stride: self.stride,
@@ -91,13 +91,13 @@ pub(super) struct Reader<'a, N, const W: usize> {
 impl<'a, N, const W: usize> Reader<'a, N, W> {
     /// All its chunks.
     #[inline(always)]
-    pub fn all(&self) -> &'a [[N; W]] {
+    pub(super) fn all(&self) -> &'a [[N; W]] {
         self.chunks
     }
 
     /// Chunk `i`.
     #[inline(always)]
-    pub fn at(&self, i: usize) -> &'a [N; W] {
+    pub(super) fn at(&self, i: usize) -> &'a [N; W] {
         &self.chunks[i * self.stride]
     }
 }

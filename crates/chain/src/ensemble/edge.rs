@@ -19,7 +19,7 @@ pub(super) struct Leading {
 
 impl Leading {
     /// From the force as a function of the distance from its edge, in steps.
-    pub fn new(force: impl Fn(f64) -> f64) -> Self {
+    pub(super) fn new(force: impl Fn(f64) -> f64) -> Self {
         let at_once = force(0.0);
         let (near, far) = (force(0.25) - at_once, force(1.0) - at_once);
         // near = c₁/2 + c₃/8, far = c₁ + c₃.
@@ -32,7 +32,7 @@ impl Leading {
     }
 
     /// How large the force is a step from its edge.
-    pub fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         self.at_once.abs() + self.root.abs() + self.high.abs()
     }
 
@@ -65,7 +65,11 @@ pub(super) struct Edge {
 impl Edge {
     /// A force that ended `before` steps after the last sample that saw it, in
     /// steps that are `ahead` of the exact motion ([`super::weights::ahead_of`]).
-    pub fn ending(leading: &Leading, before: f64, (weights, ahead): (&Weights, f64)) -> Self {
+    pub(super) fn ending(
+        leading: &Leading,
+        before: f64,
+        (weights, ahead): (&Weights, f64),
+    ) -> Self {
         let velocity = weights.velocity(ahead);
         let samples: [f64; USED] = std::array::from_fn(|k| leading.force(before + k as f64));
         let mut lacking = [[0.0; 2]; USED];
@@ -93,56 +97,5 @@ impl Edge {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::weights::Schedule;
-    use super::*;
-
-    /// Velocity and position that the method gives to a force of samples, with
-    /// an edge corrected for at a step, and the exact ones.
-    fn move_by(force: impl Fn(f64) -> f64, edge: Edge, at: usize) -> [f64; 2] {
-        let schedule = Schedule::new();
-        let weights = schedule.steady();
-        let (mut x, mut v) = (0.0, 0.0);
-        let mut used = [0.0; USED];
-        for n in 0..at + 40 {
-            used.rotate_right(1);
-            used[0] = force(n as f64);
-            let sum = |w: &[f64; USED]| -> f64 { w.iter().zip(&used).map(|(w, a)| w * a).sum() };
-            (x, v) = (x + v + sum(&weights.position), v + sum(&weights.velocity));
-            if let Some(lacking) = n.checked_sub(at).and_then(|age| edge.lacking.get(age)) {
-                v += lacking[0];
-                x += lacking[1];
-            }
-        }
-        [v, x]
-    }
-
-    #[test]
-    fn a_force_that_ends_between_steps_is_integrated_exactly() {
-        let leading = Leading::new(|s: f64| 0.3 + s.sqrt() * (0.7 + 0.1 * s));
-        let schedule = Schedule::new();
-        let edge = Edge::ending(&leading, 0.35, (schedule.steady(), 0.0));
-        let end = 30.35;
-        // Begins smoothly and is level near its end: only the end is sharp.
-        let rise = |t: f64| 1.0 - (-(t / 12.0).powi(4)).exp();
-        let force = |t: f64| {
-            if t < end {
-                leading.force(end - t) * rise(t)
-            } else {
-                0.0
-            }
-        };
-        let [v, x] = move_by(force, edge, 30);
-        let fine = 200_000;
-        let (mut once, mut twice) = (0.0, 0.0);
-        for i in 0..fine {
-            // Midpoints in a variable that is fine near the end.
-            let u = (i as f64 + 0.5) / fine as f64;
-            let (s, ds) = (end * u * u, 2.0 * end * u / fine as f64);
-            once += force(end - s) * ds;
-            twice += force(end - s) * ds * (70.0 - end + s);
-        }
-        assert!((v / once - 1.0).abs() < 1e-5, "{v} {once}");
-        assert!((x / twice - 1.0).abs() < 1e-5, "{x} {twice}");
-    }
-}
+#[path = "tests/edge.rs"]
+mod tests;

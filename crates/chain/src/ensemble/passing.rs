@@ -70,7 +70,7 @@ pub(super) struct Passing {
 
 impl Passing {
     /// Of a lane in which a pulse has at least this height times step.
-    pub fn new(least: f64) -> Self {
+    pub(super) fn new(least: f64) -> Self {
         Self {
             least,
             ..Self::default()
@@ -83,7 +83,7 @@ impl Passing {
     }
 
     /// Looks at the samples up to a step, closely where any is the largest yet.
-    pub fn look<N: Number<W>, const W: usize>(
+    pub(super) fn look<N: Number<W>, const W: usize>(
         &mut self,
         sensor: Samples<'_, N, W>,
         wall: Samples<'_, N, W>,
@@ -121,7 +121,7 @@ impl Passing {
     }
 
     /// What the sensor showed at the wall's largest sample; 0 where none was followed.
-    pub fn at_wall_n<N: Number<W>, const W: usize>(&self, sensor: Samples<'_, N, W>) -> f64 {
+    pub(super) fn at_wall_n<N: Number<W>, const W: usize>(&self, sensor: Samples<'_, N, W>) -> f64 {
         match self.wall.step {
             0 => 0.0,
             step => sensor.at(step),
@@ -146,7 +146,7 @@ impl Passing {
     }
 
     /// Whether the shot is over.
-    pub fn is_over(&self, end: End, silent_n: f64) -> bool {
+    pub(super) fn is_over(&self, end: End, silent_n: f64) -> bool {
         if end == End::Duration || self.wall.value <= silent_n {
             return false;
         }

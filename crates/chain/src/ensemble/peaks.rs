@@ -19,7 +19,7 @@ pub(super) struct Clock<'a> {
 
 impl Clock<'_> {
     /// Time of a step in s.
-    pub fn time_s(&self, step: usize) -> f64 {
+    pub(super) fn time_s(&self, step: usize) -> f64 {
         self.step_s * self.schedule.time(step)
     }
 }
@@ -39,7 +39,7 @@ pub(super) struct Trace<'a, N, const W: usize> {
 impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
     /// The signal: its maxima, from steps whose samples are above both
     /// neighbours or below both, and with `shape` all that is above its floor.
-    pub fn signal(self, sensor: Sensor, extremes: &[usize], shape: bool) -> Signal {
+    pub(super) fn signal(self, sensor: Sensor, extremes: &[usize], shape: bool) -> Signal {
         let mut largest = 0.0_f64;
         let mut maxima = Vec::with_capacity(8);
         let extremes = extremes.iter().copied();
@@ -178,17 +178,5 @@ fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn equidistant_samples_need_no_differences() {
-        let nodes = std::array::from_fn(|i| i as f64 - 3.0);
-        let values = std::array::from_fn(|i| (0.7 * i as f64).sin() + 0.1 * (i * i) as f64);
-        let [quick, slow] = [through_equidistant(values), through(nodes, values)];
-        for (quick, slow) in quick.into_iter().zip(slow) {
-            // Rounding alone.
-            assert!((quick - slow).abs() < 1e-13, "{quick} {slow}");
-        }
-    }
-}
+#[path = "tests/peaks.rs"]
+mod tests;

@@ -27,7 +27,7 @@ const EXPECTED: usize = 32;
 
 impl<N: Number<W>, const W: usize> Recorder<N, W> {
     /// With room for `steps` samples, so that the loop allocates nothing.
-    pub fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
+    pub(super) fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
         let rows = |_: &Sensor| Rows {
             values: Vec::with_capacity((steps + 1) * lanes),
             crest: [N::default(); W],
@@ -40,13 +40,13 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
     }
 
     /// Number of sensors.
-    pub fn sensors(&self) -> usize {
+    pub(super) fn sensors(&self) -> usize {
         self.sensors.len()
     }
 
     /// Adds what all sensors show now.
     #[inline(always)]
-    pub fn add(&mut self, block: &Block<'_, N, W>) {
+    pub(super) fn add(&mut self, block: &Block<'_, N, W>) {
         match self.lanes == W {
             true => self.add_row::<W>(block),
             false => self.add_row::<1>(block),
@@ -63,7 +63,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 
     /// Finds what each lane's sensors have shown at most in the last steps.
     #[inline(always)]
-    pub fn look<S: Simd>(&mut self, simd: S, steps: usize) {
+    pub(super) fn look<S: Simd>(&mut self, simd: S, steps: usize) {
         for Rows { values, crest } in &mut self.rows {
             let first = values.len() - steps * self.lanes;
             let mut most = N::Wide::<S>::simd_from(simd, N::default());
@@ -80,7 +80,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
     }
 
     /// Samples of a sensor, by its place in the list, in a lane.
-    pub fn samples(&self, sensor: usize, lane: usize) -> Samples<'_, N, W> {
+    pub(super) fn samples(&self, sensor: usize, lane: usize) -> Samples<'_, N, W> {
         Samples {
             rows: &self.rows[sensor],
             lanes: self.lanes,
@@ -90,7 +90,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 
     /// Lane by lane the steps at which a sensor's samples are above both
     /// neighbours, or below both.
-    pub fn extremes(&self, sensor: usize, set: InstructionSet) -> Vec<Vec<usize>> {
+    pub(super) fn extremes(&self, sensor: usize, set: InstructionSet) -> Vec<Vec<usize>> {
         let mut found = vec![Vec::with_capacity(EXPECTED); self.lanes];
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
@@ -136,13 +136,13 @@ pub(super) struct Samples<'a, N, const W: usize> {
 
 impl<'a, N: Number<W>, const W: usize> Samples<'a, N, W> {
     /// The largest between the last two looks.
-    pub fn crest(self) -> f64 {
+    pub(super) fn crest(self) -> f64 {
         self.rows.crest[self.lane].into()
     }
 
     /// The samples from a step, 1 or later, to the latest.
     #[inline]
-    pub fn since(self, step: usize) -> impl Iterator<Item = f64> + use<'a, N, W> {
+    pub(super) fn since(self, step: usize) -> impl Iterator<Item = f64> + use<'a, N, W> {
         let first = (step - 1) * self.lanes + self.lane;
         let values = self.rows.values.get(first..).unwrap_or_default();
         values.iter().step_by(self.lanes).map(|&value| value.into())
@@ -150,7 +150,7 @@ impl<'a, N: Number<W>, const W: usize> Samples<'a, N, W> {
 
     /// The sample of a step from 1 to the latest.
     #[inline]
-    pub fn at(self, step: usize) -> f64 {
+    pub(super) fn at(self, step: usize) -> f64 {
         self.rows.values[(step - 1) * self.lanes + self.lane].into()
     }
 }

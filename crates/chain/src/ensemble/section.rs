@@ -30,7 +30,7 @@ pub(super) struct Place<'a, N, const W: usize> {
 
 impl<N, const W: usize> Place<'_, N, W> {
     /// The chunks that are awake among some contacts.
-    pub fn chunks(&self, contacts: &Range<usize>) -> Range<usize> {
+    pub(super) fn chunks(&self, contacts: &Range<usize>) -> Range<usize> {
         let end = chunks::<W>(contacts.end, self.lanes).min(self.awake.end);
         let start = (contacts.start * self.lanes / W).max(self.awake.start);
         start.min(end)..end

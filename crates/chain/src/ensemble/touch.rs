@@ -29,7 +29,7 @@ pub(super) struct Sides<'a, N, const W: usize> {
 impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     /// Of `count` chunks of contacts from `first` on.
     #[inline(always)]
-    pub fn new(place: &Place<'a, N, W>, first: usize, count: usize) -> Self {
+    pub(super) fn new(place: &Place<'a, N, W>, first: usize, count: usize) -> Self {
         let part = |values: &'a [N], from: usize| -> &'a [[N; W]] {
             &values[from..].as_chunks().0[..count]
         };
@@ -51,7 +51,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     /// can only be at the start: whatever approaches from contact overlaps a
     /// step later.
     #[inline(always)]
-    pub fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+    pub(super) fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let apart = load(&self.x[1][i]) - load(&self.x[0][i]);
         let depth = load(self.offset_m.at(self.first + i)) - apart;
@@ -60,7 +60,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
 
     /// The same in a chain without gaps and loads that has been set in motion.
     #[inline(always)]
-    pub fn plain_touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+    pub(super) fn plain_touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let depth = load(&self.x[0][i]) - load(&self.x[1][i]);
         self.touch_at(simd, i, depth, false)

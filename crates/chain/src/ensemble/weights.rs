@@ -54,7 +54,7 @@ pub(super) struct Weights {
 
 impl Weights {
     /// Weights of velocities in steps that are `ahead` of the exact motion.
-    pub fn velocity(&self, ahead: f64) -> [f64; USED] {
+    pub(super) fn velocity(&self, ahead: f64) -> [f64; USED] {
         std::array::from_fn(|k| self.velocity[k] + ahead * self.surprise[k])
     }
 }
@@ -70,12 +70,12 @@ pub(super) struct Schedule {
 
 impl Schedule {
     /// The schedule, made once.
-    pub fn shared() -> &'static Self {
+    pub(super) fn shared() -> &'static Self {
         static SCHEDULE: LazyLock<Schedule> = LazyLock::new(Schedule::new);
         &SCHEDULE
     }
 
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let lengths = step_lengths();
         let mut times = vec![0.0];
         for length in &lengths {
@@ -89,27 +89,27 @@ impl Schedule {
     }
 
     /// Weights of step `n`.
-    pub fn row(&self, n: usize) -> &Weights {
+    pub(super) fn row(&self, n: usize) -> &Weights {
         &self.rows[n.min(self.rows.len() - 1)]
     }
 
     /// The row that lasts for ever.
-    pub fn steady(&self) -> &Weights {
+    pub(super) fn steady(&self) -> &Weights {
         &self.rows[self.rows.len() - 1]
     }
 
     /// From this row on they are all the same.
-    pub fn last_row(&self) -> usize {
+    pub(super) fn last_row(&self) -> usize {
         self.rows.len() - 1
     }
 
     /// The first step that is full.
-    pub fn first_full_step(&self) -> usize {
+    pub(super) fn first_full_step(&self) -> usize {
         self.rows.len() - USED - 1
     }
 
     /// Time of step `n` in full steps.
-    pub fn time(&self, n: usize) -> f64 {
+    pub(super) fn time(&self, n: usize) -> f64 {
         let last = self.times.len() - 1;
         match self.times.get(n) {
             Some(&time) => time,
@@ -207,50 +207,5 @@ fn integrals(coefficients: &[f64], from: f64, to: f64) -> (f64, f64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Integrates x″ = a(t) with the schedule, corrected at the end.
-    fn integrate(acceleration: impl Fn(f64) -> f64, steps: usize) -> (f64, f64, f64) {
-        let schedule = Schedule::new();
-        let (mut x, mut v) = (0.0, 0.0);
-        let mut used = [0.0; USED];
-        for n in 0..steps {
-            used.rotate_right(1);
-            used[0] = acceleration(schedule.time(n));
-            let w = schedule.row(n);
-            let sum = |weights: &[f64; USED]| -> f64 {
-                weights.iter().zip(&used).map(|(w, a)| w * a).sum()
-            };
-            (x, v) = (x + w.drift * v + sum(&w.position), v + sum(&w.velocity));
-        }
-        (schedule.time(steps), x, v)
-    }
-
-    #[test]
-    fn polynomials_of_the_methods_order_are_integrated_exactly() {
-        for power in 0..EARLIER as i32 {
-            let (t, x, v) = integrate(|t| (0.1 * t).powi(power), 80);
-            let scale = 0.1_f64.powi(power);
-            let p = f64::from(power);
-            // The first steps use fewer accelerations: exact only up to what
-            // they leave, (1e-3)² of a step.
-            assert!(
-                (v / (scale * t.powf(p + 1.0) / (p + 1.0)) - 1.0).abs() < 1e-9,
-                "{power}"
-            );
-            let exact = scale * t.powf(p + 2.0) / (p + 1.0) / (p + 2.0);
-            assert!((x / exact - 1.0).abs() < 1e-9, "{power}");
-        }
-    }
-
-    #[test]
-    fn steady_weights_are_those_of_adams() {
-        let schedule = Schedule::new();
-        let row = schedule.row(10_000);
-        // Corrector of order 5: its newest weight.
-        assert!((row.residual[0] - 251.0 / 720.0).abs() < 1e-12);
-        let sum: f64 = row.velocity.iter().sum();
-        assert!((sum - 1.0).abs() < 1e-12);
-    }
-}
+#[path = "tests/weights.rs"]
+mod tests;

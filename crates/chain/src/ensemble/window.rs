@@ -68,7 +68,7 @@ pub(super) struct Window {
 
 impl Window {
     /// Of chains whose first `moving` bodies can move, from where those are.
-    pub fn new<N: Number<W>, const W: usize>(
+    pub(super) fn new<N: Number<W>, const W: usize>(
         (lanes, systems): (usize, &[&System]),
         (x, v): (&[N], &[N]),
         moving: usize,
@@ -97,7 +97,7 @@ impl Window {
     /// Takes in what the last step has reached: the next chunk once the last
     /// one moves, and sleeping contacts next to what is awake once they close.
     #[inline(always)]
-    pub fn follow<S: Simd, N: Number<W>, const W: usize>(
+    pub(super) fn follow<S: Simd, N: Number<W>, const W: usize>(
         &mut self,
         simd: S,
         places: Places<'_, N, W>,
@@ -139,7 +139,7 @@ impl Window {
 
     /// Lets sleep what stays open for a time from here; contacts that have
     /// slept since the last look have let their bodies forget all forces.
-    pub fn look<N: Number<W>, const W: usize>(
+    pub(super) fn look<N: Number<W>, const W: usize>(
         &mut self,
         set: InstructionSet,
         places: Places<'_, N, W>,
@@ -182,7 +182,7 @@ impl Window {
     }
 
     /// All chunks.
-    pub fn whole(&self) -> Self {
+    pub(super) fn whole(&self) -> Self {
         Self {
             chunks: self.all,
             contacts: 0..self.with_contacts,

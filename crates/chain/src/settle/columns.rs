@@ -21,7 +21,7 @@ pub(super) struct Touch {
 }
 
 impl Touch {
-    pub fn new(contacts: usize) -> Self {
+    pub(super) fn new(contacts: usize) -> Self {
         let column = || vec![0.0; contacts];
         Self {
             overlap: column(),
@@ -57,7 +57,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub fn new(system: &System, slow: &SlowPhase, state: &State) -> Self {
+    pub(super) fn new(system: &System, slow: &SlowPhase, state: &State) -> Self {
         let friction = slow.friction_coefficient * system.normal_m_s2.abs();
         let rubs = system
             .inverse_mass
@@ -94,7 +94,7 @@ impl Columns {
     }
 
     /// Takes the striker out of the motion.
-    pub fn withdraw(&mut self) {
+    pub(super) fn withdraw(&mut self) {
         self.striker_gone = true;
         self.offset[0] = f64::NEG_INFINITY;
         self.inverse_mass[0] = 0.0;
@@ -102,12 +102,12 @@ impl Columns {
         self.hold_what_does_not_move();
     }
 
-    pub fn has_striker(&self, system: &System) -> bool {
+    pub(super) fn has_striker(&self, system: &System) -> bool {
         system.has_striker && !self.striker_gone
     }
 
     /// Forces of all contacts at the bodies' places.
-    pub fn feel(&mut self, system: &System, x: &[f64]) {
+    pub(super) fn feel(&mut self, system: &System, x: &[f64]) {
         let Self {
             touch,
             offset,
@@ -148,7 +148,7 @@ impl Columns {
 
     /// Velocities a step of `kick_s` later; leaves their means, those at the
     /// positions' time, in `mean`.
-    pub fn kick(&mut self, kick_s: f64, mean: &mut [f64]) {
+    pub(super) fn kick(&mut self, kick_s: f64, mean: &mut [f64]) {
         let set = self.set;
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
@@ -157,7 +157,7 @@ impl Columns {
     }
 
     /// Positions a step later.
-    pub fn drift(&self, step_s: f64, x: &mut [f64]) {
+    pub(super) fn drift(&self, step_s: f64, x: &mut [f64]) {
         dispatch!(self.set.level(), simd => simd.vectorize(
             #[inline(always)]
             || drift(x, &self.v, step_s)
@@ -165,7 +165,7 @@ impl Columns {
     }
 
     /// Forces of all laws on contacts as `touch` has them.
-    pub fn laws(&self, system: &System, touch: &Touch, force: &mut [f64]) {
+    pub(super) fn laws(&self, system: &System, touch: &Touch, force: &mut [f64]) {
         add_laws(system, self.set, touch, force);
     }
 }

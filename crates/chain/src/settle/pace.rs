@@ -39,7 +39,7 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    pub fn new(system: &System, fraction: f64, longest_s: f64) -> Self {
+    pub(super) fn new(system: &System, fraction: f64, longest_s: f64) -> Self {
         let contacts = || vec![0.0; system.contacts()];
         let spring = system.spring.map_or(0.0, |spring| spring.stiffness_n_m);
         Self {
@@ -54,7 +54,13 @@ impl Pace {
     }
 
     /// The next step after one of `step_s`, 0 at the start.
-    pub fn step(&mut self, system: &System, columns: &Columns, x: &[f64], step_s: f64) -> f64 {
+    pub(super) fn step(
+        &mut self,
+        system: &System,
+        columns: &Columns,
+        x: &[f64],
+        step_s: f64,
+    ) -> f64 {
         let most = match step_s > 0.0 {
             true => (2.0 * step_s).min(self.longest_s),
             // Nothing is known yet but the scales of the shot.

@@ -35,7 +35,7 @@ pub(super) struct Slow<'a> {
 }
 
 impl<'a> Slow<'a> {
-    pub fn new(system: &'a System, slow: &'a SlowPhase, state: &'a mut State) -> Self {
+    pub(super) fn new(system: &'a System, slow: &'a SlowPhase, state: &'a mut State) -> Self {
         Self {
             columns: Columns::new(system, slow, state),
             pace: Pace::new(system, slow.step, LONGEST * slow.stuck_for_s),
@@ -51,7 +51,10 @@ impl<'a> Slow<'a> {
         }
     }
 
-    pub fn run(mut self, seen: &mut dyn FnMut(f64, &State, &[f64])) -> Result<Rest, SettleError> {
+    pub(super) fn run(
+        mut self,
+        seen: &mut dyn FnMut(f64, &State, &[f64]),
+    ) -> Result<Rest, SettleError> {
         // Velocities lag half a step behind positions, but not at the start.
         let mut kick_s = 0.0;
         loop {

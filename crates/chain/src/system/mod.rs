@@ -40,7 +40,7 @@ pub(crate) struct SectionColumns {
 
 impl SectionColumns {
     /// All terms, gated ones first.
-    pub fn terms(&self) -> impl Iterator<Item = &TermColumns> {
+    pub(crate) fn terms(&self) -> impl Iterator<Item = &TermColumns> {
         self.gated.iter().chain(&self.ungated)
     }
 }

@@ -40,7 +40,7 @@ pub(crate) struct Pass {
 }
 
 impl Pass {
-    pub fn new(system: &System) -> Self {
+    pub(super) fn new(system: &System) -> Self {
         let contacts = || vec![0.0; system.contacts()];
         Self {
             gap: contacts(),
@@ -60,7 +60,7 @@ impl Pass {
 
     /// Accelerations in m/s² of the bodies of a window at positions `x` and
     /// velocities `v`; contacts at the window's edges carry no dynamic force.
-    pub fn accelerate(
+    pub(super) fn accelerate(
         &mut self,
         system: &System,
         state: &State,
@@ -105,13 +105,13 @@ impl Pass {
     }
 
     /// Force of a contact before any cut, taken as closed.
-    pub fn uncut(&self, contact: usize) -> f64 {
+    pub(super) fn uncut(&self, contact: usize) -> f64 {
         self.closed_force[contact] + self.across[contact]
     }
 
     /// Whether any gate disagrees with the overlap of the last pass: closed
     /// across a gap or open at an overlap.
-    pub fn disagrees(&self, contacts: Range<usize>) -> bool {
+    pub(super) fn disagrees(&self, contacts: Range<usize>) -> bool {
         let gates = self.gap[contacts.clone()]
             .iter()
             .zip(&self.touching[contacts]);

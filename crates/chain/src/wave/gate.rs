@@ -58,7 +58,7 @@ const LEAST_STEP: f64 = 1e-12;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Watch {
-    pub fn new(system: &System, tolerance: f64) -> Self {
+    pub(super) fn new(system: &System, tolerance: f64) -> Self {
         let scales = system.scales();
         Self {
             tolerance,
@@ -72,7 +72,7 @@ impl Watch {
     }
 
     /// Measures changes against the speed at which contacts move now.
-    pub fn rescale(&mut self, speed_m_s: f64) {
+    pub(super) fn rescale(&mut self, speed_m_s: f64) {
         self.slight_speed = 0.01 * self.tolerance * speed_m_s;
         self.landing = 0.1 * self.tolerance * speed_m_s * self.time_s;
     }
@@ -115,7 +115,12 @@ impl Watch {
     }
 
     /// The first change in a step that must end the step, if any.
-    pub fn first(&self, piece: &Piece<'_>, pass: &Pass, contacts: Range<usize>) -> Option<Event> {
+    pub(super) fn first(
+        &self,
+        piece: &Piece<'_>,
+        pass: &Pass,
+        contacts: Range<usize>,
+    ) -> Option<Event> {
         if self.overlap_alone && !pass.disagrees(contacts.clone()) {
             return None;
         }
@@ -167,7 +172,7 @@ impl Watch {
 
     /// Sets the modes at the end of an accepted step; `aimed` is the change
     /// that the step was made to end at. Tells whether any mode changed.
-    pub fn settle(
+    pub(super) fn settle(
         &mut self,
         system: &System,
         state: &mut State,
@@ -198,7 +203,7 @@ impl Watch {
     }
 
     /// Makes a change that falls on the start of a step.
-    pub fn apply(&mut self, state: &mut State, event: Event) {
+    pub(super) fn apply(&mut self, state: &mut State, event: Event) {
         if let Change::Overlap(mode) | Change::Force(mode) = event.change {
             self.set(state, event.contact, mode);
         }

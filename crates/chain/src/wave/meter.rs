@@ -25,7 +25,7 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    pub fn new(system: &System, state: &State, stages: usize) -> Self {
+    pub(super) fn new(system: &System, state: &State, stages: usize) -> Self {
         let mut laws: Vec<&'static str> = lossy(system).map(|term| term.law.info().name).collect();
         laws.sort_unstable();
         laws.dedup();
@@ -51,7 +51,7 @@ impl Meter {
     }
 
     /// Powers at one stage, from the force pass just done.
-    pub fn stage(
+    pub(super) fn stage(
         &mut self,
         stage: usize,
         system: &System,
@@ -81,7 +81,7 @@ impl Meter {
     }
 
     /// Adds the step's work, Σ h b_s P_s; `kinetic_j` is what moves after it.
-    pub fn finish_step(&mut self, step_s: f64, weights: &[f64], kinetic_j: f64) {
+    pub(super) fn finish_step(&mut self, step_s: f64, weights: &[f64], kinetic_j: f64) {
         add(&mut self.work_j, step_s, weights, &self.powers_w);
         let driven = self.work_j[self.laws.len() + 1];
         let put_in = (self.start_j + driven).abs().max(driven.abs());
@@ -89,17 +89,17 @@ impl Meter {
     }
 
     /// Adds the work of a long step.
-    pub fn finish_slow(&mut self, step_s: f64, weights: &[f64]) {
+    pub(super) fn finish_slow(&mut self, step_s: f64, weights: &[f64]) {
         add(&mut self.work_j, step_s, weights, &self.slow_powers_w);
     }
 
     /// Puts the powers of the long step in the place of the short one's, or back.
-    pub fn swap_slow(&mut self) {
+    pub(super) fn swap_slow(&mut self) {
         std::mem::swap(&mut self.powers_w, &mut self.slow_powers_w);
     }
 
     /// Error of the step's work, as a fraction of the energy put in.
-    pub fn error(&self, step_s: f64, weights: &[f64]) -> f64 {
+    pub(super) fn error(&self, step_s: f64, weights: &[f64]) -> f64 {
         if self.most_j == 0.0 {
             return 0.0;
         }
@@ -114,14 +114,14 @@ impl Meter {
     }
 
     /// The last stage of a step is the first of the next.
-    pub fn carry_over(&mut self) {
+    pub(super) fn carry_over(&mut self) {
         let last = self.powers_w.len() - 1;
         self.powers_w.swap(0, last);
     }
 
     /// All terms at a state that the meter has followed; `pending` is the length
     /// of a long step under way and the weights of its stages up to the state.
-    pub fn budget(
+    pub(super) fn budget(
         &self,
         system: &System,
         state: &State,

@@ -31,7 +31,7 @@ pub(crate) struct State {
 impl State {
     /// The start of a shot. Contacts without a gap count as closed: their
     /// force is 0 until they are pressed.
-    pub fn start(system: &System) -> Self {
+    pub(super) fn start(system: &System) -> Self {
         let contacts = system.contacts();
         let mut state = Self {
             time_s: 0.0,
@@ -54,12 +54,12 @@ impl State {
     }
 
     /// Overlap δ of a contact in m, negative across a gap.
-    pub fn overlap(&self, system: &System, contact: usize) -> f64 {
+    pub(super) fn overlap(&self, system: &System, contact: usize) -> f64 {
         system.offset_m[contact] - (self.x[contact + 1] - self.x[contact])
     }
 
     /// Changes a contact's mode.
-    pub fn set(&mut self, contact: usize, mode: Mode) {
+    pub(super) fn set(&mut self, contact: usize, mode: Mode) {
         self.mode[contact] = mode;
         self.passing[contact] = f64::from(u8::from(mode == Mode::Closed));
         self.touching[contact] = f64::from(u8::from(mode != Mode::Open));

@@ -44,7 +44,7 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    pub fn new(
+    pub(super) fn new(
         system: &System,
         state: &State,
         (stages, tolerance): (usize, f64),
@@ -82,18 +82,18 @@ impl Window {
 
     /// Whether bodies may sleep where the wave has been: in long chains on which
     /// nothing but contacts acts.
-    pub fn sleeps_again(&self) -> bool {
+    pub(super) fn sleeps_again(&self) -> bool {
         self.sleeps_again
     }
 
     /// Bodies from here on have never moved.
-    pub fn untouched(&self) -> usize {
+    pub(super) fn untouched(&self) -> usize {
         self.untouched
     }
 
     /// Within a long step: wakes what short steps may have reached, on the sides
     /// (of the striker, of the wall) where they go to the window's edge.
-    pub fn keep_up(&mut self, system: &System, state: &mut State, sides: [bool; 2]) {
+    pub(super) fn keep_up(&mut self, system: &System, state: &mut State, sides: [bool; 2]) {
         if sides[0] {
             self.wake_before(system, state);
         }
@@ -104,7 +104,7 @@ impl Window {
     }
 
     /// Wakes what the last step may have reached, and lets sleep what relaxed.
-    pub fn follow(&mut self, system: &System, state: &mut State) {
+    pub(super) fn follow(&mut self, system: &System, state: &mut State) {
         self.wake_untouched(state);
         if !self.sleeps_again {
             return;
@@ -204,7 +204,7 @@ impl Window {
     }
 
     /// Wakes everything.
-    pub fn wake_all(&mut self, state: &mut State) {
+    pub(super) fn wake_all(&mut self, state: &mut State) {
         let (first, end) = (self.bodies.start, self.bodies.end);
         self.wake(state, 0..first);
         self.wake(state, end..state.x.len());

@@ -50,7 +50,7 @@ pub(super) struct Slow {
 
 impl Slow {
     /// Of a chain in which it may pay, or of none.
-    pub fn new(system: &System, stages: usize, pays: bool) -> Self {
+    pub(super) fn new(system: &System, stages: usize, pays: bool) -> Self {
         let bodies = || vec![0.0; if pays { system.bodies() } else { 0 }];
         Self {
             active: false,
@@ -67,7 +67,7 @@ impl Slow {
     }
 
     /// Whether it is time to try a long step; counts the short ones.
-    pub fn is_due(&mut self, awake: usize) -> bool {
+    pub(super) fn is_due(&mut self, awake: usize) -> bool {
         if self.wait == usize::MAX || awake < LEAST_BODIES {
             return false;
         }
@@ -76,12 +76,12 @@ impl Slow {
     }
 
     /// Length of a long step beside short ones.
-    pub fn proposed_s(&self, short_s: f64) -> f64 {
+    pub(super) fn proposed_s(&self, short_s: f64) -> f64 {
         self.ratio * short_s
     }
 
     /// Whether bodies with short steps are around those that need them, and few more.
-    pub fn suits(&self, needy: &Range<usize>, window: &Range<usize>) -> bool {
+    pub(super) fn suits(&self, needy: &Range<usize>, window: &Range<usize>) -> bool {
         let quick = self.quick.start.max(window.start)..self.quick.end.min(window.end);
         let start = needy.start.saturating_sub(MARGIN).max(window.start);
         let end = (needy.end + MARGIN).min(window.end);
@@ -89,26 +89,26 @@ impl Slow {
     }
 
     /// Half the long step, unless that is no gain.
-    pub fn shorten(&mut self) -> bool {
+    pub(super) fn shorten(&mut self) -> bool {
         self.ratio *= 0.5;
         self.ratio >= RATIOS.0
     }
 
     /// A longer step, unless it is at its bound.
-    pub fn lengthen(&mut self) -> bool {
+    pub(super) fn lengthen(&mut self) -> bool {
         self.ratio *= 2.0;
         self.ratio <= RATIOS.1
     }
 
     /// No long step now.
-    pub fn give_up(&mut self) {
+    pub(super) fn give_up(&mut self) {
         self.wait = LOOK_EVERY;
         self.ratio = self.ratio.clamp(RATIOS.0, RATIOS.1);
         self.quick = 0..0;
     }
 
     /// Begins a long step that has been computed.
-    pub fn begin(&mut self, (start_s, step_s): (f64, f64), window: Range<usize>) {
+    pub(super) fn begin(&mut self, (start_s, step_s): (f64, f64), window: Range<usize>) {
         self.active = true;
         (self.start_s, self.step_s) = (start_s, step_s);
         let quick = self.quick.start.max(window.start)..self.quick.end.min(window.end);
@@ -123,7 +123,7 @@ impl Slow {
 
     /// Bodies that shall have short steps, around those that need them; `None`
     /// where that is too large a part of the window.
-    pub fn around(
+    pub(super) fn around(
         needy: Range<usize>,
         window: &Range<usize>,
         (bodies, reaches): (usize, usize),
@@ -146,49 +146,49 @@ impl Slow {
         (2 * quick < window.len()).then_some(start..end)
     }
 
-    pub fn end_s(&self) -> f64 {
+    pub(super) fn end_s(&self) -> f64 {
         self.start_s + self.step_s
     }
 
     /// Whether a body is on the long step.
-    pub fn holds(&self, body: usize) -> bool {
+    pub(super) fn holds(&self, body: usize) -> bool {
         self.active && self.window.contains(&body) && !self.quick.contains(&body)
     }
 
     /// Whether both bodies of a contact are.
-    pub fn holds_contact(&self, contact: usize) -> bool {
+    pub(super) fn holds_contact(&self, contact: usize) -> bool {
         self.holds(contact) && self.holds(contact + 1)
     }
 
     /// Bodies on the long step.
-    pub fn bodies(&self) -> impl Iterator<Item = usize> + use<> {
+    pub(super) fn bodies(&self) -> impl Iterator<Item = usize> + use<> {
         let before = self.window.start..self.quick.start.max(self.window.start);
         let after = self.quick.end.min(self.window.end)..self.window.end;
         before.chain(after)
     }
 
     /// The short-stepped bodies of a window and one more at each seam.
-    pub fn quick_with_seams(&self, window: &Range<usize>) -> Range<usize> {
+    pub(super) fn quick_with_seams(&self, window: &Range<usize>) -> Range<usize> {
         let start = self.quick.start.saturating_sub(1).max(window.start);
         start..self.quick.end.saturating_add(1).min(window.end)
     }
 
     /// Contacts of which neither body has short steps: on both sides of the seams.
-    pub fn contacts(quick: &Range<usize>, window: &Range<usize>) -> [Range<usize>; 2] {
+    pub(super) fn contacts(quick: &Range<usize>, window: &Range<usize>) -> [Range<usize>; 2] {
         let before = window.start..quick.start.saturating_sub(1).max(window.start);
         let after = quick.end.min(window.end - 1)..window.end - 1;
         [before, after]
     }
 
     /// Weights of the stages' powers from the start of the long step to a time.
-    pub fn weights(&self, table: &Table, time_s: f64) -> Vec<f64> {
+    pub(super) fn weights(&self, table: &Table, time_s: f64) -> Vec<f64> {
         let theta = (time_s - self.start_s) / self.step_s;
         let dense = table.dense_velocity.iter();
         dense.map(|row| polynomial(row, theta)).collect()
     }
 
     /// Displacement and velocity of a body on the long step.
-    pub fn at(&self, table: &Table, state: &State, body: usize, time_s: f64) -> (f64, f64) {
+    pub(super) fn at(&self, table: &Table, state: &State, body: usize, time_s: f64) -> (f64, f64) {
         let h = self.step_s;
         let theta = (time_s - self.start_s) / h;
         let (mut moved, mut sped) = (0.0, 0.0);
@@ -201,7 +201,7 @@ impl Slow {
     }
 
     /// A state at a time within the long step: all bodies and gates there.
-    pub fn bring_to(&self, system: &System, table: &Table, state: &mut State, time_s: f64) {
+    pub(super) fn bring_to(&self, system: &System, table: &Table, state: &mut State, time_s: f64) {
         if !self.active {
             return;
         }
@@ -216,7 +216,7 @@ impl Slow {
     }
 
     /// The state at the end of the long step.
-    pub fn finish(&mut self, system: &System, state: &mut State) {
+    pub(super) fn finish(&mut self, system: &System, state: &mut State) {
         for body in self.bodies() {
             (state.x[body], state.v[body]) = (self.x[body], self.v[body]);
         }

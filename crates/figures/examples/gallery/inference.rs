@@ -11,7 +11,7 @@ fn noise(count: u32, seed: f64) -> Vec<f64> {
         .collect()
 }
 
-pub fn corner() -> Figure {
+pub(crate) fn corner() -> Figure {
     let normal = |seed: f64| -> Vec<f64> {
         let sums: Vec<Vec<f64>> = (0..6)
             .map(|k| noise(6000, seed + 10.0 * f64::from(k)))
@@ -43,7 +43,7 @@ pub fn corner() -> Figure {
     .figure()
 }
 
-pub fn profiles() -> Figure {
+pub(crate) fn profiles() -> Figure {
     let levels = [(1.0, "68 %"), (3.841, "95 %")];
     let root: Vec<f64> = (-8..=8).map(|i| 0.27 * f64::from(i)).collect();
     let rise: Vec<f64> = root.iter().map(|z| z * z).collect();
@@ -66,7 +66,7 @@ pub fn profiles() -> Figure {
     ])
 }
 
-pub fn singular_values() -> Figure {
+pub(crate) fn singular_values() -> Figure {
     let names = ["Y", "nu", "eta", "B"].map(String::from);
     let directions = [
         vec![0.81, 0.35, 0.41, 0.24],

@@ -130,18 +130,5 @@ pub(crate) fn places(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_corner_without_data_is_the_freest() {
-        let frame = Rect::sized(0.0, 0.0, 100.0, 100.0);
-        let mut taken = Occupancy::new(frame);
-        taken.mark_line(&[Point::new(0.0, 0.0), Point::new(100.0, 100.0)], 1);
-        taken.mark_rect(&Rect::sized(60.0, 0.0, 40.0, 40.0), 1);
-        let (place, cost) = taken
-            .freest(&places(&frame, 30.0, 30.0))
-            .expect("there are places");
-        assert_eq!((place.x0, place.y0, cost), (0.0, 70.0, 0));
-    }
-}
+#[path = "tests/occupancy.rs"]
+mod tests;

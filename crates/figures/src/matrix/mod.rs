@@ -309,27 +309,5 @@ fn below_height(lines: &[TextLine]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn verdicts_differ_in_lightness_for_grey_print() {
-        let mut levels = Verdict::ALL.map(|v| v.colour().luminance());
-        levels.sort_by(f64::total_cmp);
-        // The two palest are told apart by their symbols.
-        assert!(
-            levels[1] - levels[0] > 0.08 && levels[2] - levels[1] > 0.2,
-            "{levels:?}"
-        );
-    }
-
-    #[test]
-    fn a_table_grows_with_its_rows() {
-        let table = |rows: usize| {
-            let empty = VerdictMatrix::new(&["a", "b"]);
-            let full = (0..rows).fold(empty, |m, _| m.row("claim", &[Verdict::Holds]));
-            full.figure().size_mm().1
-        };
-        assert!(table(20) > table(10));
-    }
-}
+#[path = "tests/mod.rs"]
+mod tests;

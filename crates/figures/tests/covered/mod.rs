@@ -7,7 +7,7 @@ use resvg::usvg::{Group, Node, Options, Tree};
 const SCALE: f32 = 2.0;
 
 /// How many legends an SVG has and how many pixels below them are not white.
-pub fn covered(svg: &str) -> (usize, usize) {
+pub(super) fn covered(svg: &str) -> (usize, usize) {
     let mut boxes = Vec::new();
     collect(parsed(svg).root(), &mut boxes);
     let bare = svg.replace("<g id=\"legend", "<g display=\"none\" id=\"legend");

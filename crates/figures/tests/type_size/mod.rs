@@ -6,7 +6,7 @@ use skrifa::instance::{LocationRef, Size};
 
 /// Size in points of the smallest glyph of an SVG at its own width, and that
 /// width in millimetres; infinite without any text.
-pub fn smallest_type(svg: &str) -> (f64, f64) {
+pub(crate) fn smallest_type(svg: &str) -> (f64, f64) {
     let document = Document::parse(svg).expect("well-formed XML");
     let root = document.root_element();
     let width_mm = root.attribute("width").expect("a width");

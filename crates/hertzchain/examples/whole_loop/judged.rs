@@ -17,13 +17,13 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Incident and reflected, in this order, here and below.
-pub const TIMES: [&str; 2] = ["incident", "reflected"];
+pub(crate) const TIMES: [&str; 2] = ["incident", "reflected"];
 
 /// A row of −1/5 nearly: what an error of the speed does to a time \[Nesterenko1983\].
 const EXPONENT: f64 = 0.2;
 
 /// One shot.
-pub struct Judged {
+pub(crate) struct Judged {
     /// The case of the campaign.
     pub case: String,
     /// The shot as measured.
@@ -46,30 +46,30 @@ pub struct Judged {
 }
 
 /// What measured times are held to.
-pub type Curve = fn(&Judged) -> [f64; 2];
+pub(crate) type Curve = fn(&Judged) -> [f64; 2];
 
 /// The model's curve, of the chain in equilibrium.
-pub const COMPACT: Curve = |shot| shot.compact_s;
+pub(crate) const COMPACT: Curve = |shot| shot.compact_s;
 /// The recorded shots' own times.
-pub const OWN: Curve = |shot| shot.own_s;
+pub(crate) const OWN: Curve = |shot| shot.own_s;
 /// The model's curve, of chains with the recorded ones' own gaps and loads.
-pub const HELD: Curve = |shot| shot.held_s;
+pub(crate) const HELD: Curve = |shot| shot.held_s;
 
 impl Judged {
     /// Speed that the striker was told, in m/s.
-    pub fn programmed_m_s(&self) -> f64 {
+    pub(crate) fn programmed_m_s(&self) -> f64 {
         self.shot.programmed_speed_m_s.unwrap_or_default()
     }
 
     /// Measured less true time, with the stated error of picking.
-    pub fn error(&self, time: usize) -> Option<Estimate> {
+    pub(crate) fn error(&self, time: usize) -> Option<Estimate> {
         let measured = self.measured_s[time]?;
         let value = measured.value - self.true_s[time];
         value.is_finite().then_some(Estimate { value, ..measured })
     }
 
     /// Measured time less what it is held to, by all of its stated error: of picking and of the speed.
-    pub fn pull(&self, time: usize, curve: Curve) -> f64 {
+    pub(crate) fn pull(&self, time: usize, curve: Curve) -> f64 {
         let Some(measured) = self.measured_s[time] else {
             return f64::NAN;
         };
@@ -84,7 +84,7 @@ impl Judged {
 }
 
 /// Shots of one speed: what `measure` tells of their mean, less what they are held to.
-pub struct Speed {
+pub(crate) struct Speed {
     /// Programmed speed in m/s.
     pub speed_m_s: f64,
     /// How many shots have this time.
@@ -97,7 +97,7 @@ pub struct Speed {
 }
 
 /// Means a speed of one case, less what they are held to.
-pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
+pub(crate) fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
     let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
@@ -110,7 +110,7 @@ pub fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
 }
 
 /// Chi-square of means against no departure at all.
-pub fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
+pub(crate) fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
     let means: Vec<Estimate> = rows.iter().map(|row| row.departure_s).collect();
     chi_square(&means, &vec![0.0; means.len()], 0)
 }
@@ -156,7 +156,7 @@ fn of_mean(shots: &[&Judged], time: usize, curve: Curve) -> Option<Speed> {
 }
 
 /// Runs a campaign file once a seed, each into a folder of its own.
-pub fn run(
+pub(crate) fn run(
     text: &str,
     seeds: RangeInclusive<u64>,
     under: &Path,
@@ -174,7 +174,7 @@ pub fn run(
 
 /// Measures the recordings of a campaign's folder, and holds every shot against
 /// its true values and the model.
-pub fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box<dyn Error>> {
+pub(crate) fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box<dyn Error>> {
     let text = fs::read_to_string(folder.join("campaign.toml"))?;
     let plan = Plan::new(&Experiment::from_text("campaign.toml", &text)?, None)?;
     let mut files = Vec::new();

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 /// An option that would say nothing, why, and what to do.
-pub fn of_table(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = &arguments.recorded;
     let why = "is for recordings, and DATA is a table of times of flight: leave it out";
     refuse("--shots", recorded.shots.is_some(), why)?;
@@ -29,7 +29,7 @@ pub fn of_table(arguments: &Arguments) -> Result<(), Failure> {
 ///
 /// # Errors
 /// As [`of_table`].
-pub fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
     let why = "compares models of a table of times of flight, and DATA are recordings: take their times by \
                `hertzchain measure` and compare models of speeds.csv, or fit the other model to the recordings by itself";
     refuse("--against", !arguments.against.is_empty(), why)?;

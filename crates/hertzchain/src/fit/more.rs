@@ -47,7 +47,7 @@ pub enum Curves {
 
 /// As the method asks, by interpolated curves where that is as good. Beside the problem
 /// stands the same one as it [remembers](super::partial).
-pub fn more(
+pub(super) fn more(
     (problem, kept): (&CurveProblem, &dyn Problem),
     found: (&Fit, &Covariance),
     arguments: &Arguments,
@@ -77,7 +77,7 @@ pub fn more(
 ///
 /// # Errors
 /// What is in the way.
-pub fn more_of(
+pub(super) fn more_of(
     (problem, kept): (&dyn Problem, &dyn Problem),
     (fit, covariance): (&Fit, &Covariance),
     curves: Curves,

@@ -48,7 +48,7 @@ pub struct Rivals {
 }
 
 /// Fits the other models to the same data, if any are asked for.
-pub fn rivals(
+pub(super) fn rivals(
     (problem, kept): (&CurveProblem, &dyn Problem),
     own: &Fit,
     arguments: &Arguments,
@@ -272,13 +272,5 @@ fn enough(speeds: usize, free: usize) -> bool {
 const PARTS: usize = 5;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cross_validation_needs_more_speeds_left_than_free_numbers() {
-        // Of three speeds two are left, of seven in five parts five.
-        assert!(enough(3, 1) && !enough(3, 2) && !enough(2, 1));
-        assert!(enough(7, 4) && !enough(7, 5) && enough(25, 5));
-    }
-}
+#[path = "tests/rivals.rs"]
+mod tests;

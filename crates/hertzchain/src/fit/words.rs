@@ -17,7 +17,7 @@ const MAY_DIFFER: [&str; 1] = ["--steps"];
 ///
 /// # Errors
 /// Options that differ from those of the run before, by name; a folder that can't be used.
-pub fn left(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn left(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) = &arguments.out else {
         return Ok(());
     };
@@ -46,7 +46,7 @@ pub fn left(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Forgets them where nothing is left to go on with.
-pub fn finished(out: &Path) {
+pub(super) fn finished(out: &Path) {
     if !out.join(CHAIN).exists() {
         // What stays does no harm: a new run writes its own.
         let _ = fs::remove_file(out.join(OPTIONS));
@@ -67,34 +67,5 @@ fn differing(before: &[String], now: &[String]) -> Vec<String> {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
-mod tests {
-    use super::*;
-    use crate::arguments::parsed;
-
-    fn arguments(out: &Path, more: &[&str]) -> Arguments {
-        let begin = ["data.csv", "--free=eta"].map(str::to_owned);
-        let more = more.iter().map(|word| (*word).to_owned());
-        let out = format!("--out={}", out.display());
-        let words: Vec<String> = begin.into_iter().chain(more).chain([out]).collect();
-        parsed("fit", &words).unwrap()
-    }
-
-    #[test]
-    fn a_run_goes_on_with_its_own_options_alone() {
-        let out = std::env::temp_dir().join(format!("hertzchain-options-{}", std::process::id()));
-        left(&arguments(&out, &["--seed=3", "--steps=100"])).unwrap();
-        left(&arguments(&out, &["--seed=3", "--steps=900", "--resume"])).unwrap();
-        let other = arguments(&out, &["--seed=4", "--robust", "--steps=100", "--resume"]);
-        let Err(Failure::User(why)) = left(&other) else {
-            unreachable!("a run went on with another's options")
-        };
-        let told = ["then --seed=3", "now", "--seed=4", "--robust"];
-        assert!(told.iter().all(|word| why.contains(word)), "{why}");
-        assert!(!why.contains("--steps"), "{why}");
-        // Anew, anything goes.
-        left(&arguments(&out, &["--seed=4"])).unwrap();
-        finished(&out);
-        assert!(!out.join(OPTIONS).exists());
-        let _ = fs::remove_dir_all(out);
-    }
-}
+#[path = "tests/words.rs"]
+mod tests;

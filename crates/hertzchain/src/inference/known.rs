@@ -6,12 +6,12 @@ use hertzchain_experiment::units::{Dimension, parse_quantity, parse_unit};
 use hertzchain_infer::{Parameter, Prior};
 
 /// The number in a text, whatever its unit.
-pub fn any_number(text: &str) -> Option<f64> {
+pub(super) fn any_number(text: &str) -> Option<f64> {
     parse_quantity(text).ok().map(|quantity| quantity.value)
 }
 
 /// Puts what the command line says into parameters.
-pub fn apply(freed: &Freed, parameters: &mut [Parameter]) -> Result<(), Failure> {
+pub(super) fn apply(freed: &Freed, parameters: &mut [Parameter]) -> Result<(), Failure> {
     each("--start", &freed.start, parameters, |parameter, text| {
         parameter.start = number(parameter, text)?;
         parameter.scale = match parameter.start {

@@ -19,7 +19,7 @@ use std::path::PathBuf;
     arg_required_else_help = true
 )]
 #[command(after_help = ENVIRONMENT, subcommand_negates_reqs = true)]
-pub struct Program {
+pub(crate) struct Program {
     /// Print the version; with --verbose also the instruction sets
     #[arg(long, short = 'V')]
     pub version: bool,
@@ -37,7 +37,7 @@ see `hertzchain --version --verbose`";
 
 /// What to do.
 #[derive(Debug, Subcommand)]
-pub enum Verb {
+pub(crate) enum Verb {
     /// Compute everything in the paper: tables, figures, verdicts on its claims
     Reproduce(Reproduce),
     /// Compute one shot: times of flight, peaks, rebound, energy
@@ -81,7 +81,7 @@ pub enum Verb {
 
 /// Arguments of `shot`.
 #[derive(Debug, Args)]
-pub struct Shot {
+pub(crate) struct Shot {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
@@ -108,7 +108,7 @@ pub struct Shot {
 
 /// Judges by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Judges {
+pub(crate) enum Judges {
     /// Two more shots each, with longer steps
     Each,
     /// Forty speeds, computed much more tightly, choose the cheapest steps for all: two to five
@@ -118,7 +118,7 @@ pub enum Judges {
 
 /// Arguments of `sweep`.
 #[derive(Debug, Args)]
-pub struct Sweep {
+pub(crate) struct Sweep {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
@@ -157,7 +157,7 @@ pub struct Sweep {
 
 /// Arguments of `merge`.
 #[derive(Debug, Args)]
-pub struct Merge {
+pub(crate) struct Merge {
     /// Folders with shards, as `sweep --shard` or `campaign --shard` have written them
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
@@ -168,7 +168,7 @@ pub struct Merge {
 
 /// Arguments of `campaign`.
 #[derive(Debug, Args)]
-pub struct Campaign {
+pub(crate) struct Campaign {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
@@ -188,7 +188,7 @@ pub struct Campaign {
 
 /// Arguments of `check` and `theory`.
 #[derive(Debug, Args)]
-pub struct Check {
+pub(crate) struct Check {
     /// Which experiment.
     #[command(flatten)]
     pub input: Input,
@@ -203,7 +203,7 @@ pub struct Check {
 
 /// Arguments of `laws`.
 #[derive(Debug, Args)]
-pub struct Laws {
+pub(crate) struct Laws {
     /// Only this law
     pub name: Option<String>,
     /// Print JSON
@@ -213,14 +213,14 @@ pub struct Laws {
 
 /// Arguments of `presets`.
 #[derive(Debug, Args)]
-pub struct Presets {
+pub(crate) struct Presets {
     /// Print this one's file, to start your own from
     pub name: Option<String>,
 }
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
-pub struct Reproduce {
+pub(crate) struct Reproduce {
     /// Folder to write into
     #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,

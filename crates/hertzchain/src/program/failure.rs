@@ -4,7 +4,7 @@
 use crate::print::note;
 use hertzchain::arguments::infer::{Assignment, Measured};
 use hertzchain::failure;
-pub use hertzchain::failure::{Failure, of_speed};
+pub(crate) use hertzchain::failure::{Failure, of_speed};
 use hertzchain::given::Given;
 use hertzchain::inference::{assumed, held_loads, kept};
 use hertzchain::input::option;
@@ -29,7 +29,7 @@ fn show(report: impl Fn(bool) -> String) {
 }
 
 /// Prints why a verb failed and says how the program ends.
-pub fn report(failure: &Failure) -> ExitCode {
+pub(crate) fn report(failure: &Failure) -> ExitCode {
     show(|colour| failure.report(colour));
     match failure {
         Failure::Mistakes(_) | Failure::User(_) => ExitCode::from(2),
@@ -39,26 +39,26 @@ pub fn report(failure: &Failure) -> ExitCode {
 }
 
 /// Warnings at a speed that an option gave, told of the option.
-pub fn print_option_warnings(option: &str, warnings: &[Warning]) {
+pub(crate) fn print_option_warnings(option: &str, warnings: &[Warning]) {
     show(|colour| failure::option_warnings(option, warnings, colour));
 }
 
 /// What is assumed of data that do not say all.
-pub fn print_assumed(data: &Data, measured: &Measured) {
+pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
     if let Some(assumed) = assumed(data, measured) {
         note(&format!("warning: {assumed}"));
     }
 }
 
 /// Numbers that are kept while their unit changes, and loads that the model does not have.
-pub fn print_kept(model: &Model, sets: &[Assignment]) {
+pub(crate) fn print_kept(model: &Model, sets: &[Assignment]) {
     for kept in kept(model, sets).into_iter().chain(held_loads(model)) {
         note(&format!("warning: {kept}"));
     }
 }
 
 /// What is odd about an experiment at the speed that may have been given.
-pub fn print_speed_warnings(given: Option<&Given>, warnings: &[Warning]) {
+pub(crate) fn print_speed_warnings(given: Option<&Given>, warnings: &[Warning]) {
     match given {
         Some(given) => print_option_warnings(&option(given), warnings),
         None => show(|colour| failure::warnings(warnings, colour)),

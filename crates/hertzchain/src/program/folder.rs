@@ -11,12 +11,12 @@ const DPI: f64 = 300.0;
 
 /// Files for a folder that was found writable; they appear in it together.
 #[derive(Debug)]
-pub struct Folder(Files);
+pub(crate) struct Folder(Files);
 
 impl Folder {
     /// Makes the folder if need be and checks that it can be written to,
     /// before anything is computed for it.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
             return Err(Failure::User(format!(
                 "cannot write into {}: it is a file; --out names a folder, which is made if it \
@@ -30,12 +30,12 @@ impl Folder {
     }
 
     /// Writes a file that gets its name with all others.
-    pub fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
+    pub(crate) fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
         self.write_with(name, |file| file.write_all(content))
     }
 
     /// The same of what is made while it is written, and may be longer than memory.
-    pub fn write_with(
+    pub(crate) fn write_with(
         &mut self,
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -50,13 +50,13 @@ impl Folder {
     }
 
     /// Writes tables, each under its name.
-    pub fn tables(&mut self, tables: &[(&str, String)]) -> Result<(), Failure> {
+    pub(crate) fn tables(&mut self, tables: &[(&str, String)]) -> Result<(), Failure> {
         let mut tables = tables.iter();
         tables.try_for_each(|(name, text)| self.write(name, text.as_bytes()))
     }
 
     /// Writes a figure as SVG and PNG.
-    pub fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
+    pub(crate) fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{name}.svg"), figure.svg().as_bytes())?;
         let png = figure
             .png(DPI)
@@ -65,17 +65,17 @@ impl Folder {
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.0.folder()
     }
 
     /// Names of the files.
-    pub fn names(&self) -> Vec<&str> {
+    pub(crate) fn names(&self) -> Vec<&str> {
         self.0.names().collect()
     }
 
     /// Gives all files their names; returns them, one path a line.
-    pub fn finish(self) -> Result<String, Failure> {
+    pub(crate) fn finish(self) -> Result<String, Failure> {
         let files = self.0.finish();
         let files = files.map_err(|error| Failure::Ours(format!("cannot name a file: {error}")))?;
         let lines = files.iter().map(|path| format!("  {}\n", path.display()));

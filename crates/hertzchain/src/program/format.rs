@@ -3,7 +3,7 @@
 use crate::print::heading;
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle, presets};
 use hertzchain::quantity::decimals;
-pub use hertzchain::quantity::{Style, digits};
+pub(crate) use hertzchain::quantity::{Style, digits};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Group, Row, Value};
 
@@ -11,7 +11,7 @@ use hertzchain_sim::{Group, Row, Value};
 const MOST_DECIMALS: usize = 7;
 
 /// A value and its error, both to the second digit of the error.
-pub fn with_error(value: f64, error: f64) -> (String, String) {
+pub(crate) fn with_error(value: f64, error: f64) -> (String, String) {
     if !(error > 0.0 && error.is_finite()) {
         return (digits(value, 7), digits(error, 2));
     }
@@ -35,7 +35,7 @@ pub fn with_error(value: f64, error: f64) -> (String, String) {
 
 /// R², with as many digits as make two of 1 − R²; close to 1 as a difference
 /// from it.
-pub fn r_squared(value: f64) -> String {
+pub(crate) fn r_squared(value: f64) -> String {
     let rest = 1.0 - value;
     if rest <= ROUNDING {
         return "1".to_owned();
@@ -50,7 +50,7 @@ pub fn r_squared(value: f64) -> String {
 const ROUNDING: f64 = 1e-13;
 
 /// Rows of a name and a value, aligned.
-pub fn pairs(rows: &[(String, String)]) -> String {
+pub(crate) fn pairs(rows: &[(String, String)]) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     for (name, value) in rows {
@@ -66,7 +66,7 @@ const RULED: TableStyle = TableStyle::new()
     .bottom_border(LineStyle::none().fill('─').junction('─'));
 
 /// A table of numbers with a head.
-pub fn table(head: &[String], rows: &[Vec<String>]) -> String {
+pub(crate) fn table(head: &[String], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_style(RULED);
     table.set_header(head.to_vec());
@@ -81,7 +81,7 @@ pub fn table(head: &[String], rows: &[Vec<String>]) -> String {
 
 /// Numbers with the same decimals, so many that the largest has `digits`; a
 /// dash where there is none.
-pub fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
+pub(crate) fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
     let most = values
         .iter()
         .flatten()
@@ -100,7 +100,7 @@ fn trimmed(table: &Table) -> String {
 }
 
 /// Groups of a description under their titles.
-pub fn groups(groups: &[Group], units: Units) -> String {
+pub(crate) fn groups(groups: &[Group], units: Units) -> String {
     let style = Style::brief(units);
     let mut text = String::new();
     for group in groups {
@@ -143,29 +143,5 @@ fn part(style: Style, part: &Row) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn pair(value: f64, error: f64) -> String {
-        let (value, error) = with_error(value, error);
-        format!("{value} ± {error}")
-    }
-
-    #[test]
-    fn values_end_where_their_errors_do() {
-        assert_eq!(pair(686.612_934, 4.7123), "686.6 ± 4.7");
-        assert_eq!(pair(630.841_591_2, 6.31e-4), "630.84159 ± 0.00063");
-        assert_eq!(pair(-0.199_999_999_7, 2.62e-10), "-0.19999999970 ± 2.6e-10");
-        assert_eq!(pair(686.612_934, 0.0996), "686.61 ± 0.10");
-        assert_eq!(pair(686.612_934, 47.4), "687 ± 47");
-        assert_eq!(pair(6866.129, 474.0), "6870 ± 470");
-    }
-
-    #[test]
-    fn r_squared_shows_two_digits_of_what_is_left() {
-        assert_eq!(r_squared(0.998_758_344), "0.9988");
-        assert_eq!(r_squared(0.87), "0.87");
-        assert_eq!(r_squared(1.0 - 2.04e-9), "1 − 2.0e-9");
-        assert_eq!(r_squared(1.0 - 1e-15), "1");
-    }
-}
+#[path = "tests/format.rs"]
+mod tests;

@@ -11,7 +11,7 @@ const EVERY: Duration = Duration::from_secs(5);
 
 /// Runs work with so many threads, and prints what it notes of its progress, whether or not
 /// standard error is a terminal.
-pub fn with_notes<T: Send>(
+pub(crate) fn with_notes<T: Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, Failure> {

@@ -1,9 +1,9 @@
 //! Figures of a shot and of a sweep.
 
 mod energy;
-pub mod rig;
+pub(crate) mod rig;
 
-pub use energy::energy;
+pub(crate) use energy::energy;
 
 use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::Trace;
@@ -13,7 +13,7 @@ use hertzchain_measure::signal::{FitError, PowerLaw};
 use hertzchain_sim::{Column, Part};
 
 /// What a sensor is called in figures and its unit; the last contact is the wall's.
-pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
+pub(crate) fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
     match sensor {
         Sensor::Bead(bead) => (format!("sensor bead {bead}"), "N"),
         Sensor::Contact(contact) if Some(contact) == wall => ("wall".into(), "N"),
@@ -25,7 +25,7 @@ pub fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
 }
 
 /// Times in a unit that suits them.
-pub struct Clock {
+pub(crate) struct Clock {
     /// Units in a second.
     pub scale: f64,
     /// Empty in a dimensionless chain.
@@ -34,7 +34,7 @@ pub struct Clock {
 
 impl Clock {
     /// Clear for the latest of the times.
-    pub fn of(times_s: &[f64], units: Units) -> Self {
+    pub(crate) fn of(times_s: &[f64], units: Units) -> Self {
         if units == Units::Dimensionless {
             return Self {
                 scale: 1.0,
@@ -77,7 +77,7 @@ fn dash(line: usize) -> Dash {
 }
 
 /// Signals of sensors against time, one panel a quantity.
-pub fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
+pub(crate) fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
     let units = experiment.units();
     let clock = Clock::of(&trace.time_s, units);
     let wall = wall(experiment);
@@ -121,12 +121,12 @@ fn legend(experiment: &Experiment, sensor: Sensor, wall: Option<usize>) -> Strin
 }
 
 /// The contact with the wall, if there is one.
-pub fn wall(experiment: &Experiment) -> Option<usize> {
+pub(crate) fn wall(experiment: &Experiment) -> Option<usize> {
     experiment.has_wall().then(|| experiment.beads())
 }
 
 /// Times of flight against speed with their power laws.
-pub fn sweep(part: &Part) -> Figure {
+pub(crate) fn sweep(part: &Part) -> Figure {
     let flights = part.rows.flights();
     let incident: Vec<(f64, f64)> = flights.iter().map(|flight| (flight.0, flight.1)).collect();
     let reflected = flights

@@ -5,7 +5,7 @@ use hertzchain_measure::records::without_controls;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 
 /// Prints a text and a line end if it has none.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let end = if text.ends_with('\n') { "" } else { "\n" };
     let plain = shown(text, bold());
     to_stdout(|out| {
@@ -15,7 +15,9 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints what is made while it is printed, without control characters.
-pub fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+pub(crate) fn print_with(
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
     to_stdout(|out| write(&mut Plain(out)))
 }
 
@@ -47,12 +49,12 @@ impl<W: Write> Write for Plain<W> {
 }
 
 /// Prints indented JSON.
-pub fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     print(&format!("{value:#}"))
 }
 
 /// A heading, bold on a terminal.
-pub fn heading(text: &str) -> String {
+pub(crate) fn heading(text: &str) -> String {
     match bold() {
         true => format!("{}{}{}", BOLD[0], without_controls(text), BOLD[1]),
         false => text.to_owned(),
@@ -79,34 +81,15 @@ fn shown(text: &str, bold: bool) -> String {
 }
 
 /// Reports which files were written, one path a line.
-pub fn written(files: &str) {
+pub(crate) fn written(files: &str) {
     eprint!("Written:\n{}", without_controls(files));
 }
 
 /// Writes a line to standard error.
-pub fn note(text: &str) {
+pub(crate) fn note(text: &str) {
     eprintln!("{}", without_controls(text));
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn streamed_json_escapes_the_controls_that_json_leaves_raw() {
-        let mut out = Plain(Vec::new());
-        serde_json::to_writer(&mut out, "µ\u{9b}31m\u{7f}\u{1b}").unwrap();
-        let written = String::from_utf8(out.0).unwrap();
-        assert_eq!(written, "\"µ\\u009b31m\\u007f\\u001b\"");
-    }
-
-    #[test]
-    fn headings_are_bold_and_nothing_else_steers_the_terminal() {
-        let text = format!("{}a\u{1b}[2J{}b", BOLD[0], BOLD[1]);
-        assert_eq!(
-            shown(&text, true),
-            format!("{}a\\u001b[2J{}b", BOLD[0], BOLD[1])
-        );
-        assert!(!shown(&text, false).contains('\u{1b}'));
-    }
-}
+#[path = "tests/print.rs"]
+mod tests;

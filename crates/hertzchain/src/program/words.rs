@@ -6,7 +6,7 @@ use hertzchain_measure::signal::ChiSquare;
 
 /// A value and its standard error, with the unit of its parameter: both over a
 /// power of ten where they are large or small.
-pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
+pub(crate) fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
     let unit = match parameter.unit.as_str() {
         "" => String::new(),
         unit => format!(" {unit}"),
@@ -31,12 +31,12 @@ pub fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
 }
 
 /// How far data are from a fit.
-pub fn chi_square_text(goodness: &Goodness) -> String {
+pub(crate) fn chi_square_text(goodness: &Goodness) -> String {
     goodness.chi_square.map_or(String::new(), chi_square_of)
 }
 
 /// A chi-square and what chance makes of it.
-pub fn chi_square_of(found: ChiSquare) -> String {
+pub(crate) fn chi_square_of(found: ChiSquare) -> String {
     format!(
         "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
         digits(found.value, 4),
@@ -46,7 +46,7 @@ pub fn chi_square_of(found: ChiSquare) -> String {
 }
 
 /// That a model does not follow the data, if chance can't be why.
-pub fn misfit(goodness: &Goodness) -> Option<String> {
+pub(crate) fn misfit(goodness: &Goodness) -> Option<String> {
     let times = goodness.birge_ratio.filter(|_| goodness.is_rejected())?;
     Some(format!(
         "the model does not follow the data, which lie {} of their standard errors from it on average \
@@ -62,7 +62,7 @@ pub fn misfit(goodness: &Goodness) -> Option<String> {
 const ROUGH: f64 = 0.05;
 
 /// That derivatives are doubtful, if they are: by which parameter, and what to do.
-pub fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<String> {
+pub(crate) fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<String> {
     let (at, share) = jacobian.least_agreeing()?;
     let name = parameters.get(at).filter(|_| share > ROUGH)?.name.as_str();
     Some(format!(
@@ -74,7 +74,7 @@ pub fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<String> {
 }
 
 /// A share in percent.
-pub fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     match share {
         0.0 => "0 %".to_owned(),
         // No error is so exactly normal that smaller shares would mean anything.
@@ -85,7 +85,7 @@ pub fn percent(share: f64) -> String {
 }
 
 /// Why a fit ended where it did, if that is worth a warning.
-pub fn doubt(ending: &Ending) -> Option<String> {
+pub(crate) fn doubt(ending: &Ending) -> Option<String> {
     match ending {
         Ending::Minimum | Ending::Floor { .. } | Ending::Open { .. } => None,
         Ending::Stuck { expected_fall } => Some(format!(
@@ -102,48 +102,11 @@ pub fn doubt(ending: &Ending) -> Option<String> {
 }
 
 /// Sentences, one a line.
-pub fn lines(sentences: Vec<String>) -> String {
+pub(crate) fn lines(sentences: Vec<String>) -> String {
     sentences.iter().map(|one| format!("{one}\n")).collect()
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_below_what_means_anything_are_told_as_a_limit() {
-        assert_eq!(percent(7e-310), "less than 1e-9 %");
-        assert_eq!(percent(2e-11), "2e-9 %");
-        assert_eq!(percent(0.43), "43 %");
-        assert_eq!(percent(0.0), "0 %");
-    }
-
-    #[test]
-    fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {
-        let free = ["wet.K at 0.31 m/s", "wet.A at 0.31 m/s"].map(|n| Parameter::new(n, "", 1.0));
-        let with = |disagreement: Vec<f64>| Jacobian {
-            columns: vec![vec![1.0]; 2],
-            data_rows: 1,
-            steps: vec![1e-3; 2],
-            disagreement,
-        };
-        let told = rough(&free, &with(vec![0.02, 0.43])).unwrap();
-        for word in [
-            "wet.A at 0.31 m/s differ by 43 %",
-            "--method profile",
-            "--accuracy",
-        ] {
-            assert!(told.contains(word), "{told}");
-        }
-        assert_eq!(rough(&free, &with(vec![0.04, 1e-6])), None);
-    }
-
-    #[test]
-    fn a_value_that_its_error_dwarfs_is_shown_in_the_errors_size() {
-        let angle = Parameter::new("incline", "rad", 1.0);
-        assert_eq!(estimate(&angle, 1e-17, 1.1e-5), "(0.0 ± 1.1)·1e-5 rad");
-        assert_eq!(estimate(&angle, 8.79e9, 3.4e6), "(8.7900 ± 0.0034)·1e9 rad");
-        assert_eq!(estimate(&angle, 77.23, 0.26), "77.23 ± 0.26 rad");
-    }
-}
+#[path = "tests/words.rs"]
+mod tests;

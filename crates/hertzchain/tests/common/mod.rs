@@ -5,12 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-pub fn run(arguments: &[&str]) -> Output {
+pub(crate) fn run(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
     program.args(arguments).output().unwrap()
 }
 
-pub fn refused(arguments: &[&str]) -> String {
+pub(crate) fn refused(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
@@ -18,27 +18,27 @@ pub fn refused(arguments: &[&str]) -> String {
     message
 }
 
-pub fn json(arguments: &[&str]) -> Value {
+pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = run(arguments);
     let told = String::from_utf8_lossy(&output.stderr);
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
 }
 
-pub fn folder(test: &str) -> PathBuf {
+pub(crate) fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("inference-{test}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-pub fn file(folder: &Path, name: &str, text: &str) -> String {
+pub(crate) fn file(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     fs::write(&path, text).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
 /// Six speeds of a preset's curve, as `sweep` writes them, as a path.
-pub fn curve(folder: &Path, preset: &str) -> String {
+pub(crate) fn curve(folder: &Path, preset: &str) -> String {
     let out = folder.join(preset);
     let out = out.to_str().unwrap();
     let swept = run(&[
@@ -54,17 +54,17 @@ pub fn curve(folder: &Path, preset: &str) -> String {
     format!("{out}/sweep.csv")
 }
 
-pub const ERRORS: [&str; 4] = ["--tof-error", "2e-7", "--speed-error", "5e-4"];
+pub(crate) const ERRORS: [&str; 4] = ["--tof-error", "2e-7", "--speed-error", "5e-4"];
 
-pub fn with_errors<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+pub(crate) fn with_errors<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     arguments.iter().copied().chain(ERRORS).collect()
 }
 
-pub const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
+pub(crate) const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
 
 /// The small rig, its chains laid compact and pushed by nothing, so that they are
 /// the model's.
-pub fn compact() -> String {
+pub(crate) fn compact() -> String {
     let small = include_str!("../../../sim/tests/small.toml");
     let changes = [
         ("force = \"0.24 N\"", "force = \"0 N\""),

@@ -154,57 +154,5 @@ fn finer(titles: &[String], name: &str, of: Observable) -> Option<Measured> {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
-mod tests {
-    use super::*;
-
-    fn titles(text: &str) -> Vec<String> {
-        text.split(',').map(str::to_owned).collect()
-    }
-
-    #[test]
-    fn errors_are_found_under_the_names_of_both_tables_of_measure() {
-        for text in [
-            "case,speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_deviation,tof_incident_s_error",
-            "case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s",
-        ] {
-            let wanted = [Observable::Incident];
-            let columns = Columns::of(&titles(text), &wanted, "a.csv").unwrap();
-            assert_eq!(columns.speed.sigma.unwrap().at, 2, "{text}");
-            let incident = columns.observables[0].clone().unwrap();
-            let last = titles(text).len() - 1;
-            assert_eq!(incident.sigma.unwrap().at, last, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_missing_column_is_told_with_what_is_there_instead() {
-        let told = |text: &str, wanted: &[Observable]| {
-            Columns::of(&titles(text), wanted, "a.csv")
-                .unwrap_err()
-                .to_string()
-        };
-        let there = told("speed_m_s,tof_incident_s", &[Observable::WallOverPassing]);
-        let expected =
-            "expected ratios of peaks; `tof_incident_s` is there, but --use does not name it";
-        assert!(there.ends_with(expected), "{there}");
-        let other = told("speed_m_s,tof_incident_us", &[Observable::Incident]);
-        let expected = "expected times in s; `tof_incident_us` is not read, since its title does not end with the SI unit";
-        assert!(other.ends_with(expected), "{other}");
-        let neither = told("speed_m_s,speed_error_m_s", &Observable::ALL);
-        assert!(
-            neither.ends_with("expected times in s or ratios of peaks"),
-            "{neither}"
-        );
-    }
-
-    #[test]
-    fn times_at_the_mean_speed_are_read_before_means_that_scatter_with_speeds() {
-        let text = "speed_m_s,tof_incident_s,tof_incident_s_error,\
-                    tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error";
-        let columns = Columns::of(&titles(text), &Observable::ALL, "a.csv").unwrap();
-        let incident = columns.observables[0].clone().unwrap();
-        assert_eq!((incident.value.at, incident.sigma.unwrap().at), (3, 4));
-        let columns = Columns::of(&titles(text), &[Observable::Reflected], "a.csv");
-        assert!(columns.is_err());
-    }
-}
+#[path = "tests/columns.rs"]
+mod tests;

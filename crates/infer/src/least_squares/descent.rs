@@ -165,7 +165,7 @@ const IDLE: usize = 3;
 
 impl<'a> Descent<'a> {
     /// A descent from `point` over the parameters `free`.
-    pub fn new(merit: Merit<'a>, point: Vec<f64>, free: Vec<usize>, limits: Limits) -> Self {
+    pub(crate) fn new(merit: Merit<'a>, point: Vec<f64>, free: Vec<usize>, limits: Limits) -> Self {
         let parameters = merit.problem.parameters();
         let steps: Vec<f64> = parameters.iter().map(|p| FIRST_STEP * p.scale).collect();
         let mut descent = Self {
@@ -189,14 +189,14 @@ impl<'a> Descent<'a> {
     }
 
     /// The same with steps of differences that are known to suit.
-    pub fn with_steps(mut self, steps: &[f64]) -> Self {
+    pub(crate) fn with_steps(mut self, steps: &[f64]) -> Self {
         self.steps = steps.to_vec();
         self.stage = Stage::Start(self.stencils());
         self
     }
 
     /// The same, ended at once if a parameter changes nothing where it starts.
-    pub fn wary(mut self) -> Self {
+    pub(crate) fn wary(mut self) -> Self {
         self.wary = true;
         self
     }
@@ -214,7 +214,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Points whose residuals are wanted next; none when the descent has ended.
-    pub fn ask(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn ask(&self) -> Vec<Vec<f64>> {
         let neighbours = |stencils: &[Stencil]| {
             let points = stencils.iter().flat_map(|s| s.points(&self.point));
             points.collect::<Vec<_>>()
@@ -232,7 +232,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Takes the residuals at the points asked for.
-    pub fn tell(&mut self, found: &[Result<Residuals, ModelError>]) {
+    pub(crate) fn tell(&mut self, found: &[Result<Residuals, ModelError>]) {
         let stage = std::mem::replace(&mut self.stage, Stage::Done(Ending::Minimum));
         self.stage = match stage {
             Stage::Start(stencils) => self.started(&stencils, found),
@@ -402,7 +402,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Where the descent stands, and why it ended.
-    pub fn finish(self) -> Reached {
+    pub(crate) fn finish(self) -> Reached {
         let ending = match self.stage {
             Stage::Done(ending) => ending,
             _ => Ending::ModelFails(ModelError("the descent was left early".into())),
@@ -449,7 +449,7 @@ pub(crate) struct Beside {
 }
 
 impl Reached {
-    pub fn cost(&self) -> f64 {
+    pub(crate) fn cost(&self) -> f64 {
         self.at.as_ref().map_or(f64::INFINITY, |at| at.cost)
     }
 }

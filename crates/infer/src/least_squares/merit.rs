@@ -28,7 +28,7 @@ pub(crate) struct Linear {
 }
 
 impl<'a> Merit<'a> {
-    pub fn new(problem: &'a dyn Problem, loss: Loss) -> Self {
+    pub(crate) fn new(problem: &'a dyn Problem, loss: Loss) -> Self {
         Self {
             problem,
             loss,
@@ -37,7 +37,7 @@ impl<'a> Merit<'a> {
     }
 
     /// The same cost over the rows that a predicate keeps.
-    pub fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
+    pub(crate) fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept = (0..self.problem.residual_count()).map(keep).collect();
         Self {
             kept,
@@ -50,7 +50,7 @@ impl<'a> Merit<'a> {
     }
 
     /// Residuals and their cost, or why a point has none.
-    pub fn value(
+    pub(crate) fn value(
         &self,
         point: &[f64],
         found: &Result<Residuals, ModelError>,
@@ -102,7 +102,7 @@ impl<'a> Merit<'a> {
     }
 
     /// Weighted Jacobian and gradient from slopes at a point.
-    pub fn linear(&self, at: &Valued, slopes: &Slopes) -> Linear {
+    pub(crate) fn linear(&self, at: &Valued, slopes: &Slopes) -> Linear {
         let data = self.problem.residual_count();
         let costs: Vec<_> = at.rows[..data].iter().map(|r| self.loss.cost(*r)).collect();
         let weigh = |values: &[f64], factor: &dyn Fn(usize) -> f64| -> Vec<f64> {

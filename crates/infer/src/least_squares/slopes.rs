@@ -22,7 +22,7 @@ pub(crate) struct Stencil {
 impl Stencil {
     /// Neighbours at ±`step`; both on one side, at one and two steps, where a
     /// bound is in the way; nearer if the bounds leave less room.
-    pub fn new(parameter: usize, of: &Parameter, value: f64, step: f64) -> Self {
+    pub(super) fn new(parameter: usize, of: &Parameter, value: f64, step: f64) -> Self {
         let step = step.min(0.25 * (of.upper - of.lower));
         let pairs = [[-step, step], [step, 2.0 * step], [-2.0 * step, -step]];
         let inside = |pair: &[f64; 2]| pair.iter().all(|offset| of.admits(value + offset));
@@ -32,7 +32,7 @@ impl Stencil {
         Self { parameter, offsets }
     }
 
-    pub fn points(&self, point: &[f64]) -> [Vec<f64>; 2] {
+    pub(super) fn points(&self, point: &[f64]) -> [Vec<f64>; 2] {
         self.offsets.map(|offset| {
             let mut neighbour = point.to_vec();
             neighbour[self.parameter] += offset;

@@ -56,7 +56,7 @@ const FARTHEST: f64 = 1e3;
 const NEAR: f64 = 0.02;
 
 impl Walk {
-    pub fn new(
+    pub(super) fn new(
         problem: &dyn Problem,
         (fit, covariance): (&Fit, &Covariance),
         parameter: usize,
@@ -102,7 +102,7 @@ impl Walk {
     }
 
     /// Where to compute next, the others where the last optima point; `None` at the end.
-    pub fn next(&mut self) -> Option<Vec<f64>> {
+    pub(super) fn next(&mut self) -> Option<Vec<f64>> {
         let distance = match self.stop {
             None => self.outward(),
             Some(_) => None,
@@ -204,7 +204,7 @@ impl Walk {
     }
 
     /// Takes the optimum of the others and the rise of χ², or that there is none.
-    pub fn take(&mut self, found: Option<(Vec<f64>, f64)>) {
+    pub(super) fn take(&mut self, found: Option<(Vec<f64>, f64)>) {
         match found {
             Some((point, rise)) => {
                 let place = self.heights().take_while(|met| met.0 < self.asked).count();
@@ -216,7 +216,7 @@ impl Walk {
     }
 
     /// The end of a level's interval.
-    pub fn end(&self, level: usize) -> End {
+    pub(super) fn end(&self, level: usize) -> End {
         let at = |distance: f64| self.optimum() + self.side * distance;
         if let Some((near, far)) = self.bracket(level) {
             let share = (self.levels[level].sqrt() - near.1) / (far.1 - near.1);

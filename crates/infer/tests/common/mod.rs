@@ -21,11 +21,11 @@ const SHOTS: f64 = 20.0;
 
 /// Scatter of a shot's speed in m/s, and of its times in s: half a sample of the
 /// paper's 1 MS/s.
-pub const SPEED_M_S: f64 = 0.003;
-pub const TIME_S: f64 = 0.5e-6;
+pub(crate) const SPEED_M_S: f64 = 0.003;
+pub(crate) const TIME_S: f64 = 0.5e-6;
 
 /// A model of an experiment with these numbers free.
-pub fn model(experiment: &Experiment, names: &[&str]) -> Model {
+pub(crate) fn model(experiment: &Experiment, names: &[&str]) -> Model {
     let numbers = names
         .iter()
         .map(|name| FreeNumber::find(experiment, name, None).unwrap());
@@ -33,19 +33,19 @@ pub fn model(experiment: &Experiment, names: &[&str]) -> Model {
 }
 
 /// Speeds in equal ratios over the paper's range.
-pub fn speeds_m_s(count: usize) -> Vec<f64> {
+pub(crate) fn speeds_m_s(count: usize) -> Vec<f64> {
     speeds_between(0.075, 1.23, count)
 }
 
 /// Speeds in m/s in equal ratios.
-pub fn speeds_between(slowest: f64, fastest: f64, count: usize) -> Vec<f64> {
+pub(crate) fn speeds_between(slowest: f64, fastest: f64, count: usize) -> Vec<f64> {
     let step = |at: usize| slowest * (fastest / slowest).powf(at as f64 / (count - 1) as f64);
     (0..count).map(step).collect()
 }
 
 /// Standard errors of a measured row.
 #[derive(Clone, Copy)]
-pub struct Noise {
+pub(crate) struct Noise {
     /// Of the speed in m/s.
     pub speed_m_s: f64,
     /// Of each time of flight in s.
@@ -56,7 +56,7 @@ pub struct Noise {
 
 impl Noise {
     /// That of the paper: means of 20 shots.
-    pub fn of_the_paper() -> Self {
+    pub(crate) fn of_the_paper() -> Self {
         Self {
             speed_m_s: SPEED_M_S / SHOTS.sqrt(),
             time_s: TIME_S / SHOTS.sqrt(),
@@ -67,7 +67,7 @@ impl Noise {
 
 /// A curve at the experiment's own numbers, a hundred times as accurate as a
 /// surrogate's and a thousand times as a fit's, with its slopes d ln y/d ln v from shots 1 % slower and faster.
-pub struct Truth {
+pub(crate) struct Truth {
     pub speeds_m_s: Vec<f64>,
     pub curve: Vec<Predicted>,
     slopes: Vec<[f64; 4]>,
@@ -75,18 +75,18 @@ pub struct Truth {
 
 /// Relative accuracy of a true curve: a hundred times that of the curves, right to
 /// 1e-6, between which a fit's surrogate interpolates.
-pub const TRUTH: f64 = 1e-8;
+pub(crate) const TRUTH: f64 = 1e-8;
 
 /// Relative distance of the shots that tell slopes.
 const ASIDE: f64 = 0.01;
 
 impl Truth {
-    pub fn of(experiment: &Experiment, speeds_m_s: &[f64]) -> Self {
+    pub(crate) fn of(experiment: &Experiment, speeds_m_s: &[f64]) -> Self {
         Self::at(&model(experiment, &[]), &[], speeds_m_s)
     }
 
     /// A model's curve at a point.
-    pub fn at(model: &Model, point: &[f64], speeds_m_s: &[f64]) -> Self {
+    pub(crate) fn at(model: &Model, point: &[f64], speeds_m_s: &[f64]) -> Self {
         let exact = model.clone().with_accuracy(TRUTH);
         let at = |factor: f64| {
             let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
@@ -109,7 +109,7 @@ impl Truth {
 
     /// Its times again, by classical Runge–Kutta with a fixed step, as a reader of
     /// the paper would.
-    pub fn shot_by_rk4(&mut self, experiment: &Experiment, step_s: f64) {
+    pub(crate) fn shot_by_rk4(&mut self, experiment: &Experiment, step_s: f64) {
         for (row, speed) in self.curve.iter_mut().zip(&self.speeds_m_s) {
             let (mut plan, _) = Plan::from_experiment(experiment, Some(*speed)).unwrap();
             plan.solver = Solver::Rk4 {
@@ -121,7 +121,7 @@ impl Truth {
     }
 
     /// The largest relative error of a true curve, found by shots of other steps.
-    pub fn accuracy_reached(experiment: &Experiment, speeds_m_s: &[f64]) -> f64 {
+    pub(crate) fn accuracy_reached(experiment: &Experiment, speeds_m_s: &[f64]) -> f64 {
         let exact = model(experiment, &[]).with_accuracy(TRUTH);
         let speeds = Speeds::of_rows(speeds_m_s);
         exact.accuracy_reached(&[], &speeds).unwrap()
@@ -129,7 +129,7 @@ impl Truth {
 
     /// A repetition whose standard errors come from the scatter of its own twenty
     /// shots, which is told or not.
-    pub fn measured_by_shots(&self, seed: u64, told: bool) -> Data {
+    pub(crate) fn measured_by_shots(&self, seed: u64, told: bool) -> Data {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut mean_of = |scatter: f64| -> Estimate {
             let shots: Vec<f64> = (0..SHOTS as usize)
@@ -164,17 +164,17 @@ impl Truth {
     }
 
     /// A repetition of the measurement at the paper's noise.
-    pub fn measured(&self, seed: u64) -> Data {
+    pub(crate) fn measured(&self, seed: u64) -> Data {
         self.measured_with(Noise::of_the_paper(), seed)
     }
 
     /// A repetition of the measurement: the true speeds are not quite what was set.
-    pub fn measured_with(&self, noise: Noise, seed: u64) -> Data {
+    pub(crate) fn measured_with(&self, noise: Noise, seed: u64) -> Data {
         self.repeated(noise, None, seed)
     }
 
     /// The same with the returning over the passing peak, to this relative error.
-    pub fn measured_with_ratios(&self, noise: Noise, relative: f64, seed: u64) -> Data {
+    pub(crate) fn measured_with_ratios(&self, noise: Noise, relative: f64, seed: u64) -> Data {
         self.repeated(noise, Some(relative), seed)
     }
 
@@ -227,7 +227,7 @@ impl Truth {
 }
 
 /// Data against a model whose parameters start at the experiment's numbers.
-pub fn problem(model: &Model, data: Data) -> CurveProblem {
+pub(crate) fn problem(model: &Model, data: Data) -> CurveProblem {
     let parameters = model.numbers().parameters(&data.speeds_m_s());
     CurveProblem::new(model.clone(), data, parameters).unwrap()
 }

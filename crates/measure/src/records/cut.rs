@@ -39,7 +39,7 @@ pub(crate) struct Head {
 impl Head {
     /// Divides what would be one record. Pieces end where rows do; several rows are not
     /// divided into shots here, which are counted by row first.
-    pub fn divided(self, parts: Parts) -> Self {
+    pub(super) fn divided(self, parts: Parts) -> Self {
         match parts {
             Parts::Shots(most) if self.row == self.total => Self {
                 each: most.max(1),
@@ -91,7 +91,7 @@ impl Head {
     }
 
     /// The record of this stream that begins with sample `start`.
-    pub fn record(&self, start: usize, samples: Vec<Samples>) -> Record {
+    pub(super) fn record(&self, start: usize, samples: Vec<Samples>) -> Record {
         let channels = self.names.iter().zip(samples);
         let channels = channels.map(|(name, samples)| Channel {
             name: name.clone(),
@@ -127,7 +127,7 @@ pub(crate) struct Cut<S> {
 }
 
 impl<S: Stream> Cut<S> {
-    pub fn new(head: Head, stream: S) -> Self {
+    pub(super) fn new(head: Head, stream: S) -> Self {
         Self {
             head,
             stream,

@@ -21,7 +21,7 @@ pub(crate) enum Encoding {
 impl Encoding {
     /// By the mark at the beginning; without one by the zeros that every other byte of Latin
     /// letters and digits is in UTF-16.
-    pub fn of(beginning: &[u8]) -> Self {
+    pub(super) fn of(beginning: &[u8]) -> Self {
         let probe = beginning.get(..PROBE).unwrap_or(beginning);
         let zeros = |from: usize| {
             let mut bytes = probe.iter().skip(from).step_by(2);
@@ -37,7 +37,7 @@ impl Encoding {
     }
 
     /// UTF-8 of bytes, as far as they are whole, with how many bytes that took.
-    pub fn decoded(self, bytes: &[u8]) -> (Vec<u8>, usize) {
+    pub(super) fn decoded(self, bytes: &[u8]) -> (Vec<u8>, usize) {
         let unit: fn([u8; 2]) -> u16 = match self {
             Self::Bytes => return (bytes.to_vec(), bytes.len()),
             Self::Utf16Little => u16::from_le_bytes,
@@ -72,7 +72,7 @@ const CHUNK: u64 = 1 << 16;
 impl Decoded {
     /// # Errors
     /// A file that cannot be read.
-    pub fn open(file: &Path) -> io::Result<Self> {
+    pub(super) fn open(file: &Path) -> io::Result<Self> {
         let mut file = BufReader::with_capacity(CHUNK as usize, File::open(file)?);
         let mut raw = Vec::new();
         file.by_ref().take(PROBE as u64).read_to_end(&mut raw)?;
@@ -111,33 +111,5 @@ impl Read for Decoded {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn utf_16_is_told_by_its_mark_or_by_its_zeros() {
-        let little: Vec<u8> = "0.1\t0.25\r\n"
-            .encode_utf16()
-            .flat_map(u16::to_le_bytes)
-            .collect();
-        let big: Vec<u8> = "\u{feff}µ"
-            .encode_utf16()
-            .flat_map(u16::to_be_bytes)
-            .collect();
-        assert_eq!(Encoding::of(&little), Encoding::Utf16Little);
-        assert_eq!(Encoding::of(&big), Encoding::Utf16Big);
-        assert_eq!(Encoding::of("0.1,0.2,µ".as_bytes()), Encoding::Bytes);
-        assert_eq!(Encoding::Utf16Little.decoded(&little).0, b"0.1\t0.25\r\n");
-        assert_eq!(Encoding::Utf16Big.decoded(&big).0, "µ".as_bytes());
-    }
-
-    #[test]
-    fn letters_of_two_halves_wait_for_the_other() {
-        let bytes: Vec<u8> = "a😀".encode_utf16().flat_map(u16::to_le_bytes).collect();
-        assert_eq!(
-            Encoding::Utf16Little.decoded(&bytes[..4]),
-            (b"a".to_vec(), 2)
-        );
-        assert_eq!(Encoding::Utf16Little.decoded(&bytes), ("a😀".into(), 6));
-    }
-}
+#[path = "tests/encoding.rs"]
+mod tests;

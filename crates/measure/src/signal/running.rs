@@ -26,15 +26,5 @@ pub(crate) fn triangle(values: &[f64], length: usize) -> Vec<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mean_of_a_ramp_is_the_ramp_inside() {
-        let ramp: Vec<f64> = (0..20).map(f64::from).collect();
-        let smooth = triangle(&ramp, 5);
-        assert_eq!(smooth[4..16], ramp[4..16]);
-        assert_eq!(mean(&ramp, 1), ramp);
-        assert!(mean(&[], 3).is_empty());
-    }
-}
+#[path = "tests/running.rs"]
+mod tests;

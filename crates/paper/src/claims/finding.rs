@@ -253,53 +253,5 @@ impl Worst {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A tally of so many met, not met and open comparisons.
-    fn tally(yes: usize, no: usize, open: usize) -> Tally {
-        let mut tally = Tally::default();
-        for (count, margin) in [(yes, 1.0), (no, -1.0), (open, 0.1)] {
-            (0..count).for_each(|_| tally.margin(margin, 0.5));
-        }
-        tally
-    }
-
-    #[test]
-    fn a_claim_holds_in_part_when_at_least_half_of_its_comparisons_are_met() {
-        for (yes, no, verdict) in [
-            (31, 0, Verdict::Holds),
-            (30, 1, Verdict::InPart),
-            (16, 15, Verdict::InPart),
-            (15, 15, Verdict::InPart),
-            (15, 16, Verdict::Fails),
-            (6, 25, Verdict::Fails),
-            (1, 30, Verdict::Fails),
-            (0, 31, Verdict::Fails),
-            (0, 0, Verdict::NotDecidable),
-        ] {
-            assert_eq!(
-                tally(yes, no, 0).verdict(),
-                verdict,
-                "{yes} of {yes} + {no}"
-            );
-        }
-    }
-
-    #[test]
-    fn open_comparisons_leave_a_verdict_open_only_if_they_could_change_it() {
-        for (yes, no, open, verdict) in [
-            (30, 0, 1, Verdict::NotDecidable),
-            (0, 30, 1, Verdict::Fails),
-            (20, 10, 1, Verdict::InPart),
-            (15, 15, 1, Verdict::NotDecidable),
-            (15, 14, 1, Verdict::InPart),
-            (0, 0, 3, Verdict::NotDecidable),
-        ] {
-            let tally = tally(yes, no, open);
-            assert_eq!(tally.verdict(), verdict, "{yes} {no} {open}");
-            // Exact numbers with these signs meet every open one.
-            assert_eq!(tally.leaning(), self::tally(yes + open, no, 0).verdict());
-        }
-    }
-}
+#[path = "tests/finding.rs"]
+mod tests;

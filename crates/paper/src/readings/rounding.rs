@@ -9,21 +9,21 @@ use rand_chacha::ChaCha8Rng;
 /// Half units of the last printed digits, in SI.
 mod half {
     /// Young moduli, printed in GPa without decimals.
-    pub const YOUNG_MODULUS_PA: f64 = 0.5e9;
+    pub(super) const YOUNG_MODULUS_PA: f64 = 0.5e9;
     /// Viscosity of the dry balls, 3.2e4 Pa s.
-    pub const DRY_VISCOSITY_PA_S: f64 = 0.05e4;
+    pub(super) const DRY_VISCOSITY_PA_S: f64 = 0.05e4;
     /// Coefficient of the cubic term, 77 kg s/m².
-    pub const CUBIC_KG_S_M2: f64 = 0.5;
+    pub(super) const CUBIC_KG_S_M2: f64 = 0.5;
     /// Mass, 8.54 g.
-    pub const MASS_KG: f64 = 0.005e-3;
+    pub(super) const MASS_KG: f64 = 0.005e-3;
     /// Radius, 6.35 mm.
-    pub const RADIUS_M: f64 = 0.005e-3;
+    pub(super) const RADIUS_M: f64 = 0.005e-3;
     /// Prefactors of the oils' Poisson ratios.
-    pub const POISSON_PREFACTOR: f64 = 0.0005;
+    pub(super) const POISSON_PREFACTOR: f64 = 0.0005;
     /// Prefactors of the oils' viscosities.
-    pub const VISCOSITY_PREFACTOR_PA_S: f64 = 0.05;
+    pub(super) const VISCOSITY_PREFACTOR_PA_S: f64 = 0.05;
     /// Exponents of both.
-    pub const EXPONENT: f64 = 0.0005;
+    pub(super) const EXPONENT: f64 = 0.0005;
 }
 
 /// How far the Poisson ratio 0.3 of the dry balls may be off: the paper prints

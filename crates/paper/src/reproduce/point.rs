@@ -12,18 +12,18 @@ use hertzchain_sim::{Flight, Plan, Shot, StudyError, shoot};
 /// loosened chain amplifies errors.
 mod unchecked {
     /// ToFs, relative.
-    pub const TOF: f64 = 4.0;
+    pub(super) const TOF: f64 = 4.0;
     /// Sensor, wall and returning peak, relative.
-    pub const PEAK: f64 = hertzchain_sim::OF_PEAKS;
+    pub(super) const PEAK: f64 = hertzchain_sim::OF_PEAKS;
     /// Second returning peak, in returning peaks, where it is no mere shoulder.
-    pub const SECOND_PEAK: f64 = 200.0;
+    pub(super) const SECOND_PEAK: f64 = 200.0;
     /// Widths, relative: that of a split pulse ends at a flat shoulder.
-    pub const WIDTH: f64 = 300.0;
+    pub(super) const WIDTH: f64 = 300.0;
     /// Velocities of the striker, which gather the errors of all steps, in its
     /// own speed.
-    pub const STRIKER: f64 = 30.0;
+    pub(super) const STRIKER: f64 = 30.0;
     /// Loosening, relative.
-    pub const LOOSENED: f64 = 200.0;
+    pub(super) const LOOSENED: f64 = 200.0;
 }
 
 /// Below this accuracy rounding decides, not the step.

@@ -60,7 +60,7 @@ impl Provenance {
 
 /// Instruction set, operating system, processor, number of threads.
 #[must_use]
-pub fn machine() -> String {
+pub(super) fn machine() -> String {
     let threads = rayon::current_num_threads();
     let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
     let about = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -48,7 +48,7 @@ impl Evidence {
 
 /// A time of flight of a shot in s; not a number if it has none.
 #[must_use]
-pub fn tof_s(shot: &Shot, branch: Branch) -> f64 {
+pub(super) fn tof_s(shot: &Shot, branch: Branch) -> f64 {
     match branch {
         Branch::Incident => shot.incident_s,
         Branch::Reflected => shot.reflected_s,
@@ -66,13 +66,13 @@ pub fn rebound_m_s(shot: &Shot) -> f64 {
 
 /// Largest of a row's gaps in m.
 #[must_use]
-pub fn largest_m(gaps_m: &[f64]) -> f64 {
+pub(super) fn largest_m(gaps_m: &[f64]) -> f64 {
     gaps_m.iter().copied().fold(0.0, f64::max)
 }
 
 /// What shots have, where it is a number.
 #[must_use]
-pub fn each(shots: &[Shot], of: impl Fn(&Shot) -> f64) -> Vec<f64> {
+pub(super) fn each(shots: &[Shot], of: impl Fn(&Shot) -> f64) -> Vec<f64> {
     shots.iter().map(of).filter(|v| v.is_finite()).collect()
 }
 

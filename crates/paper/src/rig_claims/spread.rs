@@ -15,7 +15,7 @@ const DRAWS: usize = 1000;
 const SEED: u64 = 1;
 
 /// 95 % of a normal distribution are within so many standard errors.
-pub const SURE: f64 = 1.96;
+pub(super) const SURE: f64 = 1.96;
 
 /// A number with the error that 95 % stay within.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Estimate {
 
 /// Standard deviation, with n − 1; not a number of fewer than two values.
 #[must_use]
-pub fn deviation(values: &[f64]) -> f64 {
+pub(super) fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
     // 0/0 of one value and of none.
@@ -37,7 +37,7 @@ pub fn deviation(values: &[f64]) -> f64 {
 
 /// Mean of what shots have, with its error.
 #[must_use]
-pub fn mean_of(values: &[f64]) -> Estimate {
+pub(super) fn mean_of(values: &[f64]) -> Estimate {
     Estimate {
         value: mean(values),
         error: SURE * deviation(values) / (values.len() as f64).sqrt(),

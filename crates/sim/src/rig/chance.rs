@@ -24,7 +24,7 @@ pub enum Purpose {
 }
 
 /// Shots of one series that have streams of their own.
-pub const MOST_SHOTS: usize = 1 << 30;
+pub(super) const MOST_SHOTS: usize = 1 << 30;
 
 impl Purpose {
     /// Number of the stream within a series: two of its own, then two a shot.

@@ -3,7 +3,7 @@
 
 /// ẋ = A x + B u over one step: x(h) = Φ x(0) + γ u(0) + δ (u(h) − u(0)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold<const STATES: usize> {
+pub(super) struct Hold<const STATES: usize> {
     transition: [[f64; STATES]; STATES],
     input: [f64; STATES],
     change: [f64; STATES],
@@ -12,7 +12,7 @@ pub struct Hold<const STATES: usize> {
 impl<const STATES: usize> Hold<STATES> {
     /// Of A in 1/s and B in 1/s, over a step in s.
     #[must_use]
-    pub fn new(a: &[[f64; STATES]; STATES], b: &[f64; STATES], step_s: f64) -> Self {
+    pub(super) fn new(a: &[[f64; STATES]; STATES], b: &[f64; STATES], step_s: f64) -> Self {
         // exp of the system with u and its change as states of their own:
         // u̇ = change/step, so that over a step of length 1 it is the change.
         let size = STATES + 2;
@@ -35,7 +35,7 @@ impl<const STATES: usize> Hold<STATES> {
     /// The state a step later; the input goes from `from` to `to`.
     #[must_use]
     #[inline]
-    pub fn step(&self, state: &[f64; STATES], from: f64, to: f64) -> [f64; STATES] {
+    pub(super) fn step(&self, state: &[f64; STATES], from: f64, to: f64) -> [f64; STATES] {
         let change = to - from;
         std::array::from_fn(|row| {
             let rows = self.transition[row].iter().zip(state);

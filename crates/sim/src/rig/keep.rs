@@ -27,13 +27,13 @@ const ANOTHER: &str =
 
 /// A folder for the recordings of one campaign.
 #[derive(Clone, Debug)]
-pub struct Folder {
+pub(super) struct Folder {
     path: PathBuf,
 }
 
 /// Of all that recordings follow from, the program's version and commit included.
 #[must_use]
-pub fn fingerprint(plan: &Plan) -> Fingerprint {
+pub(super) fn fingerprint(plan: &Plan) -> Fingerprint {
     let inputs = Inputs::of("campaign").count("seed", plan.seed);
     inputs
         .text("experiment", &plan.experiment.understood())
@@ -45,7 +45,7 @@ impl Folder {
     ///
     /// # Errors
     /// A folder that can't be written to, or that holds other recordings.
-    pub fn open(path: &Path, plan: &Plan) -> Result<Self, RigError> {
+    pub(super) fn open(path: &Path, plan: &Plan) -> Result<Self, RigError> {
         let refused = |error| RigError::folder(path, error);
         fs::create_dir_all(path).map_err(refused)?;
         let folder = Self {
@@ -69,7 +69,7 @@ impl Folder {
     }
 
     /// Removes what a killed run has left of recordings under way.
-    pub fn clear(&self, plan: &Plan) {
+    pub(super) fn clear(&self, plan: &Plan) {
         let names: HashSet<String> = plan.series.iter().map(file_name).collect();
         remove_left_behind(&self.path, |file| names.contains(file));
     }
@@ -78,7 +78,7 @@ impl Folder {
     ///
     /// # Errors
     /// One that holds another campaign's, or none.
-    pub fn of(path: &Path, plan: &Plan) -> Result<Self, RigError> {
+    pub(super) fn of(path: &Path, plan: &Plan) -> Result<Self, RigError> {
         let told_in = path.join(TOLD_IN);
         let found = fs::read_to_string(&told_in);
         let found = found.map_err(|error| RigError::folder(&told_in, error))?;
@@ -100,13 +100,13 @@ impl Folder {
 
     /// The file of a series.
     #[must_use]
-    pub fn file(&self, series: &Series) -> PathBuf {
+    pub(super) fn file(&self, series: &Series) -> PathBuf {
         self.path.join(file_name(series))
     }
 
     /// Whether a series is finished.
     #[must_use]
-    pub fn has(&self, series: &Series) -> bool {
+    pub(super) fn has(&self, series: &Series) -> bool {
         self.file(series).is_file()
     }
 }

@@ -9,7 +9,7 @@ const MOST_UNLIKE: f64 = 0.5;
 
 /// Radii of all beads over what the file says: 1 + spread · normal.
 #[must_use]
-pub fn sizes(laying: &Laying, beads: usize, chance: &mut Chance) -> Vec<f64> {
+pub(super) fn sizes(laying: &Laying, beads: usize, chance: &mut Chance) -> Vec<f64> {
     let size = |_| {
         let unlike = laying.radius_spread * chance.normal();
         1.0 + unlike.clamp(-MOST_UNLIKE, MOST_UNLIKE)
@@ -18,7 +18,7 @@ pub fn sizes(laying: &Laying, beads: usize, chance: &mut Chance) -> Vec<f64> {
 }
 
 /// Gives beads their own sizes; masses go with the third power.
-pub fn resize(chain: &mut Chain, sizes: &[f64]) {
+pub(super) fn resize(chain: &mut Chain, sizes: &[f64]) {
     for (bead, size) in chain.beads.iter_mut().zip(sizes) {
         bead.radius_m *= size;
         bead.mass_kg *= size * size * size;
@@ -28,7 +28,7 @@ pub fn resize(chain: &mut Chain, sizes: &[f64]) {
 /// Gaps in m of contacts 0..=N, exponentially distributed; none before bead 1,
 /// where the striker comes.
 #[must_use]
-pub fn gaps_m(laying: &Laying, beads: usize, chance: &mut Chance) -> Vec<f64> {
+pub(super) fn gaps_m(laying: &Laying, beads: usize, chance: &mut Chance) -> Vec<f64> {
     let gap = |_| laying.gap_scatter_m * chance.exponential();
     std::iter::once(0.0).chain((0..beads).map(gap)).collect()
 }

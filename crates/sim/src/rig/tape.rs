@@ -62,7 +62,7 @@ impl Tape {
 
 /// Tapes a wave as it runs.
 #[derive(Debug)]
-pub struct Taping<'a> {
+pub(super) struct Taping<'a> {
     /// The tape.
     pub tape: &'a mut Tape,
     /// Sensor bead and wall.

@@ -79,7 +79,7 @@ fn lost(budget: &Budget) -> f64 {
 }
 
 /// Where the energy is, against time, and what is missing.
-pub fn energy(budgets: &[Budget], units: Units) -> Figure {
+pub(crate) fn energy(budgets: &[Budget], units: Units) -> Figure {
     let times_s: Vec<f64> = budgets.iter().map(|budget| budget.time_s).collect();
     let clock = Clock::of(&times_s, units);
     let times = clock.scaled(&times_s);

@@ -7,7 +7,7 @@ use hertzchain_paper::rig_claims::{
 };
 
 /// All of them by name.
-pub fn figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
+pub(crate) fn figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
     vec![
         ("rig_verdicts", verdicts(claims)),
         ("rig_spreads", spreads(evidence)),
@@ -232,30 +232,5 @@ fn means(rows: &[&[f64]]) -> Vec<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
-
-    use super::*;
-    use hertzchain_experiment::Experiment;
-    use hertzchain_paper::reproduce::Silent;
-    use hertzchain_paper::rig_claims::{Design, observe};
-
-    #[test]
-    fn a_small_design_has_all_its_pictures() {
-        let text = include_str!("../../../../sim/tests/small.toml");
-        let design = Design {
-            rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::but(3, 2e-3)],
-            speeds: 3,
-            shots: 2,
-            first: 1,
-            ..Design::about(Experiment::from_text("small.toml", text).unwrap())
-        };
-        let evidence = observe(&design, &Silent).unwrap();
-        let claims = RigClaims::judge(&design, &evidence).unwrap();
-        for (name, figure) in figures(&evidence, &claims) {
-            let marks = figure.svg().matches("<path").count();
-            assert!(marks > 20, "{name}: {marks}");
-        }
-        assert_eq!(held(&Rig::but(0, 0.2)), "friction 0.2, push 0.24 N");
-    }
-}
+#[path = "tests/rig.rs"]
+mod tests;

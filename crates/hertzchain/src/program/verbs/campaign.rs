@@ -11,7 +11,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.input.file.is_none() && arguments.input.preset.is_none() {
         let text = "which campaign? Name an experiment file, or --preset paper";
         return Err(Failure::User(text.to_owned()));
@@ -76,7 +76,7 @@ fn untriggered(done: &Done) -> Option<String> {
 }
 
 /// The user's mistakes are told as such; a full disk is nobody's.
-pub fn failure(error: RigError) -> Failure {
+pub(crate) fn failure(error: RigError) -> Failure {
     match error {
         RigError::Mistakes(mistakes) => (*mistakes).into(),
         RigError::Record(error) => Failure::Ours(error.to_string()),

@@ -8,7 +8,7 @@ use hertzchain_sim::describe;
 use serde_json::json;
 
 /// Runs the verb.
-pub fn run(arguments: &Check) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
     if arguments.input.file.is_none() && arguments.input.preset.is_none() {
         return Err(Failure::User(
             "check needs an experiment: FILE or --preset NAME".into(),

@@ -7,7 +7,7 @@ use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 
 /// Runs the verb.
-pub fn run(shell: Shell) -> Result<(), Failure> {
+pub(crate) fn run(shell: Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     generate(shell, &mut Program::command(), "hertzchain", &mut script);
     print::print(&String::from_utf8_lossy(&script))

@@ -14,7 +14,7 @@ use hertzchain_infer::{CurveProblem, Expected, titled};
 const SHOWN: usize = 15;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = inference::data(&arguments.data, &arguments.measured)?;
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;

@@ -16,7 +16,7 @@ use hertzchain::inference;
 use hertzchain_infer::{CurveProblem, Problem, Surrogate};
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = match &arguments.data[..] {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
         _ => return pulses::run(arguments),

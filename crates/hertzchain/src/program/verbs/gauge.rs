@@ -13,7 +13,7 @@ use hertzchain::inference;
 use hertzchain_infer::gauge::Chains;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let wet = gauge::data(
         &arguments.wet,
         &arguments.measured,

@@ -8,7 +8,7 @@ use hertzchain::laws::{self, nature};
 use hertzchain_chain::laws::{LawInfo, Parameter, Source};
 
 /// Runs the verb.
-pub fn run(arguments: &Laws) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Laws) -> Result<(), Failure> {
     let infos = laws::infos(arguments.name.as_deref())?;
     if arguments.json {
         return print::print_json(&laws::json(&infos));

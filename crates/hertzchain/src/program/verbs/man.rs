@@ -9,7 +9,7 @@ use clap_mangen::Man;
 use std::path::Path;
 
 /// Runs the verb.
-pub fn run(out: Option<&Path>) -> Result<(), Failure> {
+pub(crate) fn run(out: Option<&Path>) -> Result<(), Failure> {
     let mut program = Program::command();
     program.build();
     let Some(out) = out else {

@@ -15,7 +15,7 @@ use hertzchain_measure::{
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let files = measure::files(&arguments.records, arguments.shots.as_deref())?;
     let options = measure::options(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;

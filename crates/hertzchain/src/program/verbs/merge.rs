@@ -12,7 +12,7 @@ use indicatif::HumanBytes;
 use std::path::Path;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
     match folders.iter().find(|folder| folder.join(TOLD_IN).is_file()) {
         Some(folder) => campaign(folder, &folders, &arguments.out),

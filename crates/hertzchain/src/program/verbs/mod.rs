@@ -1,19 +1,19 @@
 //! One file a verb.
 
-pub mod campaign;
-pub mod check;
-pub mod completions;
-pub mod design;
-pub mod fit;
-pub mod gauge;
-pub mod laws;
-pub mod man;
-pub mod measure;
-pub mod merge;
-pub mod presets;
-pub mod reproduce;
-pub mod schema;
-pub mod shot;
-pub mod sweep;
-pub mod theory;
-pub mod version;
+pub(crate) mod campaign;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod design;
+pub(crate) mod fit;
+pub(crate) mod gauge;
+pub(crate) mod laws;
+pub(crate) mod man;
+pub(crate) mod measure;
+pub(crate) mod merge;
+pub(crate) mod presets;
+pub(crate) mod reproduce;
+pub(crate) mod schema;
+pub(crate) mod shot;
+pub(crate) mod sweep;
+pub(crate) mod theory;
+pub(crate) mod version;

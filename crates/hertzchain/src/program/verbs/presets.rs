@@ -6,7 +6,7 @@ use crate::{format, print};
 use hertzchain_experiment::{Preset, campaigns, examples, preset, presets};
 
 /// Runs the verb.
-pub fn run(arguments: &Presets) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Presets) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
         let found = preset(name).map_err(|error| Failure::User(error.to_string()))?;
         return print::print(found.text());

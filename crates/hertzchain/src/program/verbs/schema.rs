@@ -4,6 +4,6 @@ use crate::failure::Failure;
 use crate::print;
 
 /// Runs the verb.
-pub fn run() -> Result<(), Failure> {
+pub(crate) fn run() -> Result<(), Failure> {
     print::print_json(&hertzchain_experiment::schema())
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 const LONG_S: f64 = 10.0;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
     input::check_times(&arguments.how, &experiment)?;

@@ -1,8 +1,8 @@
 //! `hertzchain sweep`: times of flight against speed.
 
 mod fits;
-pub mod shard;
-pub mod told;
+pub(crate) mod shard;
+pub(crate) mod told;
 
 use crate::arguments::{self, Sweep as Arguments};
 use crate::failure::{self, Failure};
@@ -20,7 +20,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 
 /// Runs the verb.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = parse_speeds(&arguments.speeds).map_err(|e| Failure::User(e.to_string()))?;
     let experiment = input::open(&arguments.input)?;
     check_speeds("--speeds", &arguments.speeds, experiment.units())?;

@@ -8,7 +8,7 @@ use hertzchain::{input, json};
 use hertzchain_sim::describe_theory;
 
 /// Runs the verb.
-pub fn run(arguments: &Check) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
     // What the physics refuses is reported at its place in the file.

@@ -6,7 +6,7 @@ use hertzchain::input;
 use hertzchain_sim::InstructionSet;
 
 /// Prints the version.
-pub fn run(verbose: bool) -> Result<(), Failure> {
+pub(crate) fn run(verbose: bool) -> Result<(), Failure> {
     let mut text = format!("hertzchain {}\n", env!("CARGO_PKG_VERSION"));
     if verbose {
         let sets = InstructionSet::available();

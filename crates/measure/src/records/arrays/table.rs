@@ -16,7 +16,7 @@ pub(crate) struct Axes {
 
 impl Axes {
     /// The axes of an array of this shape, if it can be one of samples.
-    pub fn of(shape: &[usize], rows: Rows) -> Option<Self> {
+    pub(crate) fn of(shape: &[usize], rows: Rows) -> Option<Self> {
         let (shots, channels, time) = match (shape, rows) {
             (&[_], _) => (None, None, 0),
             (&[a, b], Rows::Auto) if a <= b => (Some(0), None, 1),
@@ -53,7 +53,7 @@ pub(crate) struct Table {
 impl Table {
     /// # Errors
     /// Arrays without samples or of too many axes; what [`chosen`] refuses.
-    pub fn of(
+    pub(crate) fn of(
         file: &Path,
         part: Option<String>,
         shape: &[usize],
@@ -109,18 +109,5 @@ impl Table {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_longer_axis_is_time_unless_told() {
-        let told = |shape: &[usize], rows| Axes::of(shape, rows).unwrap();
-        assert_eq!(told(&[20, 1000], Rows::Auto).shots, Some(0));
-        assert_eq!(told(&[1000, 2], Rows::Auto).channels, Some(1));
-        assert_eq!(told(&[2, 1000], Rows::Channels).channels, Some(0));
-        assert_eq!(told(&[2, 1000], Rows::Times).time, 0);
-        let columns = told(&[1000, 20], Rows::Moments);
-        assert_eq!((columns.shots, columns.time), (Some(1), 0));
-        assert_eq!(Axes::of(&[1, 1, 1, 1], Rows::Auto), None);
-    }
-}
+#[path = "tests/table.rs"]
+mod tests;

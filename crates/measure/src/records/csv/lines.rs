@@ -28,7 +28,7 @@ pub(super) enum Read {
 impl Lines {
     /// # Errors
     /// A file that cannot be read.
-    pub fn open(file: &Path) -> io::Result<Self> {
+    pub(super) fn open(file: &Path) -> io::Result<Self> {
         Ok(Self {
             reader: BufReader::with_capacity(1 << 16, Decoded::open(file)?),
             blank: 0,
@@ -39,7 +39,7 @@ impl Lines {
     ///
     /// # Errors
     /// A file that cannot be read on.
-    pub fn next(&mut self, line: &mut Vec<u8>) -> io::Result<Read> {
+    pub(super) fn next(&mut self, line: &mut Vec<u8>) -> io::Result<Read> {
         line.clear();
         if self.blank > 0 {
             self.blank -= 1;

@@ -89,7 +89,7 @@ enum Line {
 }
 
 impl Rows {
-    pub fn open(file: &Path, plan: Plan) -> io::Result<Self> {
+    pub(super) fn open(file: &Path, plan: Plan) -> io::Result<Self> {
         let mut lines = Lines::open(file)?;
         let mut bytes = Vec::new();
         for _ in 0..plan.dialect.first_row {

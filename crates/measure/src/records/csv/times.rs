@@ -26,12 +26,12 @@ pub(super) struct Printed {
 
 impl Printed {
     /// How far the true time may be off.
-    pub fn half_s(&self) -> f64 {
+    pub(super) fn half_s(&self) -> f64 {
         0.5 * self.unit_s + self.rounding_s()
     }
 
     /// Rounding of the arithmetic, of the file's writer and ours.
-    pub fn rounding_s(&self) -> f64 {
+    pub(super) fn rounding_s(&self) -> f64 {
         8.0 * f64::EPSILON * self.s.abs()
     }
 }
@@ -142,7 +142,7 @@ pub(super) struct Returns {
 impl Returns {
     /// Whether a segment begins with this time: all before rose, and it is no later than
     /// the first of them. Times that go to and fro say nothing.
-    pub fn begins(&mut self, time_s: f64) -> bool {
+    pub(super) fn begins(&mut self, time_s: f64) -> bool {
         let risen_s = self.risen_s.filter(|(_, last_s)| time_s >= *last_s);
         let back = self
             .risen_s
@@ -157,42 +157,5 @@ impl Returns {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn printed(times: &[f64], unit_s: f64) -> Vec<Printed> {
-        times.iter().map(|s| Printed { s: *s, unit_s }).collect()
-    }
-
-    #[test]
-    fn jumps_back_and_far_ahead_begin_segments() {
-        let of = |times: &[f64]| segments(&printed(times, 1e-3));
-        assert_eq!(of(&[0.0, 1.0, 2.0, 0.0, 1.0]), [0..3, 3..5]);
-        assert_eq!(of(&[0.0, 1.0, 2.0, 90.0, 91.0]), [0..3, 3..5]);
-        assert_eq!(of(&[0.0, 1.0, 2.0]).first(), Some(&(0..3)));
-        assert_eq!(of(&[]).first(), Some(&(0..0)));
-    }
-
-    #[test]
-    fn digits_so_few_that_times_repeat_begin_no_segments() {
-        let rounded = |from: i32, to: i32| (from..to).map(|i| (f64::from(i) * 0.1).round());
-        let times: Vec<f64> = rounded(-70, 900).chain(rounded(-70, 900)).collect();
-        assert_eq!(segments(&printed(&times, 1.0)), [0..970, 970..1940]);
-        let ahead: Vec<f64> = rounded(0, 900).chain(rounded(2000, 2900)).collect();
-        assert_eq!(segments(&printed(&ahead, 1.0)), [0..900, 900..1800]);
-    }
-
-    #[test]
-    fn only_what_rose_before_returns() {
-        let at = |times: &[f64]| -> Vec<usize> {
-            let mut returns = Returns::default();
-            let begins = times.iter().enumerate();
-            let begins = begins.filter(|(_, time)| returns.begins(**time));
-            begins.map(|(at, _)| at).collect()
-        };
-        assert_eq!(at(&[0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 0.0]), [3, 6]);
-        assert_eq!(at(&[0.0, 0.0, 0.0, 0.0]), []);
-        assert_eq!(at(&[3.0, 1.0, 4.0, 1.0, 5.0, f64::NAN, 2.0]), []);
-        assert_eq!(at(&[f64::NAN, 1.0, 2.0, 0.0]), []);
-    }
-}
+#[path = "tests/times.rs"]
+mod tests;

@@ -25,7 +25,7 @@ pub(super) struct Array {
 }
 
 impl Array {
-    pub fn open(place: Place, part: Option<String>) -> Result<Self, RecordError> {
+    pub(super) fn open(place: Place, part: Option<String>) -> Result<Self, RecordError> {
         let (header, bytes) = opened(&place)?;
         let refused = |detail: String| RecordError::malformed(&place.file, "a NumPy array", detail);
         let number = number(&header.dtype()).ok_or_else(|| refused(why_not(&header.dtype())))?;
@@ -43,7 +43,7 @@ impl Array {
     }
 
     /// All numbers of a small array, in the order in which they are stored.
-    pub fn values(self) -> Result<Vec<f64>, RecordError> {
+    pub(super) fn values(self) -> Result<Vec<f64>, RecordError> {
         let count = self
             .shape
             .iter()
@@ -59,7 +59,7 @@ impl Array {
     }
 
     /// Whether the file ends before its numbers do, as its header counts them.
-    pub fn cut_short(&self) -> Option<RecordError> {
+    pub(super) fn cut_short(&self) -> Option<RecordError> {
         let sizes = self.shape.iter().map(|size| *size as u64);
         let bytes = sizes.fold(self.number.width() as u64, u64::saturating_mul);
         let there = self.bytes.left().filter(|there| *there < bytes)?;
@@ -68,7 +68,11 @@ impl Array {
     }
 
     /// The records of an array of samples.
-    pub fn records(self, interval_s: f64, options: &ReadOptions) -> Result<Raw, RecordError> {
+    pub(super) fn records(
+        self,
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Raw, RecordError> {
         let fortran = self.fortran && self.shape.len() > 1;
         if fortran && self.shape.len() > 2 {
             let detail = "its three axes are stored column by column; save it with order C";

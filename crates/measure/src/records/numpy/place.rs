@@ -23,7 +23,7 @@ pub(super) enum Bytes {
 
 impl Place {
     /// From the first byte on.
-    pub fn open(&self) -> io::Result<Bytes> {
+    pub(super) fn open(&self) -> io::Result<Bytes> {
         let mut opened = File::open(&self.file)?;
         opened.seek(SeekFrom::Start(self.start))?;
         let bytes = BufReader::with_capacity(1 << 16, opened).take(self.size);
@@ -36,7 +36,7 @@ impl Place {
 
 impl Bytes {
     /// How many bytes are left in the file, of what is not deflated.
-    pub fn left(&self) -> Option<u64> {
+    pub(super) fn left(&self) -> Option<u64> {
         let Self::Plain(bytes) = self else {
             return None;
         };
@@ -48,7 +48,7 @@ impl Bytes {
     }
 
     /// Leaves out what comes next; where it ends before, nothing comes any more.
-    pub fn skip(&mut self, count: u64) -> io::Result<()> {
+    pub(super) fn skip(&mut self, count: u64) -> io::Result<()> {
         match self {
             Self::Plain(bytes) => {
                 let count = count.min(bytes.limit());

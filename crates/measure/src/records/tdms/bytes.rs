@@ -53,7 +53,7 @@ pub(super) fn width(code: u32) -> Option<usize> {
 }
 
 impl<'a> Bytes<'a> {
-    pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, left) = self.left.split_at_checked(count)?;
         self.left = left;
         Some(taken)
@@ -67,22 +67,22 @@ impl<'a> Bytes<'a> {
         Some(bytes)
     }
 
-    pub fn u32(&mut self) -> Option<u32> {
+    pub(super) fn u32(&mut self) -> Option<u32> {
         self.array().map(u32::from_le_bytes)
     }
 
-    pub fn u64(&mut self) -> Option<u64> {
+    pub(super) fn u64(&mut self) -> Option<u64> {
         self.array().map(u64::from_le_bytes)
     }
 
-    pub fn text(&mut self) -> Option<String> {
+    pub(super) fn text(&mut self) -> Option<String> {
         let length = self.u32()? as usize;
         let bytes = self.take(length)?;
         Some(String::from_utf8_lossy(bytes).into_owned())
     }
 
     /// Name and value.
-    pub fn property(&mut self) -> Option<(String, Property)> {
+    pub(super) fn property(&mut self) -> Option<(String, Property)> {
         let name = self.text()?;
         let code = self.u32()?;
         if code == TEXT {

@@ -30,7 +30,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// The layout after an index's `kind`; `None` if it is not one.
-    pub fn of(bytes: &mut Bytes<'_>, kind: u32) -> Option<Self> {
+    pub(super) fn of(bytes: &mut Bytes<'_>, kind: u32) -> Option<Self> {
         let (_type, _dimension) = (bytes.u32()?, bytes.u32()?);
         let count = usize::try_from(bytes.u64()?).ok()?;
         let mut first = None;

@@ -41,7 +41,7 @@ pub(super) struct Channel {
 
 impl Channel {
     /// Sampling interval in s, if its properties say.
-    pub fn interval_s(&self) -> Option<f64> {
+    pub(super) fn interval_s(&self) -> Option<f64> {
         match self.properties.get("wf_increment") {
             Some(Property::Number(number)) => Some(*number),
             _ => None,
@@ -52,7 +52,7 @@ impl Channel {
     ///
     /// # Errors
     /// What a scale is that is not known here.
-    pub fn scaled(mut self) -> Result<Self, String> {
+    pub(super) fn scaled(mut self) -> Result<Self, String> {
         let powers = polynomial(&self.properties)?;
         match powers.as_slice() {
             [] => {}
@@ -64,7 +64,7 @@ impl Channel {
     }
 
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.pieces
             .iter()
             .map(|piece| piece.count * piece.chunks)
@@ -145,7 +145,7 @@ struct Walk {
 
 impl Index {
     /// Reads all metadata of a file.
-    pub fn of(file: &Path) -> Result<Self, RecordError> {
+    pub(super) fn of(file: &Path) -> Result<Self, RecordError> {
         let reading = |cause| RecordError::reading(file, cause);
         let mut opened = File::open(file).map_err(reading)?;
         let length = opened.metadata().map_err(reading)?.len();

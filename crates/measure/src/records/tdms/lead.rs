@@ -17,7 +17,7 @@ pub(super) struct Lead {
 
 impl Lead {
     /// The lead-in in these bytes, if there is one.
-    pub fn of(bytes: &[u8]) -> Option<Self> {
+    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
         let left = bytes.strip_prefix(b"TDSm")?;
         let mut bytes = Bytes {
             left,
@@ -33,28 +33,28 @@ impl Lead {
         })
     }
 
-    pub fn has_metadata(&self) -> bool {
+    pub(super) fn has_metadata(&self) -> bool {
         self.flags & (1 << 1) != 0
     }
 
-    pub fn has_new_list(&self) -> bool {
+    pub(super) fn has_new_list(&self) -> bool {
         self.flags & (1 << 2) != 0
     }
 
-    pub fn has_samples(&self) -> bool {
+    pub(super) fn has_samples(&self) -> bool {
         self.flags & (1 << 3) != 0
     }
 
-    pub fn is_interleaved(&self) -> bool {
+    pub(super) fn is_interleaved(&self) -> bool {
         self.flags & (1 << 5) != 0
     }
 
-    pub fn is_big_endian(&self) -> bool {
+    pub(super) fn is_big_endian(&self) -> bool {
         self.flags & (1 << 6) != 0
     }
 
     /// Whether its samples are in the rows of DAQ cards.
-    pub fn is_of_cards(&self) -> bool {
+    pub(super) fn is_of_cards(&self) -> bool {
         self.flags & (1 << 7) != 0
     }
 }

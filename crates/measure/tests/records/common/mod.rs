@@ -16,7 +16,7 @@ static PYTHON: Python = Python::new(
 );
 
 /// A folder of one test's own, empty at first.
-pub fn folder(test: &str) -> PathBuf {
+pub(super) fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("records-{test}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -24,7 +24,7 @@ pub fn folder(test: &str) -> PathBuf {
 }
 
 /// A file that is kept with the tests.
-pub fn kept(name: &str) -> PathBuf {
+pub(super) fn kept(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/records/data")
         .join(name)
@@ -32,6 +32,6 @@ pub fn kept(name: &str) -> PathBuf {
 
 /// Runs a Python program in a folder and gives what it prints; `None`, with a
 /// notice, where there is no Python with the packages.
-pub fn python(folder: &Path, program: &str) -> Option<String> {
+pub(super) fn python(folder: &Path, program: &str) -> Option<String> {
     PYTHON.run(folder, program)
 }

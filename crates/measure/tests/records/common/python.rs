@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 /// A Python with packages, made at first use and kept with the build.
-pub struct Python {
+pub(super) struct Python {
     environment: &'static str,
     packages: &'static [&'static str],
     untested: &'static str,
@@ -17,7 +17,7 @@ pub struct Python {
 impl Python {
     /// Of this name and with these packages; `untested` is what a notice says if
     /// there is none.
-    pub const fn new(
+    pub(super) const fn new(
         environment: &'static str,
         packages: &'static [&'static str],
         untested: &'static str,
@@ -32,7 +32,7 @@ impl Python {
 
     /// Runs a Python program in a folder and gives what it prints; `None`, with a
     /// notice that no test captures, where there is no Python with the packages.
-    pub fn run(&self, folder: &Path, program: &str) -> Option<String> {
+    pub(super) fn run(&self, folder: &Path, program: &str) -> Option<String> {
         let python = self.interpreter.get_or_init(|| self.made()).as_ref()?;
         let script = folder.join("script.py");
         fs::write(&script, program).unwrap();

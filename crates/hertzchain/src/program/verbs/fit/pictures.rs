@@ -17,7 +17,7 @@ const LOOKS: [(Colour, Marker); 4] = [
 const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
-pub fn fit(fitted: &Fitted) -> Figure {
+pub(super) fn fit(fitted: &Fitted) -> Figure {
     let data = fitted.problem.data();
     let mut figure = Figure::single_column(130.0).share_x();
     for times in [true, false] {

@@ -16,7 +16,7 @@ use hertzchain_infer::Problem;
 use serde_json::Value;
 
 /// Runs the verb on recordings.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.modelled.threads;

@@ -14,7 +14,7 @@ use hertzchain_infer::{
 const MOST_SHARE: f64 = 0.1;
 
 /// Everything that is to be said.
-pub fn text(fitted: &Fitted, arguments: &Arguments) -> String {
+pub(super) fn text(fitted: &Fitted, arguments: &Arguments) -> String {
     let data = fitted.problem.data();
     let case = match data.case.as_str() {
         "" => String::new(),
@@ -58,7 +58,7 @@ fn unit(fitted: &Fitted) -> String {
 }
 
 /// Correlations and how well the data are described.
-pub fn described(fitted: &Inferred) -> String {
+pub(super) fn described(fitted: &Inferred) -> String {
     correlations(fitted) + &goodness(&fitted.goodness) + &robust(fitted) + &derivatives(fitted)
 }
 
@@ -89,7 +89,7 @@ fn derivatives(fitted: &Inferred) -> String {
 }
 
 /// What is doubtful about the minimum.
-pub fn beware(fitted: &Inferred) -> String {
+pub(super) fn beware(fitted: &Inferred) -> String {
     let doubt = doubt(&fitted.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
     let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
@@ -135,7 +135,7 @@ fn other_minima(fitted: &Inferred) -> String {
 }
 
 /// The parameters with their standard errors.
-pub fn values(fitted: &Inferred) -> String {
+pub(super) fn values(fitted: &Inferred) -> String {
     let parameters = fitted.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fitted.fit.point[at], fitted.standard_error(at));
@@ -253,7 +253,7 @@ fn accuracy(fitted: &Fitted) -> String {
 }
 
 /// What the data determine and what not, and what would help.
-pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
+pub(super) fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
     let found = &fitted.identifiability;
     if !fitted.fit.ending.converged() {
         return "The fit found no minimum: what the data determine is not known where it ended.\n"
@@ -281,7 +281,7 @@ pub fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String
 }
 
 /// Intervals of profiles or of a posterior.
-pub fn more(fitted: &Inferred) -> String {
+pub(super) fn more(fitted: &Inferred) -> String {
     match &fitted.more {
         More::Nothing => String::new(),
         More::Profiles(profiles) => intervals_of_profiles(fitted, profiles),
@@ -432,7 +432,7 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
 }
 
 /// What observables are called where space is short.
-pub fn short(of: Observable) -> &'static str {
+pub(super) fn short(of: Observable) -> &'static str {
     match of {
         Observable::Incident => "incident",
         Observable::Reflected => "reflected",
@@ -442,24 +442,5 @@ pub fn short(of: Observable) -> &'static str {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn far_too_many_runs_are_told_as_well_as_far_too_few() {
-        let told = |residuals: &[f64]| hertzchain_infer::runs(residuals).map(runs_text);
-        let alternating: Vec<f64> = (0..20).map(|at| f64::from(1 - 2 * (at % 2))).collect();
-        let many = told(&alternating).unwrap_or_default();
-        assert!(
-            many.contains("20 runs of equal sign, 11 expected: as many or more in"),
-            "{many}"
-        );
-        assert!(many.contains("oddly often"), "{many}");
-        let (above, below) = ([1.0; 10], [-1.0; 10]);
-        let few = told(&[above, below].concat()).unwrap_or_default();
-        assert!(few.contains("as few or fewer in"), "{few}");
-        assert!(few.contains("go together"), "{few}");
-        let usual = told(&[1.0, 1.0, -1.0, 1.0, -1.0, -1.0]).unwrap_or_default();
-        assert!(usual.ends_with("of repetitions\n"), "{usual}");
-    }
-}
+#[path = "tests/report.rs"]
+mod tests;

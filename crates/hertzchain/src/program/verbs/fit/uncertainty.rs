@@ -29,7 +29,7 @@ fn in_markup(unit: &str) -> String {
 
 /// Rise of chi-square along each parameter, beside the parabola that the
 /// covariance stands for.
-pub fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
+pub(super) fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
     let labels = labels(fitted);
     let curves: Vec<ProfileCurve> = (profiles.iter())
         .map(|profile| ProfileCurve {
@@ -45,7 +45,7 @@ pub fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
 }
 
 /// The posterior of each parameter and pair, beside the covariance's.
-pub fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
+pub(super) fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
     Corner {
         labels: &labels(fitted),
         samples: &posterior.samples,
@@ -56,7 +56,7 @@ pub fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
 }
 
 /// Singular values of the Jacobian, each parameter in units of its scale.
-pub fn singular_values(fitted: &Inferred) -> Figure {
+pub(super) fn singular_values(fitted: &Inferred) -> Figure {
     let found = &fitted.identifiability;
     let names = fitted.parameters.iter().map(|p| p.name.clone());
     SingularValues {

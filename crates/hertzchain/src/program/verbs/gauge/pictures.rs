@@ -11,7 +11,7 @@ const BAND: f64 = 1.96;
 const POINTS: usize = 60;
 
 /// Both numbers, one panel each.
-pub fn contacts(gauged: &Gauged) -> Figure {
+pub(super) fn contacts(gauged: &Gauged) -> Figure {
     match tells_both(gauged) {
         true => Figure::single_column(120.0)
             .share_x()

@@ -9,7 +9,7 @@ use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_told};
 
 /// Everything that is to be said.
-pub fn text(gauged: &Gauged) -> String {
+pub(super) fn text(gauged: &Gauged) -> String {
     let doubts = doubts(gauged);
     let mut text = doubts.clone();
     let (dry_model, wet_model) = (gauged.gauge.dry().model(), gauged.gauge.wet_model());

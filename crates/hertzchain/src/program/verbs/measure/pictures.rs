@@ -12,7 +12,7 @@ const MOST: usize = 4;
 const MARGIN: f64 = 0.5;
 
 /// One shot of every case with its picks; `None` without any.
-pub fn signals(examples: &[Example]) -> Option<Figure> {
+pub(super) fn signals(examples: &[Example]) -> Option<Figure> {
     let charts: Vec<Chart> = examples.iter().take(MOST).filter_map(signal).collect();
     let empty = Figure::double_column(55.0 * charts.len() as f64 + 8.0).letters();
     (!charts.is_empty()).then(|| charts.into_iter().fold(empty, Figure::panel))
@@ -59,7 +59,7 @@ fn title(example: &Example, flight: &Flight) -> String {
 
 /// Times of flight at the mean speeds with all their errors, and their power laws, dashed where
 /// the errors do not allow any.
-pub fn times(curves: &Curves) -> Figure {
+pub(super) fn times(curves: &Curves) -> Figure {
     let chart = |title: &str| {
         Chart::new("Speed of the striker (m/s)", "Time of flight (µs)")
             .x_log()
@@ -139,7 +139,7 @@ fn marker(number: usize) -> Marker {
 }
 
 /// Ratios of times to the reference's, with error bars.
-pub fn ratios(curves: &Curves, reference: &str) -> Figure {
+pub(super) fn ratios(curves: &Curves, reference: &str) -> Figure {
     let chart = |title: &str| {
         Chart::new(
             "Speed of the striker (m/s)",

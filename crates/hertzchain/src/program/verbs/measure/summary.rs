@@ -12,7 +12,7 @@ const MOST_SHOTS: usize = 30;
 const ROUNDING: f64 = 1e-12;
 
 /// Tables and fits.
-pub fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
+pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
     let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
     if few && !measured.shots.is_empty() {

@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Runs the verb.
-pub fn run(arguments: &Reproduce) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     // Whether it can be written to, before anything is computed for it.
     let mut folder = Folder::open(&arguments.out)?;
     let options = match arguments.readings {

@@ -8,7 +8,7 @@ use hertzchain_experiment::preset;
 use hertzchain_paper::rig_claims::{Design, MEANING, RigClaims, observe, series_csv};
 
 /// Runs the campaigns and writes verdicts, table and pictures; returns what was found, for people.
-pub fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
+pub(super) fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
     let ours = |error: &dyn std::error::Error| Failure::Ours(error.to_string());
     let paper = preset("paper").map_err(|error| ours(&error))?;
     let design = Design::about(paper);

@@ -12,7 +12,7 @@ use hertzchain_sim::{Plan, Shot};
 type Rows = Vec<(String, String)>;
 
 /// Everything that was asked of the shot.
-pub fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
+pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
     let accuracy = shot.accuracy_reached.unwrap_or(plan.accuracy);
     let style = Style::of_accuracy(accuracy, experiment.units());
     let mut text = format!("{}\n", heading(experiment.title()));

@@ -55,7 +55,7 @@ impl Bodies {
 }
 
 /// Runs the shot again with everything watched that is to be written.
-pub fn write(
+pub(super) fn write(
     mut folder: Folder,
     arguments: &Arguments,
     experiment: &Experiment,

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// A run that can't be.
-pub fn refused(error: RunError) -> Failure {
+pub(crate) fn refused(error: RunError) -> Failure {
     match error {
         RunError::Mistakes(mistakes) => (*mistakes).into(),
         other => Failure::User(other.to_string()),
@@ -19,7 +19,7 @@ pub fn refused(error: RunError) -> Failure {
 }
 
 /// Mistakes of the user and what a disk refuses.
-pub fn failure(error: ShardsError) -> Failure {
+pub(crate) fn failure(error: ShardsError) -> Failure {
     match error {
         ShardsError::Unwritable(error) => Failure::Ours(error.to_string()),
         other => Failure::User(other.to_string()),
@@ -27,7 +27,7 @@ pub fn failure(error: ShardsError) -> Failure {
 }
 
 /// Computes a part into the folder, unless it is there.
-pub fn run(
+pub(crate) fn run(
     arguments: &Arguments,
     run: &Run,
     shard: Shard,
@@ -51,7 +51,7 @@ pub fn run(
 }
 
 /// What is odd and which shots are none, on the error stream.
-pub fn told(part: &Part) {
+pub(crate) fn told(part: &Part) {
     let speed = |place: usize| {
         let at = place / part.shard.of();
         part.rows

@@ -33,13 +33,13 @@ const SHOWN: [Shown; 10] = [
 ];
 
 /// Whether no speed has a shot.
-pub fn nothing(part: &Part) -> bool {
+pub(crate) fn nothing(part: &Part) -> bool {
     part.rows.failed.len() == part.rows.len()
 }
 
 /// Prints the table with its power laws; nothing where no speed has a shot,
 /// which is told instead.
-pub fn show(part: &Part) -> Result<(), Failure> {
+pub(crate) fn show(part: &Part) -> Result<(), Failure> {
     if nothing(part) {
         return Ok(());
     }
@@ -51,7 +51,7 @@ pub fn show(part: &Part) -> Result<(), Failure> {
 }
 
 /// The table under its heading.
-pub fn rows(part: &Part) -> String {
+pub(crate) fn rows(part: &Part) -> String {
     let reached = part.rows.column(Column::Accuracy).iter().copied();
     // A number that is none is never the larger one.
     let style = Style::of_accuracy(reached.fold(part.accuracy, f64::max), part.units);
@@ -99,7 +99,7 @@ fn lines(style: Style, rows: &Rows) -> String {
 }
 
 /// Writes the table and the figure.
-pub fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
+pub(crate) fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
     print::written(&folder.finish()?);

@@ -1,0 +1,38 @@
+use super::*;
+
+#[test]
+fn stacked_scripts_are_as_wide_as_the_wider_one() {
+    let width = |markup: &str| TextLine::new(markup, 10.0).width();
+    let base = width("$v$");
+    let stacked = width("$v_{12}^{3}$") - base;
+    let wider = width("$v_{12}$") - base;
+    // Both sums round independently in the last bits.
+    assert!((stacked - wider).abs() < 1e-9);
+}
+
+#[test]
+fn fitted_text_is_no_wider_than_asked() {
+    let line = TextLine::new("a rather long label", 9.0).fitted(20.0);
+    // What is not cut may be wider by a part in a thousand.
+    assert!(line.width() <= 20.0 * (1.0 + 1e-3));
+}
+
+#[test]
+fn what_would_be_too_small_to_read_is_cut_instead() {
+    for markup in ["a rather long label", "$K_{12}$ of a rather long label"] {
+        let whole = TextLine::new(markup, 9.0);
+        let line = whole.clone().fitted(30.0);
+        let smallest = line.glyphs.iter().map(|glyph| glyph.scale * line.size);
+        // Rounding of one division and product.
+        assert!(smallest.fold(9.0, f64::min) > LEAST_SIZE - 1e-9);
+        assert!(line.glyphs.len() < whole.glyphs.len());
+        // What is not cut may be wider by a part in a thousand.
+        assert!(line.width() <= 30.0 * (1.0 + 1e-3));
+    }
+    assert_eq!(TextLine::new("label", 9.0).fitted(1.0).width(), 0.0);
+}
+
+#[test]
+fn superscripts_raise_the_line() {
+    assert!(TextLine::new("$10^{-5}$", 8.0).ascent() > TextLine::new("10", 8.0).ascent());
+}

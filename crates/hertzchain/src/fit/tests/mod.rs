@@ -1,0 +1,42 @@
+use super::*;
+use crate::arguments::parsed;
+use crate::inference;
+
+/// A row of the paper's wet chain, K = 1.186e10 N/m^1.5 and A = 2.60 µs, with errors as
+/// of 20 shots.
+const ROW: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,tof_reflected_s_error\n\
+                   0.119052,0.0006708,0.000936197428,1.118e-07,0.00110372846,1.118e-07\n";
+
+fn of_row(more: &[&str]) -> Fitted {
+    let begin = ["row.csv", "--preset=pump", "--free=wet.K,wet.A"];
+    let words = begin.iter().chain(more).map(|word| (*word).to_owned());
+    let arguments: Arguments = parsed("fit", &words.collect::<Vec<_>>()).unwrap();
+    let data = inference::parsed("row.csv", ROW, &arguments.measured, None).unwrap();
+    let experiment = inference::experiment(&arguments.modelled, None).unwrap();
+    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed).unwrap();
+    let problem = inference::problem(model, data, &arguments.freed).unwrap();
+    fitted(problem, &arguments).unwrap()
+}
+
+#[test]
+fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
+    let told = of_row(&[]).several_pairs().unwrap();
+    assert!(
+        told.contains("--starts") && told.contains("gauge"),
+        "{told}"
+    );
+    let bounds = ["--bounds=wet.K=5e9:2e10", "--bounds=wet.A=1e-7:1e-5"];
+    let found = of_row(&[&bounds[..], &["--starts=10"]].concat());
+    assert_eq!(found.several_pairs(), None);
+    let minima = found.inferred.other_minima();
+    let best = (&found.inferred.fit.point, 0);
+    let others = minima.iter().map(|(start, _)| (&start.point, 1));
+    let all: Vec<_> = std::iter::once(best).chain(others).collect();
+    assert!(all.len() > 1, "{all:?}");
+    // One of them is the true pair, within three percent: the row's own errors.
+    let near = |value: f64, truth: f64| (value / truth - 1.0).abs() < 0.03;
+    let is_true = |point: &[f64]| near(point[0], 1.186e10) && near(point[1], 2.60e-6);
+    assert!(all.iter().any(|(point, _)| is_true(point)), "{all:?}");
+    let rise = |start: &Started| 2.0 * (start.cost - found.inferred.fit.cost);
+    assert!(minima.iter().all(|(start, _)| rise(start) <= 9.0));
+}

@@ -1,0 +1,78 @@
+use super::*;
+use hertzchain_measure::Refused;
+use hertzchain_measure::signal::{Moved, Picks};
+use std::path::PathBuf;
+
+fn measured(shots: usize) -> Measurement {
+    let picked = Picked {
+        time_s: 1e-3,
+        sigma_s: 1e-9,
+        moved: Moved::default(),
+        height: 1.0,
+        height_sigma: 1e-3,
+        width_s: 46e-6,
+        misfit: None,
+    };
+    let at = |time_s| Picked { time_s, ..picked };
+    let picks = Picks {
+        passing: picked,
+        wall: at(1.7e-3),
+        returning: Some(at(2.5e-3)),
+        rivals: [None; 3],
+    };
+    let shot = Shot {
+        source: "long.npy, shot 12345 at 123.4567 s".to_owned(),
+        file: PathBuf::from("recordings/long.npy"),
+        shot: Some(12_345),
+        case: String::new(),
+        programmed_speed_m_s: None,
+        speed_m_s: None,
+        interval_s: 1e-6,
+        flight: Ok(picks.flight()),
+        doubts: Vec::new(),
+        untriggered: false,
+        gaps: None,
+        gap_in_pulse: false,
+        holds_several: false,
+    };
+    Measurement {
+        shots: vec![shot; shots],
+        refused: vec![Refused::Speeds {
+            file: PathBuf::from("short.npz"),
+            told: 3,
+            found: 2,
+        }],
+        ..Measurement::default()
+    }
+}
+
+/// Most bytes that were held at once while it was written.
+fn held(shots: usize) -> u64 {
+    let (measured, curves) = (measured(shots), Curves::default());
+    let info = allocation_counter::measure(|| {
+        write_json(&measured, &curves, &mut io::sink()).unwrap();
+    });
+    info.bytes_max
+}
+
+#[test]
+fn json_of_any_number_of_shots_holds_one_of_them_at_a_time() {
+    assert_eq!(held(1000), held(10));
+}
+
+#[test]
+fn a_shot_is_kept_as_some_numbers_whatever_its_samples() {
+    // Times, heights and widths of three pulses with errors, other maxima of theirs, speed,
+    // and three names.
+    assert!(size_of::<Shot>() < 800, "{}", size_of::<Shot>());
+}
+
+#[test]
+fn what_is_written_is_the_value_that_python_gets() {
+    let (measured, curves) = (measured(3), Curves::default());
+    let mut text = Vec::new();
+    write_json(&measured, &curves, &mut text).unwrap();
+    let value: Value = serde_json::from_slice(&text).unwrap();
+    assert_eq!(value, json(&measured, &curves));
+    assert_eq!(value["shots"].as_array().unwrap().len(), 3);
+}

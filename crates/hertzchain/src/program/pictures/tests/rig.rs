@@ -1,0 +1,25 @@
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+
+use super::*;
+use hertzchain_experiment::Experiment;
+use hertzchain_paper::reproduce::Silent;
+use hertzchain_paper::rig_claims::{Design, observe};
+
+#[test]
+fn a_small_design_has_all_its_pictures() {
+    let text = include_str!("../../../../../sim/tests/small.toml");
+    let design = Design {
+        rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::but(3, 2e-3)],
+        speeds: 3,
+        shots: 2,
+        first: 1,
+        ..Design::about(Experiment::from_text("small.toml", text).unwrap())
+    };
+    let evidence = observe(&design, &Silent).unwrap();
+    let claims = RigClaims::judge(&design, &evidence).unwrap();
+    for (name, figure) in figures(&evidence, &claims) {
+        let marks = figure.svg().matches("<path").count();
+        assert!(marks > 20, "{name}: {marks}");
+    }
+    assert_eq!(held(&Rig::but(0, 0.2)), "friction 0.2, push 0.24 N");
+}

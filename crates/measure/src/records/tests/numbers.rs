@@ -1,0 +1,45 @@
+use super::*;
+
+#[test]
+fn every_kind_reads_minus_one_or_its_largest() {
+    let read = |kind, bytes: &[u8], big| Number::plain(kind, big).samples(bytes, 0, 1).volts();
+    for (kind, width) in [
+        (Kind::I8, 1),
+        (Kind::I16, 2),
+        (Kind::I24, 3),
+        (Kind::I32, 4),
+        (Kind::I64, 8),
+    ] {
+        assert_eq!(read(kind, &vec![0xff; width], false), [-1.0], "{kind:?}");
+    }
+    assert_eq!(read(Kind::U8, &[255], false), [255.0]);
+    assert_eq!(read(Kind::U16, &[1, 0], true), [256.0]);
+    assert_eq!(read(Kind::F32, &1.5_f32.to_be_bytes(), true), [1.5]);
+    assert_eq!(read(Kind::F64, &1.5_f64.to_le_bytes(), false), [1.5]);
+}
+
+#[test]
+fn half_precision_is_what_its_bits_say() {
+    // Ends of its range, by hand from the standard's form.
+    for (bits, value) in [
+        (0x3c00, 1.0),
+        (0xc000, -2.0),
+        (0x7bff, 65504.0),
+        (0x0400, 2.0_f64.powi(-14)),
+        (0x0001, 2.0_f64.powi(-24)),
+        (0x3555, 0.333_251_953_125),
+        (0xfc00, f64::NEG_INFINITY),
+    ] {
+        assert_eq!(half(bits), value, "{bits:x}");
+    }
+    assert!(half(0x7e00).is_nan());
+    let read = Number::plain(Kind::F16, true).samples(&[0x3c, 0x00], 0, 1);
+    assert_eq!(read.volts(), [1.0]);
+}
+
+#[test]
+fn interleaved_channels_come_apart() {
+    let bytes: Vec<u8> = (0..6_i16).flat_map(i16::to_le_bytes).collect();
+    let second = Number::plain(Kind::I16, false).samples(&bytes, 1, 2);
+    assert_eq!(second.volts(), [1.0, 3.0, 5.0]);
+}

@@ -1,0 +1,67 @@
+use super::*;
+
+#[test]
+fn speeds_in_another_unit_are_refused_not_taken_for_metres_a_second() {
+    for title in ["velocity [mm/s]", "speed (cm/s)", "speed error (%)"] {
+        let list = ShotList::parse(&format!("file,{title}\na.csv,500\n"));
+        assert!(matches!(list, Err(ListError::Unit { .. })), "{title}");
+    }
+    for title in ["speed (m/s)", "v0 [m s^-1]", "speed"] {
+        let list = ShotList::parse(&format!("file,{title}\na.csv,0.5\n"));
+        assert!(list.is_ok(), "{title}");
+    }
+}
+
+#[test]
+fn speeds_of_nothing_are_refused_like_those_below() {
+    for speed in ["0", "0.0 m/s", "-0.5"] {
+        let list = ShotList::parse(&format!("file,speed\na.csv,{speed}\n"));
+        let line_2 = matches!(list, Err(ListError::NoNumber { line: 2, .. }));
+        assert!(line_2, "{speed}");
+    }
+    assert!(ShotList::parse("file,speed,speed error\na.csv,0.5,0\n").is_ok());
+}
+
+#[test]
+fn a_list_gives_files_their_speeds() {
+    let list = ShotList::parse("file,case,speed,speed error\na.csv,dry,0.5,0.003\nb.csv,,0.7\n");
+    let list = list.unwrap();
+    let a = list.find(Path::new("data/a.csv"), Some(1)).unwrap();
+    assert_eq!((a.case.as_deref(), a.speed_m_s), (Some("dry"), Some(0.5)));
+    assert_eq!(a.speed_error_m_s, Some(0.003));
+    let b = list.find(Path::new("b.csv"), None).unwrap();
+    assert_eq!((b.case.as_deref(), b.speed_m_s), (None, Some(0.7)));
+    assert_eq!(list.find(Path::new("c.csv"), None), None);
+}
+
+#[test]
+fn shots_of_one_file_have_speeds_of_their_own() {
+    let list = ShotList::parse("File;Shot;Speed (m/s)\na.h5;1;0,5\na.h5;2;0,7\n").unwrap();
+    let speed = |shot| list.find(Path::new("a.h5"), Some(shot)).unwrap().speed_m_s;
+    assert_eq!((speed(1), speed(2)), (Some(0.5), Some(0.7)));
+}
+
+#[test]
+fn quoted_fields_keep_their_commas_and_quotes() {
+    let list = "file,case,speed\n\"run 1, dry.csv\",\"gear, 2 drops of \"\"EP\"\"\",0.5\n\n,,\n";
+    let list = ShotList::parse(list).unwrap();
+    let entry = list.find(Path::new("run 1, dry.csv"), None).unwrap();
+    let case = entry.case.as_deref();
+    assert_eq!(
+        (case, entry.speed_m_s),
+        (Some("gear, 2 drops of \"EP\""), Some(0.5))
+    );
+    assert_eq!(list.entries.len(), 1);
+    let list = ShotList::parse("file,speed\na.csv,\"0,5\"\n");
+    assert!(
+        matches!(list, Err(ListError::NoNumber { line: 2, .. })),
+        "{list:?}"
+    );
+}
+
+#[test]
+fn mistakes_are_told_with_their_line() {
+    assert_eq!(ShotList::parse("a,b\n"), Err(ListError::NoTitles));
+    let error = ShotList::parse("file,speed\n\na.csv,fast\n").unwrap_err();
+    assert!(error.to_string().contains("line 3"), "{error}");
+}

@@ -1,0 +1,64 @@
+use super::*;
+use crate::claims::{Curve, Digitised, Measured, Point, Verdict, claims};
+use std::cell::RefCell;
+
+/// A peak whose difference from a measured one is this many standard errors,
+/// computed to an accuracy.
+fn peaks(difference: f64, accuracy: f64) -> Evidence {
+    let point = Point {
+        speed_m_s: 1.0,
+        tof_incident_s: 1.0,
+        tof_reflected_s: 1.0,
+        sensor_peak_n: 1.0 + difference,
+        wall_peak_n: 1.0,
+        returning_peak_n: 1.0,
+        second_returning_peak_n: 0.0,
+        widths_s: [1.0; 3],
+        striker_separation_m_s: 0.0,
+        striker_rebound_m_s: 0.0,
+        excess_s: [0.0; 2],
+        loosened_m: 0.0,
+        accuracy_reached: accuracy,
+        peak_accuracy: accuracy,
+        second_peak_accuracy_n: accuracy,
+        width_accuracy: accuracy,
+        striker_accuracy_m_s: accuracy,
+        excess_accuracy_s: accuracy,
+        loosened_accuracy_m: accuracy,
+    };
+    Evidence {
+        curves: vec![Curve {
+            case: "dry".to_owned(),
+            points: vec![point],
+        }],
+        digitised: vec![Digitised {
+            what: Measured::SensorOverWall,
+            case: "dry".to_owned(),
+            speed_m_s: 1.0,
+            value: 1.0,
+            standard_error: 1.0,
+        }],
+        ..Evidence::default()
+    }
+}
+
+#[test]
+fn shots_are_as_accurate_as_it_takes_to_tell_the_side_and_no_more() {
+    let judges: Vec<Judge> = claims().unwrap();
+    let overlap = judges.into_iter().filter(|j| j.claim.id == "peaks-overlap");
+    let overlap: Vec<Judge> = overlap.collect();
+    // Two standard errors are allowed.
+    for (difference, expected) in [(1.0, 1), (1.999, 2), (1.999_999_999, 3)] {
+        let asked = RefCell::new(Vec::new());
+        let gather = |accuracy: f64| {
+            asked.borrow_mut().push(accuracy);
+            Ok(peaks(difference, accuracy))
+        };
+        let evidence = sharpened(&overlap, &[1e-2, 1e-4, 1e-6], &gather).unwrap();
+        assert_eq!(asked.borrow()[..], [1e-2, 1e-4, 1e-6][..expected]);
+        let finding = overlap[0].decide(&evidence);
+        assert_eq!(finding.leaning, Verdict::Holds);
+        // The last one is nearer than the finest accuracy can tell.
+        assert_eq!(finding.is_open(), difference > 1.9999, "{finding:?}");
+    }
+}
