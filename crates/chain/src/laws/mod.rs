@@ -3,7 +3,7 @@
 //! To add a law: write a file with a struct of public fields that implements
 //! [`Term`], and add its row to [`LAWS`]. Tests, the command line, the
 //! experiment file and the documentation enumerate the registry; nothing else
-//! changes. `docs/add-a-contact-law.md` walks through it.
+//! changes. `docs/how-to/add-a-contact-law.md` walks through it.
 
 mod damping_brilliantov_1996;
 mod damping_cubic;

@@ -1,4 +1,4 @@
-//! `docs/add-a-contact-law.md`, compiled and run: every block of Rust on that
+//! `docs/how-to/add-a-contact-law.md`, compiled and run: every block of Rust on that
 //! page is a piece of this folder, word for word, and the first test says so.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
@@ -17,7 +17,7 @@ use laws::{Closed, Columns, ElasticCone, LAWS, Row, law};
 
 #[test]
 fn page_shows_nothing_but_code_that_runs_here() {
-    let page = include_str!("../../../../docs/add-a-contact-law.md");
+    let page = include_str!("../../../../docs/how-to/add-a-contact-law.md");
     let code = [
         include_str!("main.rs"),
         include_str!("laws/mod.rs"),
