@@ -27,4 +27,5 @@ mod resume;
 mod shards;
 mod sweeps;
 mod tables;
+mod tutorials;
 mod whole_loop;
