@@ -14,10 +14,15 @@ fn run(page: &str) {
     let pages = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorials");
     let text = std::fs::read_to_string(pages.join(page)).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_hertzchain")).parent().unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_hertzchain"))
+        .parent()
+        .unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
     for (language, block) in blocks(&text) {
-        let name = block.lines().next().and_then(|line| line.strip_prefix("# "));
+        let name = block
+            .lines()
+            .next()
+            .and_then(|line| line.strip_prefix("# "));
         match (language, name) {
             ("toml", Some(name)) if name.ends_with(".toml") => {
                 std::fs::write(folder.path().join(name), block).unwrap();
@@ -25,7 +30,11 @@ fn run(page: &str) {
             ("sh", _) => {
                 let mut shell = Command::new("bash");
                 let shell = shell.args(["-euo", "pipefail", "-c", block]);
-                let done = shell.current_dir(&folder).env("PATH", &path).output().unwrap();
+                let done = shell
+                    .current_dir(&folder)
+                    .env("PATH", &path)
+                    .output()
+                    .unwrap();
                 let printed = String::from_utf8_lossy(&done.stderr);
                 assert!(done.status.success(), "{page}\n{block}\n{printed}");
             }
