@@ -128,3 +128,31 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
         Err(UnitError::new(what, 0..text.len()))
     }
 }
+
+/// Returns the number of a text in SI: plain, or with any unit of the dimension of `unit`.
+///
+/// ```
+/// use hertzchain_experiment::units::parse_in;
+/// assert_eq!(parse_in("0.7mm/s", "m/s")?, 0.0007);
+/// assert_eq!(parse_in("2", "m/s")?, 2.0);
+/// assert!(parse_in("2 kg", "m/s").is_err());
+/// # Ok::<(), hertzchain_experiment::units::UnitError>(())
+/// ```
+///
+/// # Errors
+/// Those of [`parse_quantity`], and a unit of another dimension.
+pub fn parse_in(text: &str, unit: &str) -> Result<f64, UnitError> {
+    let quantity = parse_quantity(text)?;
+    let expected = parse_unit(unit).map_or(Dimension::NONE, |unit| unit.dimension);
+    let fits = |dimension: Dimension| quantity.dimension.agrees_with(&dimension);
+    if fits(Dimension::NONE) || fits(expected) {
+        return Ok(quantity.value);
+    }
+    let (found, wanted) = (quantity.dimension.name(), expected.name());
+    let what = format!(
+        "`{}` is {found}, not {wanted} such as \"{}\"",
+        text.trim(),
+        expected.example()
+    );
+    Err(UnitError::new(what, 0..text.len()))
+}
