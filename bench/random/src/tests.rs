@@ -4,7 +4,7 @@ use crate::draw;
 use crate::reference::Reference;
 use crate::row::{Ball, Far, Law, Material, Row};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::{InstructionSet, Plan, Shot, shoot_all, shoot_estimated};
+use hertzchain_sim::{Control, InstructionSet, Plan, Shot, run_plans, shoot_estimated};
 
 /// The paper's row of 40 steel balls.
 fn paper(speed_m_s: f64, laws: &[Law]) -> Row {
@@ -107,7 +107,7 @@ fn shots_and_sweeps_of_a_fixed_sample_are_as_wrong_as_they_state_at_most() {
         assert_as_stated(&shot, right_s, &format!("shot of row {line}"));
         for accuracy in [1e-3, 1e-5] {
             let plans = [plan.clone().for_flights().with_accuracy(accuracy)];
-            let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+            let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
             let what = format!("sweep of row {line} at {accuracy:e}");
             assert_as_stated(shots[0].as_ref().unwrap(), right_s, &what);
         }

@@ -149,6 +149,18 @@ impl Experiment {
     /// dissipation that stops all motion at once; a step longer than a contact,
     /// or more steps than a shot can have.
     pub fn system(&self, speed_m_s: Option<f64>) -> Result<(System, Vec<Warning>), Mistakes> {
+        let (_, system, warnings) = self.chain_and_system(speed_m_s)?;
+        Ok((system, warnings))
+    }
+
+    /// The chain and its system, each computed once, and warnings.
+    ///
+    /// # Errors
+    /// Those of [`Experiment::system`].
+    pub fn chain_and_system(
+        &self,
+        speed_m_s: Option<f64>,
+    ) -> Result<(Chain, System, Vec<Warning>), Mistakes> {
         let (chain, warnings) = self.chain(speed_m_s)?;
         let refused = |error| self.mistake(locate::problem(&self.spec, &error));
         let system = System::new(&chain).map_err(refused)?;
@@ -157,7 +169,7 @@ impl Experiment {
             .or_else(|| effort::problem(&self.spec, &chain, &system));
         match problem {
             Some(problem) => Err(self.mistake(problem)),
-            None => Ok((system, warnings)),
+            None => Ok((chain, system, warnings)),
         }
     }
 

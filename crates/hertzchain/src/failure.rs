@@ -2,7 +2,7 @@
 
 use crate::arguments::How;
 use crate::given::has_unit;
-use hertzchain_experiment::{Experiment, Finding, Mistakes, Warning};
+use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, Warning};
 use hertzchain_infer::SamplingError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
@@ -28,7 +28,15 @@ impl From<Mistakes> for Failure {
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
-        Self::User(error.to_string())
+        match error {
+            StudyError::Mistakes(mistakes) => (*mistakes).into(),
+            StudyError::Number(error) => match *error {
+                PathError::Mistakes(mistakes) => mistakes.into(),
+                other => Self::User(other.to_string()),
+            },
+            StudyError::Unwritable(why) => Self::Ours(why),
+            other => Self::User(other.to_string()),
+        }
     }
 }
 
@@ -47,9 +55,7 @@ impl Failure {
         match &error {
             _ if asked => error.into(),
             StudyError::Solve(why) => experiment.unsolved(why).into(),
-            StudyError::NotConverged { .. } | StudyError::TooManySteps { .. } => {
-                experiment.unreached(&error.to_string()).into()
-            }
+            StudyError::NotConverged(why) => experiment.unreached(why).into(),
             _ => error.into(),
         }
     }

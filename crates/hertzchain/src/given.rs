@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use hertzchain_experiment::Units;
 use hertzchain_experiment::units::{Dimension, parse_quantity};
-use hertzchain_sim::{SpeedError, parse_speed, parse_time};
+use hertzchain_sim::{StudyError, parse_speed, parse_time};
 
 /// A speed or time as given, before it is known whether the experiment has
 /// units.
@@ -18,7 +18,7 @@ pub struct Given {
 
 impl Given {
     /// A speed; a plain number is in m/s, or dimensionless.
-    pub fn speed(text: &str) -> Result<Self, SpeedError> {
+    pub fn speed(text: &str) -> Result<Self, StudyError> {
         Ok(Self {
             text: text.trim().to_owned(),
             value: parse_speed(text)?,
@@ -31,12 +31,7 @@ impl Given {
     pub fn time(text: &str) -> Result<Self, String> {
         Ok(Self {
             text: text.trim().to_owned(),
-            value: parse_time(text).map_err(|error| match error {
-                SpeedError::Unit { text, error } => {
-                    format!("`{text}`: {error}; expected a time, such as \"2 ms\"")
-                }
-                other => other.to_string(),
-            })?,
+            value: parse_time(text).map_err(|error| error.to_string())?,
             has_unit: has_unit(text),
             asks_unit: Some("2 ms"),
         })

@@ -5,7 +5,7 @@ use hertzchain_chain::observe::{Competing, Maximum};
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
-use hertzchain_sim::{Group, Plan, Point, Row, Shot, Sweep, Tuned, Value};
+use hertzchain_sim::{BatchResult, BatchShot, Calibration, Column, Group, Plan, Row, Shot, Value};
 use serde_json::{Value as Json, json};
 
 fn peak(maximum: &Maximum) -> Json {
@@ -111,31 +111,34 @@ fn budget(budget: &Budget) -> Json {
 
 /// All speeds of a sweep and their power laws; `plan` is that of one of them.
 #[must_use]
-pub fn sweep(experiment: &Experiment, plan: &Plan, swept: &Sweep) -> Json {
+pub fn sweep(
+    experiment: &Experiment,
+    plan: &Plan,
+    points: &[BatchShot],
+    (result, calibration): (&BatchResult, Option<Calibration>),
+) -> Json {
     let units = experiment.units();
-    let laws = [
-        (&swept.incident, swept.incident_uncertainty()),
-        (&swept.reflected, swept.reflected_uncertainty()),
-    ];
-    let mut told = outline(experiment, swept.tuned, laws);
-    let points = swept.points.iter();
-    told["points"] = points
+    let laws = [Column::Incident, Column::Reflected].map(|of| result.rows.law(of, result.accuracy));
+    let through = laws.each_ref().map(|(law, least)| (law, least.clone()));
+    let mut results = outline(experiment, calibration, through);
+    let points = points.iter();
+    results["points"] = points
         .map(|point| self::point(point, units, plan))
         .collect();
-    told
+    results
 }
 
 /// A sweep without its points; laws are the incident and the reflected times'.
 #[must_use]
 pub fn outline(
     experiment: &Experiment,
-    tuned: Option<Tuned>,
+    calibration: Option<Calibration>,
     [incident, reflected]: [Through<'_>; 2],
 ) -> Json {
-    let pilots = |tuned: Tuned| json!({"count": tuned.pilots, "accuracy_reached": tuned.reached, "way": tuned.to_string()});
+    let pilots = |it: Calibration| json!({"count": it.shots, "accuracy_reached": it.reached, "way": it.to_string()});
     json!({
         "experiment": experiment.name(),
-        "pilots": tuned.map(pilots),
+        "pilots": calibration.map(pilots),
         "power_law_incident": fit(incident.0, incident.1.ok()),
         "power_law_reflected": fit(reflected.0, reflected.1.ok()),
     })
@@ -153,7 +156,7 @@ const NO_BUDGET: &str =
 
 /// One speed of a sweep.
 #[must_use]
-pub fn point(point: &Point, units: Units, plan: &Plan) -> Json {
+pub fn point(point: &BatchShot, units: Units, plan: &Plan) -> Json {
     match &point.shot {
         Err(error) => json!({ "speed_m_s": point.speed_m_s, "error": error.to_string() }),
         Ok(result) => {

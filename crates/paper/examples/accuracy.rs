@@ -20,7 +20,7 @@ use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
 use hertzchain_experiment::preset;
 use hertzchain_paper::reproduce::CASES;
-use hertzchain_sim::{Flight, InstructionSet, JUDGES, Plan, Shot, shoot, shoot_all};
+use hertzchain_sim::{Control, Flight, InstructionSet, LONGER_STEPS, Plan, Shot, run_plans, shoot};
 use std::error::Error;
 
 const SPEEDS_M_S: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.23];
@@ -73,7 +73,7 @@ fn one_by_one(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
 /// Shots as a sweep fires them.
 fn together(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
     let plans = plans(name, accuracy)?;
-    let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+    let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.into_iter().map(|shot| Ok(shot?)).collect()
 }
 
@@ -228,7 +228,7 @@ fn judges() -> Result<()> {
                     Ok(fly(step)?.into_iter().map(|f| flight(f?)).collect())
                 };
                 let own = flights(step)?;
-                let longer = JUDGES.map(|(longer, counts)| Ok((flights(longer * step)?, counts)));
+                let longer = LONGER_STEPS.map(|(longer, counts)| Ok((flights(longer * step)?, counts)));
                 let longer = longer.into_iter().collect::<Result<Vec<_>>>()?;
                 let passes = |at: usize| {
                     let own = own[at]?;

@@ -1,5 +1,5 @@
-//! Shots that pilots judge for all: how right they are, and how much faster
-//! than shots that are judged each. The table of `docs/numerics.md`.
+//! Shots with calibrated error control: how right they are, and how much faster
+//! than with error control per shot. The table of `docs/numerics.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-study --example pilots          # of all presets
@@ -7,12 +7,12 @@
 //! ```
 //!
 //! A thousand speeds of each of the paper's chains, evenly spread in their
-//! logarithm, on one thread. Errors are against shots that are judged each at a
+//! logarithm, on one thread. Errors are against shots with error control per shot at a
 //! twentieth of the accuracy.
 
 use hertzchain_experiment::preset;
 use hertzchain_paper::reproduce::CASES;
-use hertzchain_sim::{InstructionSet, Plan, Shot, Tuned, shoot_all, shoot_tuned};
+use hertzchain_sim::{Calibration, Control, InstructionSet, Plan, Shot, run_plans};
 use std::error::Error;
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ const SPEEDS: usize = 1000;
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     println!(
-        "| preset | asked | pilots' way | pilots' error | largest error, of asked | beyond asked | µs a shot | times as fast |"
+        "| preset | asked | calibrated setting | calibration error | largest error, of asked | beyond asked | µs a shot | times as fast |"
     );
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let wanted = |name: &&&str| asked.is_empty() || asked.iter().any(|asked| asked == **name);
@@ -36,13 +36,17 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
 fn row(name: &str, accuracy: f64) -> Result<String, Box<dyn Error + Send + Sync>> {
     let set = InstructionSet::default();
     let (plans, exact) = (plans(name, accuracy)?, plans(name, accuracy / 20.0)?);
-    let (tuned, choosing) = timed(|| Tuned::new(&Tuned::pilots(&plans), set));
+    let sample: Vec<Plan> = Calibration::places(plans.len())
+        .map(|place| plans[place].clone())
+        .collect();
+    let (tuned, choosing) = timed(|| Calibration::new(&sample, set));
     let Some(tuned) = tuned else {
         return Ok(format!("| {name} | {accuracy:.0e} | none | | | | | |"));
     };
-    let (shots, alone) = timed(|| shoot_tuned(&plans, &tuned, set, &|| {}));
-    let (_, judged) = timed(|| shoot_all(&plans, set, false, &|| {}));
-    let exact = shoot_all(&exact, set, true, &|| {});
+    let run = |plans: &[Plan], control| timed(|| run_plans(plans, control, set, &|| {}));
+    let (shots, alone) = run(&plans, Control::Calibrated(&tuned));
+    let (_, compared) = run(&plans, Control::PerShot { checked: false });
+    let (exact, _) = run(&exact, Control::PerShot { checked: true });
     let errors = shots.iter().zip(&exact).filter_map(|(shot, exact)| {
         let flight = |shot: &Shot| shot.flight;
         Some(flight(shot.as_ref().ok()?)?.change(&flight(exact.as_ref().ok()?)?))
@@ -57,7 +61,7 @@ fn row(name: &str, accuracy: f64) -> Result<String, Box<dyn Error + Send + Sync>
         errors.len(),
         each_us(alone),
         each_us(choosing),
-        judged.as_secs_f64() / alone.as_secs_f64()
+        compared.as_secs_f64() / alone.as_secs_f64()
     ))
 }
 

@@ -2,7 +2,7 @@
 
 use hertzchain_experiment::{Experiment, Reading, preset};
 use hertzchain_paper::reproduce::{CASES, Effort, Gathering, gather};
-use hertzchain_sim::{Plan, Settings, Shot, shoot, sweep};
+use hertzchain_sim::{Batch, BatchOptions, Column, Plan, Shard, Shot, shoot};
 
 fn plan(experiment: &Experiment, speed_m_s: f64, accuracy: f64) -> Plan {
     let (plan, _) = Plan::from_experiment(experiment, Some(speed_m_s)).unwrap();
@@ -29,18 +29,19 @@ fn shot_sweep_and_reproduce_agree_on_the_rebound() {
     let reproduced = gather(&how, &|_, _, _| {}, &|| {}).unwrap();
     for case in CASES {
         let experiment = preset(case).unwrap();
-        let settings = Settings {
-            adjust: &|plan| plan.accuracy = accuracy,
+        let options = BatchOptions {
+            accuracy,
+            rebound: true,
             checked: true,
-            ..Settings::default()
+            ..BatchOptions::of(&experiment)
         };
-        let swept = sweep(&experiment, &speeds, &settings);
-        for (speed, point) in speeds.iter().zip(&swept.points) {
+        let batch = Batch::new(&experiment, speeds.to_vec(), options).unwrap();
+        let rows = batch.run(Shard::WHOLE, &|| {}).rows;
+        for (speed, by_sweep) in speeds.iter().zip(rows.column(Column::Rebound)) {
             let shot = shoot(&plan(&experiment, *speed, 1e-9)).unwrap();
-            let by_sweep = end_m_s(point.shot.as_ref().unwrap());
             let curve = reproduced.curve(case).unwrap();
             let by_reproduce = curve.at(*speed).unwrap().striker_rebound_m_s;
-            assert_eq!(by_sweep, by_reproduce, "{case} at {speed}");
+            assert_eq!(*by_sweep, by_reproduce, "{case} at {speed}");
             let off = (by_sweep / end_m_s(&shot) - 1.0).abs();
             assert!(off < OF_REBOUND * accuracy, "{case} at {speed}: {off:e}");
         }

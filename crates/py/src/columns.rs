@@ -1,6 +1,6 @@
 //! Many shots as columns of numbers.
 
-use hertzchain_sim::{Odd, Shot};
+use hertzchain_sim::{Shot, WarningSummary};
 use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -113,6 +113,6 @@ pub(crate) fn list<'py, T: IntoPyObject<'py>>(
 pub(crate) type Told = (usize, Vec<String>, usize);
 
 /// What is odd, if anything is.
-pub(crate) fn told(odd: Option<Odd>) -> Option<Told> {
+pub(crate) fn told(odd: Option<WarningSummary>) -> Option<Told> {
     odd.map(|odd| (odd.place, odd.lines, odd.shots))
 }

@@ -46,7 +46,7 @@ pub(crate) fn campaign<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let part = shard.parse();
-    let part = part.map_err(|error: hertzchain_sim::rig::ShardError| {
+    let part = part.map_err(|error: hertzchain_sim::StudyError| {
         Failed::from(Failure::User(error.to_string()))
     })?;
     let (done, seed, warnings) = Job::pooled(progress, threads).run(py, |stop| {

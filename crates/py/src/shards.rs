@@ -3,14 +3,11 @@
 use crate::columns::{copied, list, told as told_of};
 use crate::ensemble::all_copied;
 use crate::experiment::Experiment;
-use crate::failure::{Failed, of_path};
+use crate::failure::Failed;
 use crate::job::Job;
-use crate::sweep::{Asked, judges, representative};
-use hertzchain::arguments::{How as Options, parsed};
+use crate::sweep::{Asked, batch};
 use hertzchain::failure::Failure;
-use hertzchain::input;
-use hertzchain_sim::shards::ShardsError;
-use hertzchain_sim::{COLUMNS, How, RunError, Shard};
+use hertzchain_sim::{Batch, BatchResult, COLUMNS, Shard};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -19,53 +16,12 @@ use std::path::{Path, PathBuf};
 /// A sweep or an ensemble with everything that its numbers follow from.
 #[pyclass(frozen, module = "hertzchain._hertzchain")]
 pub struct Run {
-    inner: hertzchain_sim::Run,
+    inner: Batch,
     experiment: Experiment,
     speeds_m_s: Vec<f64>,
     names: Vec<String>,
     values: Vec<Vec<f64>>,
     asked: Asked,
-}
-
-fn refused(error: RunError) -> Failure {
-    match error {
-        RunError::Mistakes(mistakes) => (*mistakes).into(),
-        RunError::Number(error) => of_path(error),
-        other => Failure::User(other.to_string()),
-    }
-}
-
-fn failure(error: ShardsError) -> Failure {
-    match error {
-        ShardsError::Unwritable(error) => Failure::Ours(error.to_string()),
-        other => Failure::User(other.to_string()),
-    }
-}
-
-fn run(
-    experiment: &Experiment,
-    speeds_m_s: &[f64],
-    numbers: &[(String, Vec<f64>)],
-    asked: &Asked,
-) -> Result<hertzchain_sim::Run, Failure> {
-    let options: Options = parsed("sweep", &asked.options)?;
-    let plan = representative(experiment, &options)?;
-    let how = How {
-        accuracy: plan.accuracy,
-        solver: plan.solver,
-        duration_s: plan.duration_s,
-        pick: plan.pick,
-        rebound: asked.rebound,
-        checked: options.check,
-        judges: judges(&asked.judges)?,
-        set: input::instruction_set()?,
-    };
-    let whole = hertzchain_sim::Run::new(&experiment.inner, speeds_m_s.to_vec(), how);
-    numbers
-        .iter()
-        .try_fold(whole.map_err(refused)?, |run, (name, values)| {
-            run.with_number(name, values.clone()).map_err(refused)
-        })
 }
 
 #[pymethods]
@@ -83,7 +39,7 @@ impl Run {
         let speeds_m_s = copied(py, &speeds_m_s)?;
         let values = all_copied(py, &values)?;
         let numbers: Vec<_> = names.iter().cloned().zip(values.iter().cloned()).collect();
-        let inner = run(experiment, &speeds_m_s, &numbers, &asked);
+        let inner = batch(experiment, &speeds_m_s, &numbers, &asked);
         Ok(Self {
             inner: inner.map_err(Failed::from)?,
             experiment: experiment.clone(),
@@ -149,8 +105,8 @@ pub(crate) fn shard<'py>(
     let part = Shard::new(number, of);
     let part = part.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
     Job::pooled(progress, threads).run(py, |stop| {
-        let done = hertzchain_sim::shards::run(&run.inner, part, &folder, &|| stop.count(1));
-        Ok(done.map_err(failure)?.kept)
+        let done = run.inner.run_into(&folder, part, &|| stop.count(1));
+        Ok(done.map_err(Failure::from)?.stored)
     })
 }
 
@@ -158,7 +114,7 @@ pub(crate) fn shard<'py>(
 #[pyfunction]
 pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let whole = Job::alone().run(py, |_| {
-        hertzchain_sim::shards::gather(&[Path::new(&folder)]).map_err(failure)
+        BatchResult::gather(&[Path::new(&folder)]).map_err(Failure::from)
     })?;
     let columns = PyDict::new(py);
     for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {
@@ -172,6 +128,6 @@ pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'p
     let told = PyDict::new(py);
     told.set_item("columns", columns)?;
     told.set_item("errors", list(py, errors)?)?;
-    told.set_item("odd", told_of(whole.rows.odd))?;
+    told.set_item("odd", told_of(whole.rows.warnings))?;
     Ok(told)
 }

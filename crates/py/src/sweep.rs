@@ -8,9 +8,9 @@ use crate::json;
 use hertzchain::arguments::{How, parsed};
 use hertzchain::failure::Failure;
 use hertzchain::{input, json as results};
-use hertzchain_experiment::Experiment as Known;
 use hertzchain_sim::{
-    Column, Judges, Plan, Point, Rows, Settings, Tuned, parse_speeds, sweep_each,
+    Batch, BatchOptions, Calibration, Column, ErrorControl, Plan, Rows, Shard, StudyError,
+    parse_speeds,
 };
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -24,11 +24,12 @@ pub(crate) fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, Py
     Ok(list.into_pyarray(py))
 }
 
-/// Who judges, by name.
-pub(crate) fn judges(name: &str) -> Result<Judges, Failure> {
+/// How errors are controlled, by name.
+fn error_control(name: &str) -> Result<ErrorControl, Failure> {
     match name {
-        "each" => Ok(Judges::Each),
-        "pilots" => Ok(Judges::Pilots),
+        "each" | "per-shot" => Ok(ErrorControl::PerShot),
+        "pilots" | "calibrated" => Ok(ErrorControl::Calibrated),
+        "none" => Ok(ErrorControl::None),
         _ => Err(Failure::User(format!(
             "judges = {name:?}: expected \"each\" or \"pilots\""
         ))),
@@ -60,49 +61,37 @@ pub(crate) fn sweep<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let speeds_m_s = copied(py, &speeds_m_s)?;
-    let inner = &experiment.inner;
     let how: How = parsed("sweep", &asked.options).map_err(Failed::from)?;
-    let judges = judges(&asked.judges).map_err(Failed::from)?;
     let plan = representative(experiment, &how).map_err(Failed::from)?;
-    let set = input::instruction_set().map_err(Failed::from)?;
-    let swept = Job::pooled(progress, asked.threads).run(py, |stop| {
-        let settings = Settings {
-            adjust: &|plan| {
-                input::adjust(&how, plan);
-                plan.rebound = asked.rebound;
-            },
-            checked: how.check,
-            judges,
-            set,
-            progress: &|| stop.count(1),
-        };
-        Ok(Swept::of(inner, &speeds_m_s, &settings))
-    })?;
+    let batch = batch(experiment, &speeds_m_s, &[], &asked).map_err(Failed::from)?;
+    let swept = Job::pooled(progress, asked.threads)
+        .run(py, |stop| Ok(Swept::of(&batch, &|| stop.count(1))))?;
     swept.told(py, experiment, plan.accuracy)
 }
 
 /// A sweep as numbers: no shot of it is kept whole.
-#[derive(Default)]
 struct Swept {
     columns: Columns,
     rows: Rows,
     warnings: Vec<(usize, Vec<String>)>,
-    tuned: Option<Tuned>,
+    calibration: Option<Calibration>,
 }
 
 impl Swept {
-    fn of(experiment: &Known, speeds_m_s: &[f64], settings: &Settings<'_>) -> Self {
-        let mut swept = Self::default();
-        let tuned = sweep_each(experiment, speeds_m_s, settings, |point| swept.take(point));
-        Self { tuned, ..swept }
-    }
-
-    fn take(&mut self, point: Point) {
-        let place = self.rows.len();
-        self.rows.add(place, &point);
-        self.columns.push(point.shot.as_ref().ok());
-        if !point.warnings.is_empty() {
-            self.warnings.push((place, point.warnings));
+    fn of(batch: &Batch, progress: &(dyn Fn() + Sync)) -> Self {
+        let mut columns = Columns::default();
+        let mut warnings = Vec::new();
+        let (result, calibration) = batch.run_each(Shard::WHOLE, progress, |point| {
+            columns.push(point.shot.as_ref().ok());
+            if !point.warnings.is_empty() {
+                warnings.push((point.place, point.warnings));
+            }
+        });
+        Self {
+            columns,
+            rows: result.rows,
+            warnings,
+            calibration,
         }
     }
 
@@ -114,7 +103,7 @@ impl Swept {
     ) -> PyResult<Bound<'py, PyDict>> {
         let laws = [Column::Incident, Column::Reflected].map(|of| self.rows.law(of, accuracy));
         let through = laws.each_ref().map(|(law, least)| (law, least.clone()));
-        let found = results::outline(&experiment.inner, self.tuned, through);
+        let found = results::outline(&experiment.inner, self.calibration, through);
         let told = json::object(py, &found)?.cast_into::<PyDict>()?;
         let [speeds_m_s, ..] = self.rows.columns;
         told.set_item("speed_m_s", speeds_m_s.into_pyarray(py))?;
@@ -124,6 +113,33 @@ impl Swept {
         told.set_item("warnings", list(py, self.warnings)?)?;
         Ok(told)
     }
+}
+
+/// A batch of speeds and named numbers, one value a speed.
+pub(crate) fn batch(
+    experiment: &Experiment,
+    speeds_m_s: &[f64],
+    numbers: &[(String, Vec<f64>)],
+    asked: &Asked,
+) -> Result<Batch, Failure> {
+    let how: How = parsed("sweep", &asked.options)?;
+    let plan = representative(experiment, &how)?;
+    let options = BatchOptions {
+        accuracy: plan.accuracy,
+        solver: plan.solver,
+        duration_s: plan.duration_s,
+        pick: plan.pick,
+        rebound: asked.rebound,
+        checked: how.check,
+        error_control: error_control(&asked.judges)?,
+        set: input::instruction_set()?,
+    };
+    let batch = Batch::new(&experiment.inner, speeds_m_s.to_vec(), options)?;
+    let with = |batch: Batch, (name, values): &(String, Vec<f64>)| {
+        batch.with_number(name, values.clone())
+    };
+    let batch: Result<Batch, StudyError> = numbers.iter().try_fold(batch, with);
+    Ok(batch?)
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.

@@ -3,7 +3,7 @@
 //! machine, one process a core to see what workers take from each other.
 
 use hertzchain_experiment::preset;
-use hertzchain_sim::{How, Run, Shard};
+use hertzchain_sim::{Batch, BatchOptions, Shard};
 use std::error::Error;
 use std::fs;
 use std::time::Instant;
@@ -21,21 +21,21 @@ fn cost() -> Result<(), Box<dyn Error + Send + Sync>> {
     let folder = std::env::temp_dir().join(format!("hertzchain-cost-{}", std::process::id()));
     for shots in [0_usize, 100, 1000, 4000] {
         let speeds = (0..shots).map(|i| 0.1 + 1.1 * i as f64 / shots as f64);
-        let how = How {
+        let options = BatchOptions {
             accuracy: 1e-5,
-            ..How::of(&dry)
+            ..BatchOptions::of(&dry)
         };
-        let run = Run::new(&dry, speeds.collect(), how)?;
+        let batch = Batch::new(&dry, speeds.collect(), options)?;
         let (mut all, mut shooting) = (f64::INFINITY, f64::INFINITY);
         let mut bytes = 0;
         let times = if shots > 100 { 1 } else { TIMES };
         for _ in 0..times {
             let begun = Instant::now();
-            let part = run.part(Shard::WHOLE, &|| {});
+            let part = batch.run(Shard::WHOLE, &|| {});
             shooting = shooting.min(begun.elapsed().as_secs_f64());
             assert_eq!(part.rows.len(), shots);
             let begun = Instant::now();
-            let done = hertzchain_sim::shards::run(&run, Shard::WHOLE, &folder, &|| {})?;
+            let done = batch.run_into(&folder, Shard::WHOLE, &|| {})?;
             all = all.min(begun.elapsed().as_secs_f64());
             bytes = fs::metadata(&done.path)?.len();
             fs::remove_file(&done.path)?;

@@ -10,11 +10,14 @@
 //! ```
 
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_sim::{InstructionSet, Plan, piece, shoot_all};
+use hertzchain_sim::{Control, InstructionSet, Plan, run_plans};
 use rayon::prelude::*;
 use std::error::Error;
 use std::io::{Write, stdin, stdout};
 use std::time::Instant;
+
+/// Plans in memory at a time.
+const PIECE: usize = 1024;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -47,9 +50,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _line in stdin().lines() {
         let begun = Instant::now();
         let mut sum_s = 0.0;
-        for part in rows.chunks(piece()) {
+        for part in rows.chunks(PIECE) {
             let plans: Result<Vec<Plan>, String> = part.par_iter().map(|at| plan(*at)).collect();
-            for shot in shoot_all(&plans?, InstructionSet::default(), false, &|| {}) {
+            for shot in run_plans(&plans?, Control::PerShot { checked: false }, InstructionSet::default(), &|| {}) {
                 sum_s += shot?.flight.map_or(0.0, |flight| flight.incident_s);
             }
         }

@@ -171,14 +171,6 @@ pub fn adaptive(tolerance: f64) -> Box<dyn Method> {
     Box::new(DormandPrince { tolerance })
 }
 
-/// A fixed-step solver and its step in s; `None` for the adaptive one.
-pub(crate) fn given_step(solver: Solver) -> Option<f64> {
-    match solver {
-        Solver::Adaptive => None,
-        Solver::Rk4 { step_s } | Solver::Verlet { step_s } => step_s,
-    }
-}
-
 /// The step in s that a search for a fixed step begins with.
 pub(crate) fn first_step_s(system: &System) -> f64 {
     FIRST_STEP * system.scales().time_s

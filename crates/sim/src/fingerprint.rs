@@ -1,9 +1,7 @@
 //! Names of work: a hash of everything that a result follows from.
 
-use crate::commit;
 use sha2::{Digest, Sha256};
 use std::fmt::{Debug, Display, Formatter, Result as Formatted};
-use std::str::FromStr;
 
 /// SHA-256 of all inputs of a result. Work of one fingerprint gives one result,
 /// wherever it runs; its text is 64 hexadecimal digits.
@@ -18,6 +16,18 @@ impl Fingerprint {
     #[must_use]
     pub fn short(&self) -> String {
         self.to_string().chars().take(SHORT).collect()
+    }
+
+    /// The fingerprint that 64 hexadecimal digits write.
+    #[must_use]
+    pub fn from_hex(text: &str) -> Option<Self> {
+        let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
+        let pairs = digits.as_ref()?.chunks(2);
+        let bytes: Vec<u8> = pairs
+            .map(|pair| (16 * pair[0] + pair.get(1).unwrap_or(&0)) as u8)
+            .collect();
+        let whole = text.len() == 64;
+        bytes.try_into().ok().filter(|_| whole).map(Self)
     }
 
     /// Of the bytes of a result, to see that it is whole.
@@ -36,28 +46,6 @@ impl Display for Fingerprint {
 impl Debug for Fingerprint {
     fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
         write!(f, "Fingerprint({self})")
-    }
-}
-
-/// A text that is no fingerprint.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no fingerprint: expected 64 hexadecimal digits")]
-pub struct NoFingerprint(String);
-
-impl FromStr for Fingerprint {
-    type Err = NoFingerprint;
-
-    fn from_str(text: &str) -> Result<Self, NoFingerprint> {
-        let refused = || NoFingerprint(text.to_owned());
-        let digits: Vec<u32> = text.chars().filter_map(|c| c.to_digit(16)).collect();
-        if digits.len() != 64 || text.chars().count() != 64 {
-            return Err(refused());
-        }
-        let pairs = digits
-            .chunks_exact(2)
-            .map(|pair| (16 * pair[0] + pair[1]) as u8);
-        let bytes: Vec<u8> = pairs.collect();
-        bytes.try_into().map(Self).map_err(|_| refused())
     }
 }
 
@@ -117,6 +105,13 @@ impl Inputs {
         }
         self
     }
+}
+
+/// The commit that was built and whether its files had been changed; `None`
+/// when built outside a checkout.
+#[must_use]
+pub fn commit() -> Option<String> {
+    option_env!("HERTZCHAIN_COMMIT").map(str::to_owned)
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! What is done with chains: shots, sweeps over speed, shards, descriptions, and a virtual
-//! rig with its campaigns.
+//! Shots, batches of shots and their shards, descriptions of chains, and a virtual rig with
+//! its campaigns.
 //!
 //! A [`Plan`] says which chain, watched where, how accurately; [`shoot`] runs
 //! it and returns a [`Shot`]: times of flight, peaks, rebound, energy budget.
@@ -15,50 +15,39 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod rig;
-pub mod shards;
-
 pub mod accuracy;
-mod commit;
+pub mod rig;
+
+mod batch;
 mod describe;
 mod duration;
-mod ensemble;
+mod engine;
 mod error;
 mod fingerprint;
-mod flight;
 mod following;
-mod gun;
 mod long_work;
 mod other_picks;
 mod plan;
-mod rows;
-mod run;
-mod several;
+mod prepared;
+mod result;
 mod shard;
 mod shot;
 mod speeds;
 mod stop;
-mod sweep;
-mod tuned;
 
-pub use commit::commit;
+pub use batch::{Batch, BatchOptions, BatchResult, BatchShot, ErrorControl};
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use ensemble::{JUDGES, shoot_all, shoot_tuned, shoot_unjudged};
+pub use engine::{Calibration, Control, LONGER_STEPS, run_plans};
 pub use error::StudyError;
-pub use fingerprint::{Fingerprint, Inputs, NoFingerprint};
-pub use flight::Flight;
+pub use fingerprint::{Fingerprint, Inputs, commit};
 pub use hertzchain_chain::InstructionSet;
 pub use long_work::Expected;
-pub use plan::{Pick, Plan, Solver, Watch};
-pub use rows::{COLUMNS, Column, Failed, Law, Odd, Rows};
-pub use run::{How, Part, Run, RunError};
-pub use several::{parted, piece};
-pub use shard::{Shard, ShardError};
-pub use shot::{OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated};
-pub use speeds::{MOST_SPEEDS, SpeedError, parse_speed, parse_speeds, parse_time};
+pub use plan::{Pick, Plan, PreparedChain, Solver, Watch};
+pub use result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary};
+pub use shard::{Shard, StoredShard};
+pub use shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated};
+pub use speeds::{parse_speed, parse_speeds, parse_time};
 pub use stop::{Stop, count_done, note_progress, stopped};
-pub use sweep::{Judges, Point, PointError, Settings, Sweep, sweep, sweep_each};
-pub use tuned::{PILOTS, Tuned};
 
 /// The README's example, compiled and run with the tests.
 #[cfg(doctest)]

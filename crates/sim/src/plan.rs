@@ -1,11 +1,15 @@
 //! What is to be computed.
 
 use crate::error::StudyError;
-use hertzchain_chain::{Chain, Sensor};
+use hertzchain_chain::{Chain, ChainError, Sensor, System};
 use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Warning};
+use serde::{Deserialize, Serialize};
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, OnceLock};
 
 /// How the motion is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Solver {
     /// Dormand–Prince 5(4) with steps that end at contact changes.
     #[default]
@@ -22,6 +26,16 @@ pub enum Solver {
     },
 }
 
+impl Solver {
+    /// The step of a fixed-step method in s, if it is given.
+    pub(crate) fn step_s(self) -> Option<f64> {
+        match self {
+            Self::Adaptive => None,
+            Self::Rk4 { step_s } | Self::Verlet { step_s } => step_s,
+        }
+    }
+}
+
 impl From<experiment::Solver> for Solver {
     fn from(asked: experiment::Solver) -> Self {
         let step_s = asked.step_s;
@@ -34,7 +48,8 @@ impl From<experiment::Solver> for Solver {
 }
 
 /// Where a pulse is timed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Pick {
     /// At its maximum.
     #[default]
@@ -75,11 +90,52 @@ pub struct Watch {
     pub interval_s: Option<f64>,
 }
 
+/// A chain, and its system in static equilibrium, which is computed once, when it is first
+/// asked for, and anew after a change of the chain.
+#[derive(Clone, Debug)]
+pub struct PreparedChain {
+    chain: Chain,
+    system: OnceLock<Result<Arc<System>, ChainError>>,
+}
+
+impl PreparedChain {
+    /// The chain at rest.
+    ///
+    /// # Errors
+    /// A chain that can't be set up.
+    pub fn system(&self) -> Result<Arc<System>, ChainError> {
+        let system = || Ok(Arc::new(System::new(&self.chain)?));
+        self.system.get_or_init(system).clone()
+    }
+}
+
+impl From<Chain> for PreparedChain {
+    fn from(chain: Chain) -> Self {
+        let system = OnceLock::new();
+        Self { chain, system }
+    }
+}
+
+impl Deref for PreparedChain {
+    type Target = Chain;
+
+    fn deref(&self) -> &Chain {
+        &self.chain
+    }
+}
+
+impl DerefMut for PreparedChain {
+    fn deref_mut(&mut self) -> &mut Chain {
+        self.system.take();
+        &mut self.chain
+    }
+}
+
 /// One shot to be computed.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The chain with whatever sets it in motion.
-    pub chain: Chain,
+    pub chain: PreparedChain,
     /// Bead whose signal times the passing pulses.
     pub sensor_bead: usize,
     /// Relative accuracy asked of times of flight.
@@ -91,7 +147,7 @@ pub struct Plan {
     /// fly apart.
     pub duration_s: Option<f64>,
     /// Follow the striker until it is away for good; without, a shot ends once
-    /// the reflected pulse has passed and tells no rebound.
+    /// the reflected pulse has passed and reports no rebound.
     pub rebound: bool,
     /// Where pulses are timed.
     pub pick: Pick,
@@ -109,7 +165,7 @@ impl Plan {
     #[must_use]
     pub fn new(chain: Chain, sensor_bead: usize) -> Self {
         Self {
-            chain,
+            chain: chain.into(),
             sensor_bead,
             accuracy: experiment::Solver::DEFAULT_ACCURACY,
             solver: Solver::Adaptive,
@@ -132,16 +188,16 @@ impl Plan {
         speed_m_s: Option<f64>,
     ) -> Result<(Self, Vec<Warning>), Mistakes> {
         // What the physics refuses is reported at its place in the file.
-        let (_, warnings) = experiment.system(speed_m_s)?;
-        let (chain, _) = experiment.chain(speed_m_s)?;
+        let (chain, system, warnings) = experiment.chain_and_system(speed_m_s)?;
         let asked = experiment.solver();
-        let plan = Self {
+        let mut plan = Self {
             accuracy: asked.accuracy,
             solver: asked.into(),
             duration_s: asked.duration_s,
             pick: experiment.pick().into(),
             ..Self::new(chain, experiment.sensor_bead())
         };
+        plan.chain.system = Ok(Arc::new(system)).into();
         Ok((plan, warnings))
     }
 
@@ -195,18 +251,18 @@ impl Plan {
     pub(crate) fn check(&self) -> Result<(), StudyError> {
         let beads = self.chain.beads.len();
         if !(1..=beads).contains(&self.sensor_bead) {
-            return Err(StudyError::SensorOutside {
-                bead: self.sensor_bead,
-                beads,
-            });
+            return refused(format!(
+                "sensor bead {} is outside the chain of {beads} beads",
+                self.sensor_bead
+            ));
         }
         if !(1e-13..=1e-2).contains(&self.accuracy) {
-            return Err(StudyError::Accuracy(self.accuracy));
+            return refused(format!(
+                "an accuracy of {} makes no sense; expected a number between 1e-13 and 1e-2",
+                self.accuracy
+            ));
         }
-        let step = match self.solver {
-            Solver::Adaptive => None,
-            Solver::Rk4 { step_s } | Solver::Verlet { step_s } => step_s,
-        };
+        let step = self.solver.step_s();
         positive("the step", step)?;
         positive("the duration", self.duration_s)?;
         let interval = self.watch.as_ref().and_then(|watch| watch.interval_s);
@@ -214,9 +270,15 @@ impl Plan {
     }
 }
 
-fn positive(what: &'static str, time_s: Option<f64>) -> Result<(), StudyError> {
+fn refused(why: String) -> Result<(), StudyError> {
+    Err(StudyError::Refused(why))
+}
+
+fn positive(what: &str, time_s: Option<f64>) -> Result<(), StudyError> {
     match time_s {
-        Some(value) if !(value > 0.0 && value.is_finite()) => Err(StudyError::Time { what, value }),
+        Some(value) if !(value > 0.0 && value.is_finite()) => {
+            refused(format!("{what} = {value} s must be positive and finite"))
+        }
         _ => Ok(()),
     }
 }

@@ -1,12 +1,23 @@
 //! One shot from its plan to its numbers.
 
 use crate::error::StudyError;
-use crate::flight::{Flight, relative};
-use crate::gun::{Check, Gun};
 use crate::other_picks::OtherPick;
-use crate::plan::Plan;
-use hertzchain_chain::observe::{Competing, Maximum, Passage, PassageError, Pulse, Trace};
+use crate::plan::{Pick, Plan};
+use crate::prepared::{Check, PreparedShot};
+use hertzchain_chain::observe::{
+    Competing, Maximum, Passage, PassageError, Passages, Pulse, Signal, Trace,
+};
 use hertzchain_chain::wave::{Budget, Work};
+use hertzchain_measure::signal::delay_by_cross_correlation;
+
+/// How long the pulse took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// Incident time of flight in s: from the sensor bead to the wall.
+    pub incident_s: f64,
+    /// Reflected time of flight in s: from the wall back to the sensor bead.
+    pub reflected_s: Option<f64>,
+}
 
 /// The striker's velocity after the impact, negative away from the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +82,40 @@ pub struct Shot {
 }
 
 impl Shot {
+    /// The pulses as a plan picks them, from what its sensors showed.
+    pub(crate) fn picked(
+        plan: &Plan,
+        seen: &Passages,
+        passage: Result<Passage, PassageError>,
+        duration_s: f64,
+        solver: &str,
+    ) -> Self {
+        let passed = passage.as_ref().ok();
+        let picked = |pick| Flight::picked(pick, seen, passed?);
+        let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;
+        Self {
+            flight: picked(plan.pick),
+            compared: plan.compare.iter().map(|&pick| picked(pick)).collect(),
+            sensor_maxima: reported(seen.sensor().maxima()),
+            pulse_speed_beads_s: passed.map(|passage| between / passage.tof_incident_s()),
+            passage,
+            rebound: None,
+            budget: None,
+            trace: None,
+            duration_s,
+            finished: true,
+            velocity_m_s: Vec::new(),
+            work: Work::default(),
+            accuracy_asked: plan.accuracy,
+            accuracy_reached: None,
+            solver: solver.to_owned(),
+            tolerance: None,
+            step_s: None,
+            other_picks: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
     /// The wall's peak, with or without an incident one.
     #[must_use]
     pub fn wall(&self) -> Option<Maximum> {
@@ -160,7 +205,7 @@ fn velocity_change(one: &[f64], two: &[f64]) -> f64 {
 /// # Errors
 /// See [`StudyError`].
 pub fn shoot(plan: &Plan) -> Result<Shot, StudyError> {
-    Gun::load(plan)?.shoot(Check::Unchecked)
+    PreparedShot::new(plan)?.run(Check::Unchecked)
 }
 
 /// Runs a shot with an estimate of its error.
@@ -173,7 +218,7 @@ pub fn shoot(plan: &Plan) -> Result<Shot, StudyError> {
 /// # Errors
 /// See [`StudyError`].
 pub fn shoot_estimated(plan: &Plan) -> Result<Shot, StudyError> {
-    Gun::load(plan)?.shoot(Check::Estimated)
+    PreparedShot::new(plan)?.run(Check::Estimated)
 }
 
 /// Runs a shot and again at a tenth and a hundredth of the tolerance (or at half the
@@ -182,7 +227,7 @@ pub fn shoot_estimated(plan: &Plan) -> Result<Shot, StudyError> {
 /// # Errors
 /// See [`StudyError`].
 pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
-    Gun::load(plan)?.shoot(Check::Again)
+    PreparedShot::new(plan)?.run(Check::Again)
 }
 
 /// Errors of peaks over the accuracy asked of times, at most.
@@ -218,8 +263,77 @@ pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
 }
 
 /// Maxima above 5 % of the largest.
-pub(crate) fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
+fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
     let most = highest(maxima).map_or(0.0, |peak| peak.value);
     let large = |peak: &&Maximum| most > 0.0 && peak.value >= 0.05 * most;
     maxima.iter().filter(large).copied().collect()
+}
+
+/// Pulses are correlated over this many incident widths to either side.
+const WIDTHS: f64 = 2.0;
+
+/// Samples in one incident width.
+const SAMPLES: f64 = 100.0;
+
+impl Flight {
+    /// Picked from a passage.
+    fn picked(pick: Pick, seen: &Passages, passage: &Passage) -> Option<Self> {
+        match pick {
+            Pick::Peak => Some(Self {
+                incident_s: passage.tof_incident_s(),
+                reflected_s: passage.tof_reflected_s(),
+            }),
+            Pick::Flank(fraction) => {
+                let [sensor, wall, back] = seen.flanks(passage, fraction);
+                let wall = wall?;
+                Some(Self {
+                    incident_s: wall - sensor?,
+                    reflected_s: back.map(|back| back - wall),
+                })
+            }
+            Pick::CrossCorrelation => correlated(seen, passage),
+        }
+    }
+
+    /// Largest relative difference of two flights; infinite if only one has a
+    /// reflected pulse.
+    #[must_use]
+    pub fn change(&self, other: &Self) -> f64 {
+        let incident = relative(self.incident_s, other.incident_s);
+        match (self.reflected_s, other.reflected_s) {
+            (Some(one), Some(two)) => incident.max(relative(one, two)),
+            (None, None) => incident,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+fn relative(one: f64, two: f64) -> f64 {
+    if one == two {
+        0.0
+    } else {
+        ((one - two) / two).abs()
+    }
+}
+
+fn correlated(seen: &Passages, passage: &Passage) -> Option<Flight> {
+    let width = passage.incident_width_s?;
+    let incident = sampled(seen.sensor(), passage.incident.time_s, width);
+    let wall = sampled(seen.wall(), passage.wall.time_s, width);
+    let lag = |one: &[f64], two: &[f64]| delay_by_cross_correlation(one, two, width / SAMPLES);
+    let reflected_s = passage.reflected.and_then(|peak| {
+        let back = sampled(seen.sensor(), peak.time_s, width);
+        Some(peak.time_s - passage.wall.time_s + lag(&wall, &back)?)
+    });
+    Some(Flight {
+        incident_s: passage.tof_incident_s() + lag(&incident, &wall)?,
+        reflected_s,
+    })
+}
+
+/// A signal around a time, which is the middle sample.
+fn sampled(signal: &Signal, middle_s: f64, width_s: f64) -> Vec<f64> {
+    let half = (WIDTHS * SAMPLES) as i32;
+    let at = |i: i32| signal.at(middle_s + f64::from(i) * width_s / SAMPLES);
+    (-half..=half).map(at).collect()
 }

@@ -1,102 +1,61 @@
-//! Lists of speeds as a user writes them.
+//! Speeds, times and lists of speeds as a user writes them.
 
-use hertzchain_experiment::units::{UnitError, parse_quantity, parse_unit};
+use crate::error::StudyError;
+use hertzchain_experiment::units::{parse_quantity, parse_unit};
 
 /// Most speeds in one sweep.
-pub const MOST_SPEEDS: usize = 100_000;
+const MOST_SPEEDS: usize = 100_000;
 
-/// What is wrong with a speed or a list of speeds.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SpeedError {
-    /// Not a number with a unit.
-    #[error("`{text}`: {error}; expected a number with a unit, such as \"0.5 m/s\"")]
-    Unit {
-        /// The text.
-        text: String,
-        /// What is wrong with it.
-        error: UnitError,
-    },
-    /// Another quantity.
-    #[error("`{text}` is {found}, not a speed such as 0.5 or \"0.5 m/s\"")]
-    NotASpeed {
-        /// The text.
-        text: String,
-        /// What it is.
-        found: String,
-    },
-    /// Another quantity than a time.
-    #[error("`{text}` is {found}, not a time such as \"2 ms\"")]
-    NotATime {
-        /// The text.
-        text: String,
-        /// What it is.
-        found: String,
-    },
-    /// Time that does not pass.
-    #[error("a time of {0} s is not positive")]
-    TimeNotPositive(f64),
-    /// Nothing moves, or backward.
-    #[error("a speed of {0} m/s is not positive")]
-    NotPositive(f64),
-    /// A range that is none.
-    #[error(
-        "`{0}` is not a range; expected FROM:TO:COUNT, such as 0.075:1.23:25 or log:0.075:1.23:25"
-    )]
-    Range(String),
-    /// Too few or too many points in a range.
-    #[error("a range has from 2 to {MOST_SPEEDS} speeds, not {0}")]
-    Count(String),
+fn refused<T>(why: String) -> Result<T, StudyError> {
+    Err(StudyError::Refused(why))
 }
 
 /// A speed in m/s from "0.5", "0.5 m/s" or "500 mm/s".
 ///
 /// # Errors
-/// See [`SpeedError`].
-pub fn parse_speed(text: &str) -> Result<f64, SpeedError> {
-    let text = text.trim();
-    let given = |error| SpeedError::Unit {
-        text: text.to_owned(),
-        error,
-    };
-    let quantity = parse_quantity(text).map_err(given)?;
-    let plain = parse_unit("1").is_ok_and(|one| quantity.dimension.agrees_with(&one.dimension));
-    let speed = parse_unit("m/s").is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension));
-    if !plain && !speed {
-        return Err(SpeedError::NotASpeed {
-            text: text.to_owned(),
-            found: quantity.dimension.name(),
-        });
-    }
-    if quantity.value > 0.0 {
-        Ok(quantity.value)
-    } else {
-        Err(SpeedError::NotPositive(quantity.value))
+/// What is wrong with the text.
+pub fn parse_speed(text: &str) -> Result<f64, StudyError> {
+    let expected = ("a number with a unit", "a speed such as 0.5 or \"0.5 m/s\"");
+    let speed = parse_plain_or(text, "m/s", "\"0.5 m/s\"", expected)?;
+    match speed > 0.0 {
+        true => Ok(speed),
+        false => refused(format!("a speed of {speed} m/s is not positive")),
     }
 }
 
 /// A time in s from "1e-3", "2 ms" or "1 us".
 ///
 /// # Errors
-/// See [`SpeedError`].
-pub fn parse_time(text: &str) -> Result<f64, SpeedError> {
-    let given = |error| SpeedError::Unit {
-        text: text.to_owned(),
-        error,
-    };
-    let quantity = parse_quantity(text.trim()).map_err(given)?;
+/// What is wrong with the text.
+pub fn parse_time(text: &str) -> Result<f64, StudyError> {
+    let expected = ("a time", "a time such as \"2 ms\"");
+    let time = parse_plain_or(text, "s", "\"2 ms\"", expected)?;
+    match time > 0.0 {
+        true => Ok(time),
+        false => refused(format!("a time of {time} s is not positive")),
+    }
+}
+
+/// A quantity without a unit or with one of the dimension of `unit`.
+fn parse_plain_or(
+    text: &str,
+    unit: &str,
+    example: &str,
+    (expected, quantity_expected): (&str, &str),
+) -> Result<f64, StudyError> {
+    let text = text.trim();
+    let quantity = parse_quantity(text).or_else(|error| {
+        refused(format!("`{text}`: {error}; expected {expected}, such as {example}"))
+    })?;
     let fits = |unit: &str| {
         parse_unit(unit).is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension))
     };
-    if !fits("1") && !fits("s") {
-        return Err(SpeedError::NotATime {
-            text: text.to_owned(),
-            found: quantity.dimension.name(),
-        });
-    }
-    if quantity.value > 0.0 {
-        Ok(quantity.value)
-    } else {
-        Err(SpeedError::TimeNotPositive(quantity.value))
+    match fits("1") || fits(unit) {
+        true => Ok(quantity.value),
+        false => refused(format!(
+            "`{text}` is {}, not {quantity_expected}",
+            quantity.dimension.name()
+        )),
     }
 }
 
@@ -104,27 +63,28 @@ pub fn parse_time(text: &str) -> Result<f64, SpeedError> {
 /// "log:0.075:1.23:25" (equal ratios); members of a list may be ranges.
 ///
 /// # Errors
-/// See [`SpeedError`].
-pub fn parse_speeds(text: &str) -> Result<Vec<f64>, SpeedError> {
+/// What is wrong with the text.
+pub fn parse_speeds(text: &str) -> Result<Vec<f64>, StudyError> {
     let mut speeds = Vec::new();
     for member in text.split(',') {
-        if member.contains(':') {
-            speeds.extend(range(member.trim())?);
-        } else {
-            speeds.push(parse_speed(member)?);
+        match member.contains(':') {
+            true => speeds.extend(range(member.trim())?),
+            false => speeds.push(parse_speed(member)?),
         }
     }
     Ok(speeds)
 }
 
-fn range(text: &str) -> Result<Vec<f64>, SpeedError> {
+fn range(text: &str) -> Result<Vec<f64>, StudyError> {
     let (logarithmic, ends) = match text.strip_prefix("log:") {
         Some(ends) => (true, ends),
         None => (false, text),
     };
     let parts: Vec<&str> = ends.split(':').collect();
     let &[from, to, count] = parts.as_slice() else {
-        return Err(SpeedError::Range(text.to_owned()));
+        return refused(format!(
+            "`{text}` is not a range; expected FROM:TO:COUNT, such as 0.075:1.23:25 or log:0.075:1.23:25"
+        ));
     };
     let (from, to) = (parse_speed(from)?, parse_speed(to)?);
     let points = count
@@ -132,7 +92,12 @@ fn range(text: &str) -> Result<Vec<f64>, SpeedError> {
         .parse()
         .ok()
         .filter(|n| (2..=MOST_SPEEDS).contains(n));
-    let count = points.ok_or_else(|| SpeedError::Count(count.trim().to_owned()))?;
+    let Some(count) = points else {
+        return refused(format!(
+            "a range has from 2 to {MOST_SPEEDS} speeds, not {}",
+            count.trim()
+        ));
+    };
     let between = |share: f64| match logarithmic {
         true => from * (to / from).powf(share),
         false => from + (to - from) * share,

@@ -5,7 +5,7 @@ use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::{PassageError, Pulse};
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::{
-    InstructionSet, Plan, Shot, Solver, shoot, shoot_all, shoot_estimated, shoot_unjudged,
+    Control, InstructionSet, Plan, Shot, Solver, run_plans, shoot, shoot_estimated,
 };
 
 fn plan(text: &str) -> Plan {
@@ -23,7 +23,7 @@ fn row(beads: usize, striker_kg: f64) -> Plan {
 
 fn swept(plan: &Plan) -> Shot {
     let plans = [plan.clone().for_flights()];
-    let mut shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+    let mut shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.remove(0).unwrap()
 }
 
@@ -273,7 +273,7 @@ fn a_maximum_that_hardly_rises_is_found_or_called_uncertain_at_any_accuracy() {
     for accuracy in [1e-3, 1e-5] {
         let at = |plan: &Plan| [plan.clone().with_accuracy(accuracy)];
         let estimated = shoot_estimated(&at(&plan)[0].clone().with_budget());
-        let fit = shoot_unjudged(&at(&flights), InstructionSet::default()).remove(0);
+        let fit = run_plans(&at(&flights), Control::None, InstructionSet::default(), &|| {}).remove(0);
         for shot in [estimated, Ok(swept(&at(&flights)[0])), fit] {
             let shot = shot.unwrap();
             let back_s = shot.flight.unwrap().reflected_s.unwrap();
@@ -303,7 +303,7 @@ fn a_batch_reports_no_return_as_absent_that_the_wave_loop_sees() {
     let right = shoot(&plan.with_accuracy(1e-9)).unwrap().flight.unwrap();
     for accuracy in [1e-3, 1e-5] {
         let plans = [flights.clone().with_accuracy(accuracy)];
-        let fit = shoot_unjudged(&plans, InstructionSet::default()).remove(0);
+        let fit = run_plans(&plans, Control::None, InstructionSet::default(), &|| {}).remove(0);
         for shot in [swept(&plans[0]), fit.unwrap()] {
             let change = shot.flight.unwrap().change(&right);
             assert!(change <= accuracy, "{accuracy:e}: {change:e}");

@@ -2,7 +2,7 @@
 
 use crate::CASES;
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_sim::{InstructionSet, Plan, Shot, shoot, shoot_all, shoot_unjudged};
+use hertzchain_sim::{Control, InstructionSet, Plan, Shot, run_plans, shoot};
 
 fn plans(name: &str, speeds_m_s: &[f64], accuracy: f64) -> Vec<Plan> {
     let experiment = preset(name).unwrap();
@@ -14,7 +14,7 @@ fn plans(name: &str, speeds_m_s: &[f64], accuracy: f64) -> Vec<Plan> {
 }
 
 fn fly(plans: &[Plan]) -> Vec<Shot> {
-    let shots = shoot_all(plans, InstructionSet::default(), false, &|| {});
+    let shots = run_plans(plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.into_iter().map(Result::unwrap).collect()
 }
 
@@ -116,7 +116,7 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
     let mut plans = plans("dry", &[0.3, 0.4, 0.5], 1e-5);
     let exact = fly(&plans);
     plans[1].sensor_bead = 99;
-    let shots = shoot_all(&plans, InstructionSet::default(), false, &|| {});
+    let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     assert!(shots[1].is_err());
     for at in [0, 2] {
         assert_eq!(shots[at].as_ref().unwrap(), &exact[at]);
@@ -126,7 +126,7 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
 #[test]
 fn a_checked_ensemble_tells_the_accuracy_it_reached() {
     let plans = plans("gear", &SPEEDS, 1e-6);
-    for shot in shoot_all(&plans, InstructionSet::default(), true, &|| {}) {
+    for shot in run_plans(&plans, Control::PerShot { checked: true }, InstructionSet::default(), &|| {}) {
         assert!(shot.unwrap().accuracy_reached.unwrap() <= 1e-6);
     }
 }
@@ -211,7 +211,7 @@ fn over_a_thousand_random_rows_no_error_is_twice_the_accuracy_asked() {
         .map(|plan| plan.clone().with_accuracy(1e-8))
         .collect();
     // Below what equal steps reach: the wave loop computes these once.
-    let exact = shoot_unjudged(&tight, InstructionSet::default());
+    let exact = run_plans(&tight, Control::None, InstructionSet::default(), &|| {});
     let shots = fly(&plans);
     for ((plan, shot), exact) in plans.iter().zip(&shots).zip(exact) {
         let exact = exact.unwrap();

@@ -251,7 +251,7 @@ fn newtons_cradle_does_not_send_one_ball_alone() {
     // The first collision alone: threads do nothing within its milliseconds.
     let chain = Chain {
         suspension_m: None,
-        ..plan.chain
+        ..(*plan.chain).clone()
     };
     let Start::Striker { speed_m_s, .. } = chain.start else {
         panic!("a ball falls")

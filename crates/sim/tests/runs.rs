@@ -1,7 +1,7 @@
 //! Sweeps in parts: what a part is does not depend on how the whole is cut.
 
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_sim::{How, Judges, Rows, Run, Settings, Shard, parse_speeds, sweep};
+use hertzchain_sim::{Batch, BatchOptions, ErrorControl, Rows, Shard, parse_speeds};
 
 /// Forty beads take a while: twelve do.
 fn row(name: &str) -> Experiment {
@@ -9,10 +9,10 @@ fn row(name: &str) -> Experiment {
     experiment.set(&[("beads[0].count", 12.0)]).unwrap()
 }
 
-fn how(experiment: &Experiment, judges: Judges) -> How {
-    How {
-        judges,
-        ..How::of(experiment)
+fn options(experiment: &Experiment, error_control: ErrorControl) -> BatchOptions {
+    BatchOptions {
+        error_control,
+        ..BatchOptions::of(experiment)
     }
 }
 
@@ -21,70 +21,73 @@ fn bits(rows: &Rows) -> Vec<u64> {
     values.map(|value| value.to_bits()).collect()
 }
 
-fn cut(run: &Run, of: usize) -> Rows {
+fn cut(batch: &Batch, of: usize) -> Rows {
     // The last part first: the order does not matter either.
     let mut parts: Vec<Rows> = Shard::all(of)
         .collect::<Vec<_>>()
         .into_iter()
         .rev()
-        .map(|shard| run.part(shard, &|| {}).rows)
+        .map(|shard| batch.run(shard, &|| {}).rows)
         .collect();
     parts.reverse();
     Rows::dealt(&parts)
 }
 
 #[test]
-fn parts_have_the_bits_of_the_sweep_whoever_judges() {
+fn shards_have_the_bits_of_the_batch_however_errors_are_controlled() {
     let dry = row("dry");
     let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
-    for judges in [Judges::Each, Judges::Pilots] {
-        let settings = Settings {
-            adjust: &|plan| plan.rebound = false,
-            judges,
-            ..Settings::default()
-        };
-        let swept = sweep(&dry, &speeds, &settings);
-        let whole = Rows::of(&swept.points);
-        let run = Run::new(&dry, speeds.clone(), how(&dry, judges)).unwrap();
-        assert_eq!(swept.tuned.is_some(), judges == Judges::Pilots);
-        for of in [1, 2, 7] {
-            assert_eq!(bits(&cut(&run, of)), bits(&whole), "{judges:?} in {of}");
+    for control in [
+        ErrorControl::PerShot,
+        ErrorControl::Calibrated,
+        ErrorControl::None,
+    ] {
+        let batch = Batch::new(&dry, speeds.clone(), options(&dry, control)).unwrap();
+        let whole = batch.run(Shard::WHOLE, &|| {});
+        let calibrated = control == ErrorControl::Calibrated;
+        assert_eq!(whole.calibration.is_some(), calibrated);
+        for of in [2, 7] {
+            let rows = cut(&batch, of);
+            assert_eq!(bits(&rows), bits(&whole.rows), "{control:?} in {of}");
         }
     }
 }
 
 #[test]
-fn pilots_of_a_part_are_those_of_the_whole_run() {
+fn calibration_of_a_shard_is_that_of_the_whole_batch() {
     let dry = row("dry");
     let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
-    let run = Run::new(&dry, speeds, how(&dry, Judges::Pilots)).unwrap();
+    let options = options(&dry, ErrorControl::Calibrated);
+    let batch = Batch::new(&dry, speeds, options).unwrap();
     let [first, last] = [1, 27].map(|number| {
-        let part = run.part(Shard::new(number, 27).unwrap(), &|| {});
-        (part.rows.len(), part.tuned.unwrap())
+        let part = batch.run(Shard::new(number, 27).unwrap(), &|| {});
+        (part.rows.len(), part.calibration.unwrap())
     });
-    // Two shots, and one: too few for forty pilots of their own.
+    // Two shots, and one: too few for forty calibration shots of their own.
     assert_eq!((first.0, last.0), (2, 1));
     assert_eq!(first.1, last.1);
-    assert!(first.1.contains("40 pilots"), "{}", first.1);
+    assert!(first.1.contains("40 calibration shots"), "{}", first.1);
 }
 
 #[test]
-fn a_poisoned_shot_is_told_and_changes_no_other() {
+fn a_poisoned_shot_is_reported_and_changes_no_other() {
     let dry = row("dry");
     let sound = vec![0.2, 0.4, 0.6, 0.8];
     let poisoned = vec![0.2, f64::NAN, 0.4, -1.0, 0.6, 1e300, 0.8];
-    let rows =
-        |speeds: Vec<f64>, judges, of| cut(&Run::new(&dry, speeds, how(&dry, judges)).unwrap(), of);
+    let rows = |speeds: Vec<f64>, control, of| {
+        let batch = Batch::new(&dry, speeds, options(&dry, control));
+        cut(&batch.unwrap(), of)
+    };
     for of in [1, 3] {
-        let found = rows(poisoned.clone(), Judges::Each, of);
+        let found = rows(poisoned.clone(), ErrorControl::PerShot, of);
         let places: Vec<usize> = found.failed.iter().map(|failed| failed.place).collect();
         assert_eq!(places, [1, 3, 5]);
         assert!(found.failed.iter().all(|failed| !failed.why.is_empty()));
         assert_eq!(
             found.flights(),
-            rows(sound.clone(), Judges::Each, 1).flights()
+            rows(sound.clone(), ErrorControl::PerShot, 1).flights()
         );
-        let tuned = [1, 3].map(|of| bits(&rows(poisoned.clone(), Judges::Pilots, of)));
+        let tuned = [1, 3].map(|of| bits(&rows(poisoned.clone(), ErrorControl::Calibrated, of)));
         assert_eq!(tuned[0], tuned[1]);
     }
 }
@@ -93,17 +96,17 @@ fn a_poisoned_shot_is_told_and_changes_no_other() {
 fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own() {
     let dry = row("dry");
     let moduli = [180e9, 200e9, -1.0, 220e9];
-    let run = Run::new(&dry, vec![0.5; 4], How::of(&dry)).unwrap();
+    let run = Batch::new(&dry, vec![0.5; 4], BatchOptions::of(&dry)).unwrap();
     let run = run.with_number("young_modulus", moduli.to_vec()).unwrap();
     let rows = cut(&run, 3);
     assert_eq!(rows.failed.len(), 1);
     for (flight, modulus) in rows.flights().into_iter().zip([180e9, 200e9, 220e9]) {
         let own = dry.set(&[("young_modulus", modulus)]).unwrap();
-        let own = Run::new(&own, vec![0.5], How::of(&own)).unwrap();
-        assert_eq!(vec![flight], own.part(Shard::WHOLE, &|| {}).rows.flights());
+        let own = Batch::new(&own, vec![0.5], BatchOptions::of(&own)).unwrap();
+        assert_eq!(vec![flight], own.run(Shard::WHOLE, &|| {}).rows.flights());
     }
     let refused = |path: &str, values: usize| {
-        let run = Run::new(&dry, vec![0.5; 4], How::of(&dry)).unwrap();
+        let run = Batch::new(&dry, vec![0.5; 4], BatchOptions::of(&dry)).unwrap();
         run.with_number(path, vec![1.0; values])
             .unwrap_err()
             .to_string()
@@ -115,19 +118,19 @@ fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own()
 #[test]
 fn a_name_follows_from_every_input_and_from_nothing_else() {
     let dry = row("dry");
-    let name = |experiment: &Experiment, speeds: &[f64], how: How| {
-        let run = Run::new(experiment, speeds.to_vec(), how).unwrap();
+    let name = |experiment: &Experiment, speeds: &[f64], options: BatchOptions| {
+        let run = Batch::new(experiment, speeds.to_vec(), options).unwrap();
         run.name(Shard::new(1, 2).unwrap())
     };
-    let plain = name(&dry, &[0.5, 1.0], How::of(&dry));
+    let plain = name(&dry, &[0.5, 1.0], BatchOptions::of(&dry));
     assert!(
         plain.starts_with("sweep-") && plain.ends_with("-1-of-2"),
         "{plain}"
     );
     let moved = Experiment::from_text("/elsewhere/row.toml", dry.text()).unwrap();
     let moved = moved.set(&[("beads[0].count", 12.0)]).unwrap();
-    assert_eq!(name(&moved, &[0.5, 1.0], How::of(&dry)), plain);
-    let how = How::of(&dry);
+    assert_eq!(name(&moved, &[0.5, 1.0], BatchOptions::of(&dry)), plain);
+    let how = BatchOptions::of(&dry);
     let others = [
         name(&row("hertz"), &[0.5, 1.0], how),
         name(&dry, &[1.0, 0.5], how),
@@ -135,7 +138,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(
             &dry,
             &[0.5, 1.0],
-            How {
+            BatchOptions {
                 accuracy: 1e-5,
                 ..how
             },
@@ -143,7 +146,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(
             &dry,
             &[0.5, 1.0],
-            How {
+            BatchOptions {
                 rebound: true,
                 ..how
             },
@@ -151,7 +154,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(
             &dry,
             &[0.5, 1.0],
-            How {
+            BatchOptions {
                 checked: true,
                 ..how
             },
@@ -159,7 +162,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(
             &dry,
             &[0.5, 1.0],
-            How {
+            BatchOptions {
                 duration_s: Some(1e-3),
                 ..how
             },
@@ -167,8 +170,8 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(
             &dry,
             &[0.5, 1.0],
-            How {
-                judges: Judges::Pilots,
+            BatchOptions {
+                error_control: ErrorControl::Calibrated,
                 ..how
             },
         ),
@@ -177,7 +180,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         assert_ne!(other, &plain, "{at}");
         assert!(!others[..at].contains(other), "{at}");
     }
-    let run = Run::new(&dry, vec![0.5, 1.0], how).unwrap();
+    let run = Batch::new(&dry, vec![0.5, 1.0], how).unwrap();
     // It is kept once it was asked for, but not by a run with other numbers.
     assert_eq!(run.fingerprint(), run.clone().fingerprint());
     let numbered = run

@@ -193,21 +193,18 @@ fn nonsense_is_refused() {
         change(&mut plan);
         shoot(&plan).unwrap_err()
     };
-    assert_eq!(refused(|p| p.accuracy = 0.0), StudyError::Accuracy(0.0));
-    assert!(matches!(
-        refused(|p| p.accuracy = f64::NAN),
-        StudyError::Accuracy(_)
-    ));
-    assert!(matches!(
-        refused(|p| p.sensor_bead = 41),
-        StudyError::SensorOutside { .. }
-    ));
-    assert!(matches!(
-        refused(|p| p.duration_s = Some(-1.0)),
-        StudyError::Time { .. }
-    ));
     let step = |p: &mut Plan| p.solver = Solver::Rk4 { step_s: Some(0.0) };
-    assert!(matches!(refused(step), StudyError::Time { .. }));
+    let cases: [(fn(&mut Plan), &str); 5] = [
+        (|p| p.accuracy = 0.0, "an accuracy of 0 "),
+        (|p| p.accuracy = f64::NAN, "an accuracy of NaN "),
+        (|p| p.sensor_bead = 41, "sensor bead 41 is outside"),
+        (|p| p.duration_s = Some(-1.0), "the duration = -1 s"),
+        (step, "the step = 0 s"),
+    ];
+    for (change, part) in cases {
+        let text = refused(change).to_string();
+        assert!(text.contains(part), "{text}");
+    }
 }
 
 #[test]
@@ -218,18 +215,9 @@ fn a_trace_that_would_fill_the_memory_is_refused_before_it_does() {
             solver,
             ..plan("dry", 0.5).watching(sensors, Some(1e-18))
         };
-        let error = shoot(&plan).unwrap_err();
-        assert!(
-            matches!(
-                error,
-                StudyError::LongTrace {
-                    sensors: 2,
-                    interval_s: 1e-18,
-                    ..
-                }
-            ),
-            "{error}"
-        );
+        let text = shoot(&plan).unwrap_err().to_string();
+        let part = "a trace with 2 sensors, a sample every 1e-18 s,";
+        assert!(text.contains(part), "{text}");
     }
 }
 
@@ -244,14 +232,18 @@ fn a_fixed_step_that_would_take_too_long_is_refused_up_front_with_its_steps() {
             ..plan("dry", 0.5).with_accuracy(1e-10)
         };
         let error = shoot(&plan).unwrap_err();
-        let StudyError::TooManySteps { steps, order, .. } = error else {
-            panic!("{error}");
+        assert!(matches!(error, StudyError::NotConverged(_)), "{error}");
+        let text = error.to_string();
+        let number = |before: &str| -> f64 {
+            let rest = text.split(before).nth(1).unwrap();
+            let end = rest.find([' ', ',']).unwrap();
+            rest[..end].parse().unwrap()
         };
+        let (steps, order) = (number("would take about "), number("divides the error only by 2^"));
         // The cubic term acts at once on impact, which leaves every method an order
         // between 1 and 2: from 7e-7 at 2e4 steps it is a thousandfold to go.
         assert!((1.0..2.0).contains(&order), "{solver:?}: {order}");
         assert!(steps > 1e7, "{solver:?}: {steps:e}");
-        let text = error.to_string();
         assert!(
             text.contains("does not reach an accuracy of 1e-10") && text.contains(" steps of ")
         );

@@ -1,8 +1,9 @@
-//! Shots that pilots judge for all.
+//! Shots with calibrated error control.
 
 use hertzchain_experiment::preset;
 use hertzchain_sim::{
-    InstructionSet, Judges, Plan, Settings, Shot, Tuned, shoot_all, shoot_tuned, sweep,
+    Batch, BatchOptions, Calibration, Control, ErrorControl, InstructionSet, Plan, Shard, Shot,
+    run_plans,
 };
 
 const SET: fn() -> InstructionSet = InstructionSet::default;
@@ -26,37 +27,43 @@ fn worst(shots: &[Shot], exact: &[Shot]) -> f64 {
 }
 
 fn all(plans: &[Plan]) -> Vec<Shot> {
-    let shots = shoot_all(plans, SET(), true, &|| {});
+    let shots = run_plans(plans, Control::PerShot { checked: true }, SET(), &|| {});
     shots.into_iter().map(Result::unwrap).collect()
 }
 
-fn tuned(plans: &[Plan]) -> Option<(Tuned, Vec<Shot>)> {
-    let tuned = Tuned::new(&Tuned::pilots(plans), SET())?;
-    let shots = shoot_tuned(plans, &tuned, SET(), &|| {});
+fn calibrate(plans: &[Plan]) -> Option<Calibration> {
+    let places = Calibration::places(plans.len());
+    let sample: Vec<Plan> = places.map(|place| plans[place].clone()).collect();
+    Calibration::new(&sample, SET())
+}
+
+fn calibrated(plans: &[Plan]) -> Option<(Calibration, Vec<Shot>)> {
+    let tuned = calibrate(plans)?;
+    let shots = run_plans(plans, Control::Calibrated(&tuned), SET(), &|| {});
     Some((tuned, shots.into_iter().map(Result::unwrap).collect()))
 }
 
 #[test]
-fn what_pilots_chose_is_right_between_them() {
+fn a_calibrated_setting_is_right_between_the_calibration_shots() {
     // Behind wet contacts a few of a thousand are not: `docs/numerics.md`.
     for name in ["hertz", "hertz-viscoelastic", "dry"] {
-        // Between 40 pilots lie 60 others.
+        // Between 40 calibration shots lie 60 others.
         let exact = all(&plans(name, 100, 1e-6));
         for accuracy in [1e-3, 1e-4] {
-            let (tuned, shots) = tuned(&plans(name, 100, accuracy)).unwrap();
+            let (tuned, shots) = calibrated(&plans(name, 100, accuracy)).unwrap();
             assert!(tuned.reached <= 0.5 * accuracy);
             let error = worst(&shots, &exact);
             assert!(error <= accuracy, "{name}: {error:e} at {accuracy:e}");
-            let told = |shot: &Shot| shot.accuracy_reached.unwrap() <= accuracy;
-            assert!(shots.iter().all(told), "{name}");
+            let right = |shot: &Shot| shot.accuracy_reached.unwrap() <= accuracy;
+            assert!(shots.iter().all(right), "{name}");
         }
     }
 }
 
 #[test]
-fn pilots_choose_more_force_passes_for_more_accuracy() {
+fn calibration_chooses_more_force_passes_for_more_accuracy() {
     let passes = |accuracy| {
-        let (_, shots) = tuned(&plans("dry", 60, accuracy)).unwrap();
+        let (_, shots) = calibrated(&plans("dry", 60, accuracy)).unwrap();
         shots.iter().map(|shot| shot.work.force_passes).sum::<u64>()
     };
     let [coarse, fine] = [1e-3, 1e-6].map(passes);
@@ -64,26 +71,26 @@ fn pilots_choose_more_force_passes_for_more_accuracy() {
 }
 
 #[test]
-fn a_tuned_shot_has_the_same_bits_in_any_company() {
+fn a_calibrated_shot_has_the_same_bits_in_any_company() {
     let plans = plans("dry", 50, 1e-4);
-    let (tuned, shots) = tuned(&plans).unwrap();
+    let (tuned, shots) = calibrated(&plans).unwrap();
     for at in [0, 17, 49] {
-        let alone = shoot_tuned(&plans[at..=at], &tuned, SET(), &|| {});
+        let alone = run_plans(&plans[at..=at], Control::Calibrated(&tuned), SET(), &|| {});
         assert_eq!(alone[0].as_ref().unwrap(), &shots[at]);
     }
 }
 
 #[test]
-fn tuned_shots_have_the_same_bits_on_any_number_of_threads() {
+fn calibrated_shots_have_the_same_bits_on_any_number_of_threads() {
     let plans = plans("dry", 50, 1e-4);
-    let (tuned, shots) = tuned(&plans).unwrap();
+    let (tuned, shots) = calibrated(&plans).unwrap();
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let again = pool.build().unwrap().install(|| {
             // The setting is found on these threads too.
-            let found = Tuned::new(&Tuned::pilots(&plans), SET());
+            let found = calibrate(&plans);
             assert_eq!(found, Some(tuned), "{threads} threads");
-            shoot_tuned(&plans, &tuned, SET(), &|| {})
+            run_plans(&plans, Control::Calibrated(&tuned), SET(), &|| {})
         });
         let again: Vec<Shot> = again.into_iter().map(Result::unwrap).collect();
         assert_eq!(again, shots, "{threads} threads");
@@ -91,16 +98,16 @@ fn tuned_shots_have_the_same_bits_on_any_number_of_threads() {
 }
 
 #[test]
-fn pilots_that_would_cost_more_than_judges_are_none() {
+fn calibration_that_would_cost_more_than_control_per_shot_is_none() {
     let plans = plans("motor", 40, 1e-5);
-    assert_eq!(Tuned::new(&Tuned::pilots(&plans), SET()), None);
+    assert_eq!(calibrate(&plans), None);
 }
 
 #[test]
-fn plans_that_are_not_alike_or_not_for_equal_steps_have_no_pilots() {
+fn plans_that_differ_or_do_not_suit_equal_steps_have_no_calibration() {
     let mut mixed = plans("dry", 4, 1e-4);
     mixed[2].accuracy = 1e-3;
-    assert_eq!(Tuned::new(&mixed, SET()), None);
+    assert_eq!(Calibration::new(&mixed, SET()), None);
     let rebounds: Vec<Plan> = plans("dry", 2, 1e-4)
         .into_iter()
         .map(|plan| Plan {
@@ -108,30 +115,30 @@ fn plans_that_are_not_alike_or_not_for_equal_steps_have_no_pilots() {
             ..plan
         })
         .collect();
-    assert_eq!(Tuned::new(&rebounds, SET()), None);
-    assert_eq!(Tuned::new(&[], SET()), None);
+    assert_eq!(Calibration::new(&rebounds, SET()), None);
+    assert_eq!(Calibration::new(&[], SET()), None);
 }
 
 #[test]
-fn a_sweep_tells_whom_its_accuracy_is_from() {
+fn a_batch_reports_the_accuracy_of_its_calibration() {
     let experiment = preset("dry").unwrap();
-    let run = |judges| {
-        let settings = Settings {
-            adjust: &|plan| {
-                plan.rebound = false;
-                plan.accuracy = 1e-3;
-            },
-            judges,
-            ..Settings::default()
+    let run = |error_control| {
+        let options = BatchOptions {
+            accuracy: 1e-3,
+            error_control,
+            ..BatchOptions::of(&experiment)
         };
-        sweep(&experiment, &[0.3, 0.5, 0.7], &settings)
+        let batch = Batch::new(&experiment, vec![0.3, 0.5, 0.7], options).unwrap();
+        let mut shots = Vec::new();
+        let take = |it: hertzchain_sim::BatchShot| shots.push(it.shot.unwrap());
+        let (_, calibration) = batch.run_each(Shard::WHOLE, &|| {}, take);
+        (calibration, shots)
     };
-    let [each, pilots] = [Judges::Each, Judges::Pilots].map(run);
-    assert_eq!(each.tuned, None);
-    let tuned = pilots.tuned.unwrap();
-    assert_eq!(tuned.pilots, 3);
-    for point in &pilots.points {
-        let shot = point.shot.as_ref().unwrap();
-        assert_eq!(shot.accuracy_reached, Some(tuned.reached));
+    assert_eq!(run(ErrorControl::PerShot).0, None);
+    let (calibration, shots) = run(ErrorControl::Calibrated);
+    let calibration = calibration.unwrap();
+    assert_eq!(calibration.shots, 3);
+    for shot in &shots {
+        assert_eq!(shot.accuracy_reached, Some(calibration.reached));
     }
 }

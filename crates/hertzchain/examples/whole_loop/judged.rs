@@ -9,7 +9,7 @@ use hertzchain_measure::records::truth;
 use hertzchain_measure::signal::{ChiSquare, Estimate, Flight, chi_square};
 use hertzchain_measure::{Curves, Grouping, Options, Shot, measure, settled};
 use hertzchain_sim::rig::{Case, Plan, Shard, campaign};
-use hertzchain_sim::{Settings, sweep};
+use hertzchain_sim::{Batch, BatchOptions};
 use std::collections::HashMap;
 use std::error::Error;
 use std::fs;
@@ -260,19 +260,13 @@ fn held(
 /// The model's incident and reflected times at every speed, in s.
 fn models(experiment: &Experiment, speeds: &[Estimate]) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
     let speeds: Vec<f64> = speeds.iter().map(|speed| speed.value).collect();
-    let settings = Settings {
-        adjust: &|plan| *plan = plan.clone().for_flights(),
-        ..Settings::default()
+    let batch = Batch::new(experiment, speeds, BatchOptions::of(experiment))?;
+    let flights = batch.run(Shard::WHOLE, &|| {}).rows.flights();
+    let times = |(_, incident_s, reflected_s): (f64, f64, Option<f64>)| {
+        [incident_s, reflected_s.unwrap_or(f64::NAN)]
     };
-    let points = sweep(experiment, &speeds, &settings).points;
-    points
-        .into_iter()
-        .map(|point| {
-            let flight = point
-                .shot?
-                .flight
-                .ok_or("the wave does not reach the wall")?;
-            Ok([flight.incident_s, flight.reflected_s.unwrap_or(f64::NAN)])
-        })
-        .collect()
+    match flights.len() == batch.shots() {
+        true => Ok(flights.into_iter().map(times).collect()),
+        false => Err("the wave does not reach the wall".into()),
+    }
 }

@@ -10,7 +10,7 @@ use hertzchain_chain::observe::Trace;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_measure::signal::{FitError, PowerLaw};
-use hertzchain_sim::{Column, Part};
+use hertzchain_sim::{Column, BatchResult};
 
 /// What a sensor is called in figures and its unit; the last contact is the wall's.
 pub(crate) fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {
@@ -126,7 +126,7 @@ pub(crate) fn wall(experiment: &Experiment) -> Option<usize> {
 }
 
 /// Times of flight against speed with their power laws.
-pub(crate) fn sweep(part: &Part) -> Figure {
+pub(crate) fn sweep(part: &BatchResult) -> Figure {
     let flights = part.rows.flights();
     let incident: Vec<(f64, f64)> = flights.iter().map(|flight| (flight.0, flight.1)).collect();
     let reflected = flights

@@ -5,7 +5,7 @@ use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Amplifier, Experiment, Mistakes, PathError};
 use hertzchain_sim::{
-    Inputs, InstructionSet, Plan, Shot, StudyError, count_done, shoot_all, shoot_unjudged, stopped,
+    Control, Inputs, InstructionSet, Plan, Shot, StudyError, count_done, run_plans, stopped,
 };
 use rayon::prelude::*;
 use std::fmt::Display;
@@ -140,7 +140,7 @@ impl Model {
             .into_iter()
             .map(|planned| Ok(planned?.into_iter().map(&mut part).collect()))
             .collect();
-        let mut shots = shoot_unjudged(&plans, self.set).into_iter();
+        let mut shots = run_plans(&plans, Control::None, self.set, &|| {}).into_iter();
         let curve = |gains: Result<Vec<f64>, ModelError>| {
             let gains = gains?;
             // All of the point's shots, so that the next point's are next.
@@ -165,7 +165,7 @@ impl Model {
     pub fn accuracy_reached(&self, point: &[f64], speeds: &Speeds) -> Result<f64, ModelError> {
         let plans = self.plans(point, speeds)?;
         let plans: Vec<Plan> = plans.into_iter().map(|one| one.plan).collect();
-        let shots = shoot_all(&plans, self.set, true, &|| {});
+        let shots = run_plans(&plans, Control::PerShot { checked: true }, self.set, &|| {});
         let mut worst: f64 = 0.0;
         for (shot, (_, speed)) in shots.into_iter().zip(&speeds.at) {
             let shot = shot.map_err(|error| at(*speed, error))?;

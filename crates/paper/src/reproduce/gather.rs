@@ -7,7 +7,7 @@ use super::{ReproduceError, failed};
 use crate::claims::{Curve, Evidence, Judge, Point};
 use hertzchain_chain::{Chain, Sensor};
 use hertzchain_experiment::{Experiment, Reading};
-use hertzchain_sim::{InstructionSet, Pick, Plan, Shot, StudyError, shoot, shoot_all};
+use hertzchain_sim::{Control, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot};
 use rayon::prelude::*;
 
 /// How the paper's chains are shot.
@@ -241,7 +241,8 @@ fn lean_points(
     let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
     let plans: Vec<Plan> = passing.map(|(_, target)| target.plan.clone()).collect();
     let set = InstructionSet::default();
-    let mut passing = shoot_all(&plans, set, false, done).into_iter();
+    let control = Control::PerShot { checked: false };
+    let mut passing = run_plans(&plans, control, set, done).into_iter();
     let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
     let one = |(_, target): &&(usize, &Target)| {
         let points = target.points(shoot(&target.plan));

@@ -1,6 +1,5 @@
 //! What can be wrong with a campaign, told to people.
 
-use crate::ShardError;
 use crate::rig::striker::OutOfRange;
 use hertzchain_chain::ChainError;
 use hertzchain_chain::settle::SettleError;
@@ -33,9 +32,6 @@ pub enum RigError {
     /// A number that an experiment does not take.
     #[error(transparent)]
     Number(#[from] PathError),
-    /// A part of the campaign that does not exist.
-    #[error(transparent)]
-    Shard(#[from] ShardError),
     /// A shot that can't be computed.
     #[error("series {series}, {when}: {why}")]
     Shot {

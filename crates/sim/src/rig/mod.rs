@@ -38,7 +38,7 @@ mod shot;
 mod striker;
 mod tape;
 
-pub use crate::{Shard, ShardError};
+pub use crate::Shard;
 pub use amplifier::Amplifier;
 pub use bench::Bench;
 pub use campaign::{Done, Progress, campaign};

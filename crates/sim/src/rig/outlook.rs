@@ -2,7 +2,7 @@
 
 use crate::rig::error::RigError;
 use crate::rig::plan::{Case, Plan};
-use crate::{Settings, sweep};
+use crate::{Batch, BatchOptions, Shard};
 use hertzchain_chain::observe::Passage;
 use hertzchain_experiment::{Campaign, Recorder, Trigger};
 
@@ -61,15 +61,19 @@ pub fn outlook(plan: &Plan) -> Result<Vec<String>, RigError> {
 /// campaign itself will tell.
 fn passages(case: &Case, mut speeds_m_s: Vec<f64>) -> Vec<(f64, Passage)> {
     speeds_m_s.dedup();
-    let settings = Settings {
-        adjust: &|plan| *plan = plan.clone().with_accuracy(ACCURACY),
-        ..Settings::default()
+    let options = BatchOptions {
+        accuracy: ACCURACY,
+        rebound: true,
+        ..BatchOptions::of(&case.experiment)
     };
-    let points = sweep(&case.experiment, &speeds_m_s, &settings).points;
-    let shots = points
-        .into_iter()
-        .filter_map(|point| Some((point.speed_m_s, point.shot.ok()?.passage.ok()?)));
-    shots.collect()
+    let mut passages = Vec::new();
+    if let Ok(batch) = Batch::new(&case.experiment, speeds_m_s, options) {
+        let _ = batch.run_each(Shard::WHOLE, &|| {}, |it| {
+            let passage = it.shot.ok().and_then(|shot| shot.passage.ok());
+            passages.extend(passage.map(|passage| (it.speed_m_s, passage)));
+        });
+    }
+    passages
 }
 
 /// A shot of the model.

@@ -22,3 +22,9 @@ fn parts_are_written_as_they_are_read() {
         assert!(text.parse::<Shard>().is_err(), "{text}");
     }
 }
+#[test]
+fn numbers_are_told_as_slurm_takes_them() {
+    assert_eq!(ranges(&[2, 5, 6, 7, 9, 10]), "2,5-7,9-10");
+    assert_eq!(ranges(&[1]), "1");
+    assert_eq!(ranges(&[]), "");
+}

@@ -3,7 +3,7 @@
 use crate::small::shots;
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::rig::{Fired, Plan};
-use hertzchain_sim::{Settings, sweep};
+use hertzchain_sim::{Batch, BatchOptions, Shard};
 
 /// The paper's rig, its chains laid compact and not pushed: at rest they are in equilibrium.
 const COMPACT: [(&str, &str); 8] = [
@@ -19,13 +19,13 @@ const COMPACT: [(&str, &str); 8] = [
 
 /// Incident and reflected time of flight in s at the shot's own speed, much closer than the rig's.
 fn fine_s(experiment: &Experiment, fired: &Fired) -> [f64; 2] {
-    let settings = Settings {
-        adjust: &|plan| *plan = plan.clone().for_flights().with_accuracy(1e-10),
-        ..Settings::default()
+    let options = BatchOptions {
+        accuracy: 1e-10,
+        ..BatchOptions::of(experiment)
     };
-    let mut points = sweep(experiment, &[fired.speed_m_s], &settings).points;
-    let flight = points.remove(0).shot.unwrap().flight.unwrap();
-    [flight.incident_s, flight.reflected_s.unwrap()]
+    let batch = Batch::new(experiment, vec![fired.speed_m_s], options).unwrap();
+    let flight = batch.run(Shard::WHOLE, &|| {}).rows.flights()[0];
+    [flight.1, flight.2.unwrap()]
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::arguments::Merge as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print::print;
-use hertzchain_sim::Part;
+use hertzchain_sim::BatchResult;
 use hertzchain_sim::rig::{TOLD_IN, told_plan};
 use indicatif::HumanBytes;
 use std::path::Path;
@@ -35,17 +35,12 @@ fn campaign(told_by: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure
 }
 
 fn sweep(folders: &[&Path], out: &Path) -> Result<(), Failure> {
-    let part = hertzchain_sim::shards::gather(folders).map_err(shard::failure)?;
+    let part = BatchResult::gather(folders)?;
     let folder = Folder::open(out)?;
-    shard::told(&part);
+    shard::report_warnings(&part);
     told::show(&part)?;
     told::write(folder, &part)?;
-    judge(&part)
-}
-
-/// As the verb `sweep` judges.
-fn judge(part: &Part) -> Result<(), Failure> {
-    match told::nothing(part) {
+    match told::nothing(&part) {
         true => Err(Failure::User("no speed gave a shot".into())),
         false => Ok(()),
     }

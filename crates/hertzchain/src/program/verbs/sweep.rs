@@ -14,7 +14,8 @@ use hertzchain::given::check_speeds;
 use hertzchain::{input, json, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_sim::{
-    How, Judges, Part, Plan, PointError, Rows, Run, Settings, Shard, Sweep, parse_speeds, sweep,
+    Batch, BatchOptions, BatchResult, BatchShot, Calibration, ErrorControl, Plan, Shard,
+    StudyError, parse_speeds,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
@@ -30,54 +31,60 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let bar = bar(speeds.len() as u64);
-    let how = how(arguments, &plan)?;
+    let batch = Batch::new(&experiment, speeds, options(arguments, &plan)?)?;
     if let Some(shard) = arguments.shard {
-        let run = Run::new(&experiment, speeds, how).map_err(shard::refused)?;
-        let done = pool.install(|| shard::run(arguments, &run, shard, &|| bar.inc(1)));
+        let done = pool.install(|| shard::run(arguments, &batch, shard, &|| bar.inc(1)));
         bar.finish_and_clear();
         return done;
     }
-    let settings = Settings {
-        adjust: &|plan| adjust(arguments, plan),
-        checked: how.checked,
-        judges: how.judges,
-        set: how.set,
-        progress: &|| bar.inc(1),
-    };
-    let swept = pool.install(|| sweep(&experiment, &speeds, &settings));
+    let swept = pool.install(|| Swept::of(&batch, &|| bar.inc(1)));
     bar.finish_and_clear();
-    let run = Run::new(&experiment, speeds, how).map_err(shard::refused)?;
-    let part = Part {
-        tuned: swept.tuned.map(|tuned| tuned.to_string()),
-        rows: Rows::of(&swept.points),
-        ..run.empty(Shard::WHOLE)
-    };
-    show(arguments, &experiment, &plan, (&swept, &part))?;
-    folder.map_or(Ok(()), |folder| told::write(folder, &part))?;
-    judge(&swept, experiment.units())
+    show(arguments, &experiment, &plan, &swept)?;
+    folder.map_or(Ok(()), |folder| told::write(folder, &swept.result))?;
+    report_failed(&swept, experiment.units())
+}
+
+/// A batch with all of its shots.
+struct Swept {
+    points: Vec<BatchShot>,
+    result: BatchResult,
+    calibration: Option<Calibration>,
+}
+
+impl Swept {
+    fn of(batch: &Batch, progress: &(dyn Fn() + Sync)) -> Self {
+        let mut points = Vec::new();
+        // Of a hundred thousand shots of a thousand beads these alone would take 0.8 GB.
+        let take = |mut point: BatchShot| {
+            if let Ok(shot) = &mut point.shot {
+                shot.velocity_m_s = Vec::new();
+            }
+            points.push(point);
+        };
+        let (result, calibration) = batch.run_each(Shard::WHOLE, progress, take);
+        Self {
+            points,
+            result,
+            calibration,
+        }
+    }
 }
 
 /// How shots are computed, as data.
-fn how(arguments: &Arguments, plan: &Plan) -> Result<How, Failure> {
-    Ok(How {
+fn options(arguments: &Arguments, plan: &Plan) -> Result<BatchOptions, Failure> {
+    Ok(BatchOptions {
         accuracy: plan.accuracy,
         solver: plan.solver,
         duration_s: plan.duration_s,
         pick: plan.pick,
         rebound: arguments.rebound,
         checked: arguments.how.check,
-        judges: match arguments.judges {
-            arguments::Judges::Each => Judges::Each,
-            arguments::Judges::Pilots => Judges::Pilots,
+        error_control: match arguments.judges {
+            arguments::Judges::Each => ErrorControl::PerShot,
+            arguments::Judges::Pilots => ErrorControl::Calibrated,
         },
         set: input::instruction_set()?,
     })
-}
-
-/// Shots for times of flight alone, unless the striker is to be followed.
-fn adjust(arguments: &Arguments, plan: &mut Plan) {
-    input::adjust(&arguments.how, plan);
-    plan.rebound = arguments.rebound;
 }
 
 /// A plan at the experiment's own speed, to refuse options before any work.
@@ -99,19 +106,19 @@ fn bar(shots: u64) -> ProgressBar {
 }
 
 /// Every speed failed: the sweep did.
-fn judge(swept: &Sweep, units: Units) -> Result<(), Failure> {
+fn report_failed(swept: &Swept, units: Units) -> Result<(), Failure> {
     let style = Style { digits: 16, units };
     let failed = swept
         .points
         .iter()
         .filter_map(|point| Some((point, point.shot.as_ref().err()?)));
-    let told = |error: &PointError| match error {
-        PointError::Mistakes(mistakes) => failure::of_speed(mistakes),
-        PointError::Number(_) | PointError::Study(_) => None,
+    let of_speed = |error: &StudyError| match error {
+        StudyError::Mistakes(mistakes) => failure::of_speed(mistakes),
+        _ => None,
     };
     let lines: Vec<String> = failed
         .map(|(point, error)| {
-            let why = told(error).unwrap_or_else(|| error.to_string());
+            let why = of_speed(error).unwrap_or_else(|| error.to_string());
             format!("{}: {why}", style.quantity(point.speed_m_s, "m/s"))
         })
         .collect();
@@ -128,10 +135,15 @@ fn show(
     arguments: &Arguments,
     experiment: &Experiment,
     plan: &Plan,
-    (swept, part): (&Sweep, &Part),
+    swept: &Swept,
 ) -> Result<(), Failure> {
     if arguments.json {
-        let mut results = json::sweep(experiment, plan, swept);
+        let mut results = json::sweep(
+            experiment,
+            plan,
+            &swept.points,
+            (&swept.result, swept.calibration),
+        );
         if let Some(assumed) = input::assumed(&arguments.input) {
             results["assumed_model"] = assumed.into();
         }
@@ -141,6 +153,7 @@ fn show(
         print::print(&assumed)?;
     }
     print_warnings(experiment, swept);
+    let part = &swept.result;
     if part.rows.flights().is_empty() && !told::nothing(part) {
         let why = no_flight(swept, plan, experiment.units());
         return print::print(&(told::rows(part) + &why));
@@ -149,7 +162,7 @@ fn show(
 }
 
 /// Why no speed has a time of flight.
-fn no_flight(swept: &Sweep, plan: &Plan, units: Units) -> String {
+fn no_flight(swept: &Swept, plan: &Plan, units: Units) -> String {
     let first = swept
         .points
         .iter()
@@ -164,7 +177,7 @@ fn no_flight(swept: &Sweep, plan: &Plan, units: Units) -> String {
 }
 
 /// The first warnings stand for those of their kind at other speeds.
-fn print_warnings(experiment: &Experiment, swept: &Sweep) {
+fn print_warnings(experiment: &Experiment, swept: &Swept) {
     let mut warned = (swept.points.iter()).filter(|point| !point.warnings.is_empty());
     let Some(first) = warned.next() else {
         return;

@@ -4,10 +4,10 @@ use crate::format::{digits, r_squared, with_error};
 use hertzchain::missing;
 use hertzchain_experiment::Units;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
-use hertzchain_sim::{Column, Part};
+use hertzchain_sim::{Column, BatchResult};
 
 /// A line for the incident and one for the reflected times of flight.
-pub(super) fn lines(part: &Part) -> String {
+pub(super) fn lines(part: &BatchResult) -> String {
     let named = [
         ("incident", Column::Incident),
         ("reflected", Column::Reflected),

@@ -5,53 +5,36 @@ use crate::failure::Failure;
 use crate::print::{self, print};
 use crate::words::lines;
 use hertzchain::input::assumed;
-use hertzchain_sim::shards::ShardsError;
-use hertzchain_sim::{Column, Part, Run, RunError, Shard};
+use hertzchain_sim::{Batch, BatchResult, Column, Shard};
 use std::path::Path;
 use std::time::Instant;
-
-/// A run that can't be.
-pub(crate) fn refused(error: RunError) -> Failure {
-    match error {
-        RunError::Mistakes(mistakes) => (*mistakes).into(),
-        other => Failure::User(other.to_string()),
-    }
-}
-
-/// Mistakes of the user and what a disk refuses.
-pub(crate) fn failure(error: ShardsError) -> Failure {
-    match error {
-        ShardsError::Unwritable(error) => Failure::Ours(error.to_string()),
-        other => Failure::User(other.to_string()),
-    }
-}
 
 /// Computes a part into the folder, unless it is there.
 pub(crate) fn run(
     arguments: &Arguments,
-    run: &Run,
+    batch: &Batch,
     shard: Shard,
     progress: &(dyn Fn() + Sync),
 ) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().unwrap_or(Path::new("."));
     let begun = Instant::now();
-    let done = hertzchain_sim::shards::run(run, shard, folder, progress).map_err(failure)?;
-    told(&done.part);
-    let shots = done.part.rows.len();
-    let what = match done.kept {
+    let done = batch.run_into(folder, shard, progress)?;
+    report_warnings(&done.result);
+    let shots = done.result.rows.len();
+    let what = match done.stored {
         true => "there already".to_owned(),
         false => format!("computed in {:.1} s", begun.elapsed().as_secs_f64()),
     };
     let assumed = lines(assumed(&arguments.input).into_iter().collect());
     print(&format!(
         "{assumed}Shard {shard} of {}\n{shots} shots, {what}: {}\n",
-        done.part.about,
+        done.result.about,
         done.path.display()
     ))
 }
 
-/// What is odd and which shots are none, on the error stream.
-pub(crate) fn told(part: &Part) {
+/// Warnings and failed shots, on the error stream.
+pub(crate) fn report_warnings(part: &BatchResult) {
     let speed = |place: usize| {
         let at = place / part.shard.of();
         part.rows
@@ -60,16 +43,13 @@ pub(crate) fn told(part: &Part) {
             .copied()
             .unwrap_or(f64::NAN)
     };
-    if let Some(odd) = &part.rows.odd {
-        for line in &odd.lines {
+    if let Some(warnings) = &part.rows.warnings {
+        for line in &warnings.lines {
             print::note(&format!("warning: {line}"));
         }
-        match odd.shots {
+        match warnings.shots {
             0 | 1 => {}
-            shots => print::note(&format!(
-                "warning: there is something odd at {} speeds",
-                shots
-            )),
+            shots => print::note(&format!("warning: there are warnings at {shots} speeds")),
         }
     }
     for failed in &part.rows.failed {

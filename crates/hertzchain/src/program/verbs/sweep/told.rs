@@ -9,7 +9,7 @@ use crate::pictures;
 use crate::print::{self, heading, print};
 use hertzchain::table::{self, cell};
 use hertzchain_experiment::Units;
-use hertzchain_sim::{COLUMNS, Column, Part, Rows};
+use hertzchain_sim::{COLUMNS, Column, BatchResult, Rows};
 
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
@@ -33,25 +33,25 @@ const SHOWN: [Shown; 10] = [
 ];
 
 /// Whether no speed has a shot.
-pub(crate) fn nothing(part: &Part) -> bool {
+pub(crate) fn nothing(part: &BatchResult) -> bool {
     part.rows.failed.len() == part.rows.len()
 }
 
 /// Prints the table with its power laws; nothing where no speed has a shot,
 /// which is told instead.
-pub(crate) fn show(part: &Part) -> Result<(), Failure> {
+pub(crate) fn show(part: &BatchResult) -> Result<(), Failure> {
     if nothing(part) {
         return Ok(());
     }
     let mut text = rows(part) + &fits::lines(part);
-    if let Some(tuned) = &part.tuned {
-        text += &format!("Times of flight: {tuned}\n");
+    if let Some(calibration) = &part.calibration {
+        text += &format!("Times of flight: {calibration}\n");
     }
     print(&text)
 }
 
 /// The table under its heading.
-pub(crate) fn rows(part: &Part) -> String {
+pub(crate) fn rows(part: &BatchResult) -> String {
     let reached = part.rows.column(Column::Accuracy).iter().copied();
     // A number that is none is never the larger one.
     let style = Style::of_accuracy(reached.fold(part.accuracy, f64::max), part.units);
@@ -99,7 +99,7 @@ fn lines(style: Style, rows: &Rows) -> String {
 }
 
 /// Writes the table and the figure.
-pub(crate) fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
+pub(crate) fn write(mut folder: Folder, part: &BatchResult) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
     print::written(&folder.finish()?);
@@ -107,7 +107,7 @@ pub(crate) fn write(mut folder: Folder, part: &Part) -> Result<(), Failure> {
 }
 
 /// Shots that are none have no line.
-fn csv(part: &Part) -> String {
+fn csv(part: &BatchResult) -> String {
     let names = match part.units {
         Units::Si => COLUMNS,
         Units::Dimensionless => COLUMNS.map(table::without_unit),

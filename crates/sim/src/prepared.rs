@@ -3,16 +3,16 @@
 use crate::accuracy::{self, Halvings, MOST_HALVINGS, Outlook, TIGHTEST};
 use crate::duration::{self, End};
 use crate::error::StudyError;
-use crate::flight::Flight;
 use crate::following::Following;
 use crate::long_work::Counted;
 use crate::other_picks::other_picks;
 use crate::plan::{Plan, Solver, Watch};
-use crate::shot::{Rebound, Shot, ambiguous, reported};
+use crate::shot::{Rebound, Shot, ambiguous};
 use crate::stop::stopped;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
+use std::sync::Arc;
 
 /// Loosest tolerance of a run: steps of any chain are then still error-controlled.
 const LOOSEST: f64 = 1e-2;
@@ -65,27 +65,26 @@ pub(crate) enum Check {
     Again,
 }
 
-/// A plan whose chain is set up.
-pub(crate) struct Gun<'a> {
+/// A plan with its system and the end of its shot.
+pub(crate) struct PreparedShot<'a> {
     plan: &'a Plan,
-    system: System,
+    system: Arc<System>,
     end: End,
 }
 
-impl<'a> Gun<'a> {
-    /// Sets up the chain and decides when its shot ends.
-    pub(crate) fn load(plan: &'a Plan) -> Result<Self, StudyError> {
+impl<'a> PreparedShot<'a> {
+    pub(crate) fn new(plan: &'a Plan) -> Result<Self, StudyError> {
         plan.check()?;
         if stopped() {
             return Err(StudyError::Stopped);
         }
-        let system = System::new(&plan.chain)?;
+        let system = plan.chain.system()?;
         let end = duration::end(plan, &system);
         Ok(Self { plan, system, end })
     }
 
     /// The shot, with the accuracy reached unless it is unchecked.
-    pub(crate) fn shoot(&self, check: Check) -> Result<Shot, StudyError> {
+    pub(crate) fn run(&self, check: Check) -> Result<Shot, StudyError> {
         let mut shot = self.computed(check)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
         let passage = shot.passage.as_ref().ok();
@@ -101,7 +100,7 @@ impl<'a> Gun<'a> {
     }
 
     fn computed(&self, check: Check) -> Result<Shot, StudyError> {
-        match (self.plan.solver, accuracy::given_step(self.plan.solver)) {
+        match (self.plan.solver, self.plan.solver.step_s()) {
             (Solver::Adaptive, _) => self.adaptive(check),
             (solver, Some(step_s)) => self.fixed(solver, step_s, check),
             (solver, None) => self.halving(solver),
@@ -150,7 +149,7 @@ impl<'a> Gun<'a> {
         }
         let margin = if tolerance < FINE { OF_FINE } else { 1.0 };
         // Looser runs confirm the accuracy asked and no better one.
-        self.judge(shot, (margin * reached).max(self.plan.accuracy));
+        self.note_reached(shot, (margin * reached).max(self.plan.accuracy));
         Ok(())
     }
 
@@ -163,9 +162,9 @@ impl<'a> Gun<'a> {
             rebound: self.plan.rebound && !wall,
             ..self.plan.clone()
         };
-        let looser = Gun {
+        let looser = PreparedShot {
             plan: &plan,
-            system: self.system.clone(),
+            system: Arc::clone(&self.system),
             end: duration::end(&plan, &self.system),
         };
         let of_plan = accuracy::margin(self.plan);
@@ -188,7 +187,7 @@ impl<'a> Gun<'a> {
     /// A run at a tolerance other than the plan's own.
     fn tightened(&self, tolerance: f64, sampled: bool) -> Result<Shot, StudyError> {
         let slow = self.accuracy_at(tolerance) * accuracy::of_times(self.plan) / self.plan.accuracy;
-        let mut shot = self.run(&*accuracy::adaptive(tolerance), sampled, slow)?;
+        let mut shot = self.integrate(&*accuracy::adaptive(tolerance), sampled, slow)?;
         shot.tolerance = Some(tolerance);
         Ok(shot)
     }
@@ -235,7 +234,7 @@ impl<'a> Gun<'a> {
             let Some(next) =
                 near.filter(|_| reached > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST)
             else {
-                self.judge(shot, reached);
+                self.note_reached(shot, reached);
                 return Ok(());
             };
             tolerance *= 0.1;
@@ -262,12 +261,12 @@ impl<'a> Gun<'a> {
         let reached =
             accuracy::reached([shot.change(&other), 0.0], accuracy::margin(self.plan), 0.0);
         let reached = standing(&shot, reached, 2.0 * shot.height_change(&other));
-        self.judge(&mut shot, reached);
+        self.note_reached(&mut shot, reached);
         Ok(shot)
     }
 
     /// Halves the step until the result stands still; gives up as soon as the
-    /// order of convergence tells that it would take too long.
+    /// order of convergence shows that it would take too long.
     fn halving(&self, solver: Solver) -> Result<Shot, StudyError> {
         let first_s = accuracy::first_step_s(&self.system);
         let step_s = |halving: u32| first_s * 0.5_f64.powf(f64::from(halving));
@@ -280,7 +279,7 @@ impl<'a> Gun<'a> {
                 _ => f64::INFINITY,
             });
             if halvings.standing() <= self.plan.accuracy {
-                return self.settled(solver, step_s(halving), halvings.standing(), next);
+                return self.converged(solver, step_s(halving), halvings.standing(), next);
             }
             let outlook = halvings.outlook(self.plan.accuracy);
             if let (Some(outlook), Ok(shot)) = (outlook, &next)
@@ -290,31 +289,31 @@ impl<'a> Gun<'a> {
             }
             last = next;
         }
-        let last = last?;
-        let (time_s, contact) = self.last_pulse(&last);
-        Err(StudyError::NotConverged {
-            method: accuracy::fixed(solver, first_s).name(),
-            accuracy: self.plan.accuracy,
-            step_s: step_s(MOST_HALVINGS),
-            change: halvings.last(),
-            time_s,
-            contact,
-        })
+        let (time_s, contact) = self.last_pulse(&last?);
+        Err(StudyError::NotConverged(format!(
+            "{} does not reach an accuracy of {:e}: halving its step down to {:.3e} s still changes the result by \
+             {:.1e}, last seen at t = {time_s:.4e} s in contact {contact}; ask for less accuracy or use the adaptive solver",
+            accuracy::fixed(solver, first_s).name(),
+            self.plan.accuracy,
+            step_s(MOST_HALVINGS),
+            halvings.last(),
+        )))
     }
 
     /// The refusal of an accuracy, from a shot with a longer step.
     fn too_many_steps(&self, shot: &Shot, outlook: Outlook) -> StudyError {
         let finer = outlook.halvings.exp2();
         let (time_s, contact) = self.last_pulse(shot);
-        StudyError::TooManySteps {
-            method: shot.solver.clone(),
-            accuracy: self.plan.accuracy,
-            steps: shot.work.steps as f64 * finer,
-            step_s: shot.step_s.unwrap_or(f64::NAN) / finer,
-            order: outlook.order,
-            time_s,
-            contact,
-        }
+        StudyError::NotConverged(format!(
+            "{} does not reach an accuracy of {:e} in reasonable time: it would take about {:.0e} steps of {:.0e} s, \
+             since halving the step divides the error only by 2^{:.1}, seen at t = {time_s:.4e} s in contact {contact}; \
+             ask for less accuracy, give a step, or use the adaptive solver",
+            shot.solver,
+            self.plan.accuracy,
+            shot.work.steps as f64 * finer,
+            shot.step_s.unwrap_or(f64::NAN) / finer,
+            outlook.order,
+        ))
     }
 
     /// When and in which contact a shot's last pulse was picked.
@@ -329,7 +328,7 @@ impl<'a> Gun<'a> {
     }
 
     /// The shot at the step that was found, sampled if asked.
-    fn settled(
+    fn converged(
         &self,
         solver: Solver,
         step_s: f64,
@@ -350,7 +349,7 @@ impl<'a> Gun<'a> {
         Ok(shot)
     }
 
-    fn judge(&self, shot: &mut Shot, reached: f64) {
+    fn note_reached(&self, shot: &mut Shot, reached: f64) {
         shot.accuracy_reached = Some(reached);
         if reached > self.plan.accuracy {
             shot.notes.push(format!(
@@ -362,11 +361,11 @@ impl<'a> Gun<'a> {
 
     /// One run with one method.
     fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
-        self.run(method, sampled, accuracy::of_times(self.plan))
+        self.integrate(method, sampled, accuracy::of_times(self.plan))
     }
 
     /// The same with a tolerance for bodies of long chains that move slowly.
-    fn run(
+    fn integrate(
         &self,
         method: &dyn Method,
         sampled: bool,
@@ -393,10 +392,11 @@ impl<'a> Gun<'a> {
             return Err(StudyError::Stopped);
         }
         if following.passages().is_full() {
-            return Err(StudyError::LongSignal {
-                time_s: outcome.time_s,
-                steps: outcome.work.steps as f64,
-            });
+            return Err(StudyError::Refused(format!(
+                "the sensors have shown more than is kept of a shot after {:.1e} steps, {:.3e} s after its start; \
+                 give a shorter duration (--duration), a longer step or less accuracy",
+                outcome.work.steps as f64, outcome.time_s
+            )));
         }
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
         let mut shot = self.shot(method, outcome, &following, separation, trace);
@@ -431,11 +431,13 @@ impl<'a> Gun<'a> {
 
     fn trace(&self, tracer: Tracer) -> Result<Trace, StudyError> {
         match (tracer.full_s(), &self.plan.watch) {
-            (Some(time_s), Some(watch)) => Err(StudyError::LongTrace {
-                sensors: watch.sensors.len(),
-                interval_s: self.interval_s(watch),
-                time_s,
-            }),
+            (Some(time_s), Some(watch)) => Err(StudyError::Refused(format!(
+                "a trace with {} sensors, a sample every {:e} s, has more than {} numbers {time_s:.3e} s after the \
+                 start of the shot; sample less often, fewer sensors or a shorter shot",
+                watch.sensors.len(),
+                self.interval_s(watch),
+                Tracer::MOST_NUMBERS
+            ))),
             _ => Ok(tracer.into_trace()),
         }
     }
@@ -456,8 +458,6 @@ impl<'a> Gun<'a> {
             }),
         };
         let seen = passage.as_ref().ok();
-        let picked = |pick| Flight::picked(pick, passages, seen?);
-        let between = (self.system.beads() - self.plan.sensor_bead) as f64 + 0.5;
         let least_s = self.system.scales().time_s;
         let other_picks = seen.map(|seen| other_picks(passages, seen, least_s));
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
@@ -467,29 +467,25 @@ impl<'a> Gun<'a> {
         let at_end = at_end_m_s.map(|velocity_m_s| (outcome.time_s, velocity_m_s));
         let end = following.last_word().or(at_end);
         Shot {
-            flight: picked(self.plan.pick),
-            compared: self.plan.compare.iter().map(|&pick| picked(pick)).collect(),
-            sensor_maxima: reported(passages.sensor().maxima()),
-            pulse_speed_beads_s: seen.map(|passage| between / passage.tof_incident_s()),
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),
                 end_m_s: end.map(|(_, velocity_m_s)| velocity_m_s),
                 end_s: end.map(|(time_s, _)| time_s),
             }),
-            passage,
             budget: outcome.budget,
             trace,
-            duration_s: outcome.time_s,
             finished: outcome.finished,
             velocity_m_s: outcome.velocity_m_s,
             work: outcome.work,
-            accuracy_asked: self.plan.accuracy,
-            accuracy_reached: None,
-            solver: method.name().to_owned(),
-            tolerance: None,
-            step_s: None,
             other_picks: other_picks.unwrap_or_default(),
             notes: Vec::from_iter(following.decided_s().map(|_| DECIDED.to_owned())),
+            ..Shot::picked(
+                self.plan,
+                passages,
+                passage,
+                outcome.time_s,
+                method.name(),
+            )
         }
     }
 }

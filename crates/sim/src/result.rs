@@ -1,7 +1,7 @@
-//! A sweep as a table: what is stored of every shot.
+//! The shots of a batch as a table.
 
+use crate::batch::BatchShot;
 use crate::shot::Shot;
-use crate::sweep::Point;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
 use serde::{Deserialize, Serialize};
 
@@ -30,11 +30,11 @@ pub enum Column {
     Incident,
     /// Reflected time of flight.
     Reflected,
-    /// The passing pulse's peak, or the sensor's largest where none is seen to pass.
+    /// The incident pulse's peak, or the sensor's largest where none is seen to pass.
     SensorPeak,
     /// The wall's peak.
     WallPeak,
-    /// The returning pulse's peak.
+    /// The reflected pulse's peak.
     ReturningPeak,
     /// The striker's velocity at the end.
     Rebound,
@@ -50,7 +50,7 @@ pub enum Column {
     CompetingReflectedPeak,
 }
 
-/// A shot that is none.
+/// A shot that failed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failed {
     /// Its place in the sweep, from 0.
@@ -59,29 +59,15 @@ pub struct Failed {
     pub why: String,
 }
 
-/// What is odd about the chain at some speeds.
+/// Warnings about the chains of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Odd {
-    /// The first such shot's place in the sweep, from 0.
+pub struct WarningSummary {
+    /// The first shot with warnings, its place in the batch from 0.
     pub place: usize,
-    /// What is odd about it, a line each.
+    /// Its warnings, a line each.
     pub lines: Vec<String>,
-    /// How many shots there are of which there is something to say.
+    /// Number of shots with warnings.
     pub shots: usize,
-}
-
-impl Odd {
-    /// Counts a shot of which there may be something to say.
-    pub fn add(odd: &mut Option<Self>, place: usize, lines: &[String]) {
-        if !lines.is_empty() {
-            let first = || Self {
-                place,
-                lines: lines.to_vec(),
-                shots: 0,
-            };
-            odd.get_or_insert_with(first).shots += 1;
-        }
-    }
 }
 
 /// A power law, and what accuracies alone leave open of it.
@@ -92,33 +78,33 @@ pub type Law = (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>);
 pub struct Rows {
     /// One each of [`COLUMNS`]; NaN where a shot has no such number.
     pub columns: [Vec<f64>; COLUMNS.len()],
-    /// Shots that are none, in the order of their places: their rows have a speed only.
+    /// Shots that failed, in the order of their places: their rows have a speed only.
     pub failed: Vec<Failed>,
-    /// What is odd, if anything is.
-    pub odd: Option<Odd>,
+    /// Warnings, if there are any.
+    pub warnings: Option<WarningSummary>,
 }
 
 impl Rows {
-    /// Of a sweep in this process.
-    #[must_use]
-    pub fn of(points: &[Point]) -> Self {
-        let mut rows = Self::default();
-        for (place, point) in points.iter().enumerate() {
-            rows.add(place, point);
+    /// Adds a shot.
+    pub fn add(&mut self, shot: &BatchShot) {
+        let BatchShot {
+            place, speed_m_s, ..
+        } = *shot;
+        if !shot.warnings.is_empty() {
+            let first = || WarningSummary {
+                place,
+                lines: shot.warnings.clone(),
+                shots: 0,
+            };
+            self.warnings.get_or_insert_with(first).shots += 1;
         }
-        rows
-    }
-
-    /// A row more, of the point at a place from 0.
-    pub fn add(&mut self, place: usize, point: &Point) {
-        Odd::add(&mut self.odd, place, &point.warnings);
-        let cells = match &point.shot {
-            Ok(shot) => cells(point.speed_m_s, shot),
+        let cells = match &shot.shot {
+            Ok(shot) => cells(speed_m_s, shot),
             Err(why) => {
                 let why = why.to_string();
                 self.failed.push(Failed { place, why });
                 let mut none = [None; COLUMNS.len()];
-                none[Column::Speed as usize] = Some(point.speed_m_s);
+                none[Column::Speed as usize] = Some(speed_m_s);
                 none
             }
         };
@@ -158,10 +144,10 @@ impl Rows {
         }
         whole.failed = parts.iter().flat_map(|part| part.failed.clone()).collect();
         whole.failed.sort_by_key(|failed| failed.place);
-        let odd = parts.iter().filter_map(|part| part.odd.as_ref());
-        let shots = odd.clone().map(|odd| odd.shots).sum();
-        let first = odd.min_by_key(|odd| odd.place).cloned();
-        whole.odd = first.map(|first| Odd { shots, ..first });
+        let warnings = parts.iter().filter_map(|part| part.warnings.as_ref());
+        let shots = warnings.clone().map(|of| of.shots).sum();
+        let first = warnings.min_by_key(|of| of.place).cloned();
+        whole.warnings = first.map(|first| WarningSummary { shots, ..first });
         whole
     }
 

@@ -1,0 +1,418 @@
+//! One engine for many shots: sweeps, ensembles over named numbers, and shards of both.
+
+use crate::engine::{Calibration, Control, run_plans};
+use crate::error::StudyError;
+use crate::fingerprint::{Fingerprint, Inputs};
+use crate::plan::{Pick, Plan, Solver};
+use crate::result::Rows;
+use crate::shard::Shard;
+use crate::shot::Shot;
+use crate::stop::stopped;
+use hertzchain_chain::InstructionSet;
+use hertzchain_experiment::{Experiment, Units, Warning};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
+
+/// How the errors of the shots of a batch are controlled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ErrorControl {
+    /// Every shot is compared with two more, with longer steps.
+    #[default]
+    PerShot,
+    /// Calibration shots among the batch, computed much more tightly, choose the steps of all;
+    /// as per shot where that is not possible.
+    Calibrated,
+    /// By the step for the accuracy asked alone; no shot reports an error.
+    None,
+}
+
+impl ErrorControl {
+    /// Its name, as options have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PerShot => "per-shot",
+            Self::Calibrated => "calibrated",
+            Self::None => "none",
+        }
+    }
+}
+
+/// Options of a batch of shots.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct BatchOptions {
+    /// Relative accuracy asked of times of flight.
+    pub accuracy: f64,
+    /// How the motion is computed.
+    pub solver: Solver,
+    /// Duration of a shot in s; until it is over when `None`.
+    pub duration_s: Option<f64>,
+    /// Where pulses are timed.
+    pub pick: Pick,
+    /// Follow the striker until it is away for good.
+    pub rebound: bool,
+    /// Compute every shot of the adaptive loop again at tighter tolerances.
+    pub checked: bool,
+    /// How errors are controlled in the loop with equal steps.
+    pub error_control: ErrorControl,
+    /// Vector instructions. Other ones have other last bits: workers of one
+    /// batch must have the same.
+    #[serde(skip)]
+    pub set: InstructionSet,
+}
+
+impl BatchOptions {
+    /// What an experiment asks for, times of flight alone.
+    #[must_use]
+    pub fn of(experiment: &Experiment) -> Self {
+        let asked = experiment.solver();
+        Self {
+            accuracy: asked.accuracy,
+            solver: asked.into(),
+            duration_s: asked.duration_s,
+            pick: experiment.pick().into(),
+            rebound: false,
+            checked: false,
+            error_control: ErrorControl::PerShot,
+            set: InstructionSet::default(),
+        }
+    }
+}
+
+/// Shots of one experiment at many speeds and, if asked for, with numbers that differ
+/// from shot to shot.
+///
+/// The bits of a shot depend on the batch's inputs alone: not on threads, shards or
+/// neighbours.
+///
+/// ```
+/// use hertzchain_sim::{Batch, BatchOptions, Column, Shard};
+///
+/// let hertz = hertzchain_experiment::preset("hertz")?;
+/// let batch = Batch::new(&hertz, vec![0.2, 0.4], BatchOptions::of(&hertz))?;
+/// let result = batch.run(Shard::WHOLE, &|| {});
+/// assert!(result.rows.column(Column::Incident)[0] > result.rows.column(Column::Incident)[1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Batch {
+    experiment: Experiment,
+    speeds_m_s: Vec<f64>,
+    /// Full paths with one value a shot.
+    numbers: Vec<(String, Vec<f64>)>,
+    options: BatchOptions,
+    /// A hash of all of the above: computed once, however many shards ask for it.
+    fingerprint: OnceLock<Fingerprint>,
+}
+
+/// One shot of a batch.
+#[derive(Clone, Debug)]
+pub struct BatchShot {
+    /// Its place in the batch, from 0.
+    pub place: usize,
+    /// Speed of the striker in m/s.
+    pub speed_m_s: f64,
+    /// What it gave, or why it could not be computed.
+    pub shot: Result<Shot, StudyError>,
+    /// Warnings about the chain of this shot.
+    pub warnings: Vec<String>,
+}
+
+/// The results of a batch or of a shard of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BatchResult {
+    /// Fingerprint of all inputs of the batch.
+    pub batch: Fingerprint,
+    /// Which shard.
+    pub shard: Shard,
+    /// Shots of the whole batch.
+    pub shots: usize,
+    /// Title of the experiment.
+    pub title: String,
+    /// Its units.
+    pub units: Units,
+    /// Relative accuracy asked of times of flight.
+    pub accuracy: f64,
+    /// The batch in words, for messages.
+    pub about: String,
+    /// The setting that calibration shots of the whole batch chose, in words.
+    pub calibration: Option<String>,
+    /// The shots.
+    pub rows: Rows,
+}
+
+/// A shot's plan with its warnings, or why there is none.
+type Planned = Result<(Plan, Vec<Warning>), StudyError>;
+
+/// Rows that one thread plans in sequence: neighbours often share their numbers.
+const NEIGHBOURS: usize = 64;
+
+/// Plans in memory at a time, in the current rayon pool: enough for each thread that none
+/// waits long for the others at the end.
+pub(crate) fn piece() -> usize {
+    256 * rayon::current_num_threads()
+}
+
+impl Batch {
+    /// A batch of an experiment at speeds in m/s.
+    ///
+    /// # Errors
+    /// An experiment without a striker. A speed that it can't have is its own
+    /// shot's error, and no other's.
+    pub fn new(
+        experiment: &Experiment,
+        speeds_m_s: Vec<f64>,
+        options: BatchOptions,
+    ) -> Result<Self, StudyError> {
+        experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
+        Ok(Self {
+            experiment: experiment.clone(),
+            speeds_m_s,
+            numbers: Vec::new(),
+            options,
+            fingerprint: OnceLock::new(),
+        })
+    }
+
+    /// This batch with a number of the experiment that differs from shot to shot,
+    /// in SI, by its path or an end of it.
+    ///
+    /// # Errors
+    /// A number that the experiment does not have, or not one value a shot. A
+    /// value that it can't have is its own shot's error.
+    pub fn with_number(mut self, path: &str, values: Vec<f64>) -> Result<Self, StudyError> {
+        let path = self.experiment.place(path)?.path;
+        let (count, shots) = (values.len(), self.shots());
+        if count != shots {
+            return Err(StudyError::Refused(format!(
+                "`{path}` has {count} values for {shots} shots: expected one a shot"
+            )));
+        }
+        self.numbers.push((path, values));
+        self.fingerprint = OnceLock::new();
+        Ok(self)
+    }
+
+    /// Number of shots.
+    #[must_use]
+    pub fn shots(&self) -> usize {
+        self.speeds_m_s.len()
+    }
+
+    /// Fingerprint of everything that its numbers follow from: the experiment, the bits of
+    /// speeds and numbers, options, instruction set, this build of the program. Not of
+    /// paths, times or machines.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        *self.fingerprint.get_or_init(|| {
+            // Plain numbers always have a form in JSON, from which their bits follow.
+            let options = serde_json::to_string(&self.options).unwrap_or_default();
+            let inputs = Inputs::of("sweep")
+                .text("experiment", &self.experiment.understood())
+                .text("options", &options)
+                .text("set", self.options.set.name())
+                .numbers("speeds_m_s", &self.speeds_m_s);
+            let numbers = self.numbers.iter();
+            let all = numbers.fold(inputs, |inputs, (path, values)| {
+                inputs.numbers(path, values)
+            });
+            all.fingerprint()
+        })
+    }
+
+    /// A shard's name, of its file too: a hash of all its inputs.
+    #[must_use]
+    pub fn name(&self, shard: Shard) -> String {
+        shard_name(&self.fingerprint(), shard)
+    }
+
+    /// Runs a shard on all threads of the current rayon pool, and calls
+    /// `progress` after every shot, from any thread.
+    #[must_use]
+    pub fn run(&self, shard: Shard, progress: &(dyn Fn() + Sync)) -> BatchResult {
+        self.run_each(shard, progress, |_| ()).0
+    }
+
+    /// Runs a shard and passes every shot whole to `take`, in order, some hundreds at a
+    /// time; none more once a stop is asked for. Returns the calibrated setting beside the results.
+    pub fn run_each(
+        &self,
+        shard: Shard,
+        progress: &(dyn Fn() + Sync),
+        mut take: impl FnMut(BatchShot),
+    ) -> (BatchResult, Option<Calibration>) {
+        let calibration = self.calibration();
+        let mut rows = Rows::default();
+        let places: Vec<usize> = shard.places(self.shots()).collect();
+        for part in places.chunks(piece()) {
+            if stopped() {
+                break;
+            }
+            for shot in self.together(part, calibration.as_ref(), progress) {
+                rows.add(&shot);
+                take(shot);
+            }
+        }
+        let result = BatchResult {
+            calibration: calibration.map(|calibration| calibration.to_string()),
+            rows,
+            ..self.empty(shard)
+        };
+        (result, calibration)
+    }
+
+    /// The results of a shard without its shots.
+    pub(crate) fn empty(&self, shard: Shard) -> BatchResult {
+        BatchResult {
+            batch: self.fingerprint(),
+            shard,
+            shots: self.shots(),
+            title: self.experiment.title().to_owned(),
+            units: self.experiment.units(),
+            accuracy: self.options.accuracy,
+            about: self.about(),
+            calibration: None,
+            rows: Rows::default(),
+        }
+    }
+
+    fn about(&self) -> String {
+        let ends = |pick: fn(f64, f64) -> f64| {
+            let end = self.speeds_m_s.iter().copied().reduce(pick);
+            end.unwrap_or(f64::NAN)
+        };
+        let names = self.numbers.iter().map(|(path, _)| format!(", {path}"));
+        format!(
+            "{}, {} shots, speeds from {} to {}{}; accuracy {:e}, error control: {}, {}",
+            self.experiment.title(),
+            self.shots(),
+            ends(f64::min),
+            ends(f64::max),
+            names.collect::<String>(),
+            self.options.accuracy,
+            self.options.error_control.name(),
+            self.options.set.name()
+        )
+    }
+
+    /// The setting that calibration shots choose, if that is asked for: from the whole batch,
+    /// however few of its shots are run here, so that every shard has the same.
+    fn calibration(&self) -> Option<Calibration> {
+        if self.options.error_control != ErrorControl::Calibrated {
+            return None;
+        }
+        let places = Calibration::places(self.shots());
+        let planned = self.planned(&places.collect::<Vec<_>>());
+        let sound: Vec<Plan> = planned.into_iter().flatten().map(|(plan, _)| plan).collect();
+        Calibration::new(&sound, self.options.set)
+    }
+
+    /// Shots that are in memory side by side.
+    fn together(
+        &self,
+        places: &[usize],
+        calibration: Option<&Calibration>,
+        progress: &(dyn Fn() + Sync),
+    ) -> Vec<BatchShot> {
+        let mut plans = Vec::with_capacity(places.len());
+        let mut split = |planned: Planned| match planned {
+            Ok((plan, warnings)) => {
+                plans.push(plan);
+                Ok(warnings)
+            }
+            Err(error) => {
+                progress();
+                Err(error)
+            }
+        };
+        let planned = self.planned(places).into_iter();
+        let warnings: Vec<Result<Vec<Warning>, StudyError>> = planned.map(&mut split).collect();
+        let control = match (self.options.error_control, calibration) {
+            (ErrorControl::None, _) => Control::None,
+            (_, Some(calibration)) => Control::Calibrated(calibration),
+            (_, None) => Control::PerShot {
+                checked: self.options.checked,
+            },
+        };
+        let mut shots = run_plans(&plans, control, self.options.set, progress).into_iter();
+        let one = |(place, warnings): (&usize, Result<Vec<Warning>, StudyError>)| {
+            let (shot, warnings) = match warnings {
+                Ok(warnings) => (shots.next()?, warnings),
+                Err(error) => (Err(error), Vec::new()),
+            };
+            Some(BatchShot {
+                place: *place,
+                speed_m_s: self.speeds_m_s[*place],
+                shot,
+                warnings: warnings.iter().map(Warning::one_line).collect(),
+            })
+        };
+        places.iter().zip(warnings).filter_map(one).collect()
+    }
+
+    fn planned(&self, places: &[usize]) -> Vec<Planned> {
+        let chunk = if self.numbers.is_empty() { 1 } else { NEIGHBOURS };
+        let chunks = places.par_chunks(chunk);
+        chunks.flat_map_iter(|chunk| self.in_sequence(chunk)).collect()
+    }
+
+    /// Plans of consecutive shots: the experiment is changed where numbers do.
+    fn in_sequence(&self, places: &[usize]) -> Vec<Planned> {
+        let mut latest: Option<(Vec<f64>, Result<Experiment, StudyError>)> = None;
+        let plan = |place: &usize| {
+            if stopped() {
+                return Err(StudyError::Stopped);
+            }
+            let columns = self.numbers.iter();
+            let values: Vec<f64> = columns.map(|(_, column)| column[*place]).collect();
+            let (_, changed) = match latest.take() {
+                Some(same) if same.0 == values => latest.insert(same),
+                _ => {
+                    let changed = self.changed(&values);
+                    latest.insert((values, changed))
+                }
+            };
+            let experiment = changed.as_ref().map_err(Clone::clone)?;
+            self.plan(experiment, self.speeds_m_s[*place])
+        };
+        places.iter().map(plan).collect()
+    }
+
+    fn changed(&self, values: &[f64]) -> Result<Experiment, StudyError> {
+        if values.is_empty() {
+            return Ok(self.experiment.clone());
+        }
+        let paths = self.numbers.iter().map(|(path, _)| path.as_str());
+        let numbers: Vec<(&str, f64)> = paths.zip(values.iter().copied()).collect();
+        Ok(self.experiment.set(&numbers)?)
+    }
+
+    fn plan(&self, experiment: &Experiment, speed_m_s: f64) -> Planned {
+        let (plan, warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
+        let plan = Plan {
+            accuracy: self.options.accuracy,
+            solver: self.options.solver,
+            duration_s: self.options.duration_s,
+            pick: self.options.pick,
+            rebound: self.options.rebound,
+            ..plan
+        };
+        Ok((plan, warnings))
+    }
+}
+
+/// A shard of a batch by the batch's fingerprint.
+fn shard_name(batch: &Fingerprint, shard: Shard) -> String {
+    let (number, of) = (shard.number(), shard.of());
+    format!("sweep-{}-{number}-of-{of}", batch.short())
+}
+
+impl BatchResult {
+    /// Its name: a hash of all its inputs.
+    #[must_use]
+    pub fn name(&self) -> String {
+        shard_name(&self.batch, self.shard)
+    }
+}

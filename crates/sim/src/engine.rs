@@ -1,0 +1,519 @@
+//! Many plans at once.
+//!
+//! Plans that ask for times of flight alone run in the loop with equal steps, side by
+//! side on every thread; what that loop does not have, or does not finish
+//! well, runs one by one in the adaptive loop.
+
+use crate::accuracy;
+use crate::duration::{self, has_wall};
+use crate::error::StudyError;
+use crate::prepared::{closed_gaps, is_ambiguous};
+use crate::plan::{Pick, Plan, Solver};
+use crate::shot::{Shot, ambiguous, shoot, shoot_checked};
+use crate::stop::stopped;
+use hertzchain_chain::ensemble::{self, End, Flown, Precision};
+use hertzchain_chain::observe::{Passage, Passages};
+use hertzchain_chain::{InstructionSet, Sensor, Start, System};
+use rayon::prelude::*;
+use std::fmt::{Display, Formatter, Result as Formatted};
+use std::sync::Arc;
+
+/// How the errors of shots are controlled, with what that needs.
+#[derive(Clone, Copy, Debug)]
+pub enum Control<'a> {
+    /// Shots with equal steps are compared with two more, with longer steps, those of the adaptive
+    /// loop with two at tighter tolerances; where it follows the striker only if `checked`.
+    PerShot {
+        /// Compare shots that follow their striker too.
+        checked: bool,
+    },
+    /// With the steps that calibration shots chose, several times as fast. Shots carry the
+    /// accuracy of the calibration; one that longer steps change by more than the
+    /// accuracy asked is run as per shot.
+    Calibrated(&'a Calibration),
+    /// By the step for the accuracy alone, as a fit needs them: nothing is computed twice, but
+    /// in the adaptive loop where another maximum could be the reflected pulse's peak.
+    None,
+}
+
+/// Runs plans on all threads of the current rayon pool; results are in order
+/// and have the same bits whatever the number of threads and whatever else is
+/// run along. `progress` is called once a plan, from any thread.
+pub fn run_plans(
+    plans: &[Plan],
+    control: Control<'_>,
+    set: InstructionSet,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Result<Shot, StudyError>> {
+    let mut results: Vec<Option<Result<Shot, StudyError>>> = vec![None; plans.len()];
+    let shots: Vec<_> = blocks(plans)
+        .par_iter()
+        .flat_map_iter(|block| {
+            let together: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
+            let shots = match stopped() {
+                true => vec![Err(StudyError::Stopped); block.len()],
+                false => run_block(&together, control, set),
+            };
+            together.iter().for_each(|_| progress());
+            block.iter().copied().zip(shots).collect::<Vec<_>>()
+        })
+        .collect();
+    for (at, shot) in shots {
+        results[at] = Some(shot);
+    }
+    results.into_iter().flatten().collect()
+}
+
+/// Shots of plans that go together, or of one that goes alone: with equal steps, and the
+/// rest in the adaptive loop.
+fn run_block(
+    plans: &[&Plan],
+    control: Control<'_>,
+    set: InstructionSet,
+) -> Vec<Result<Shot, StudyError>> {
+    let fast = match control {
+        Control::None => unchecked(plans, set),
+        Control::PerShot { .. } => compared(plans, set),
+        Control::Calibrated(calibration) => {
+            let shots = calibration.run(plans, set).into_iter().zip(plans);
+            let alone = |plan: &Plan| compared(&[plan], set).pop().flatten();
+            let shots = shots.map(|(shot, plan)| shot.or_else(|| alone(plan)));
+            shots.collect()
+        }
+    };
+    let alone = |plan: &Plan| match control {
+        Control::PerShot { checked: false } if plan.rebound => shoot(plan),
+        Control::None => {
+            let shot = shoot(plan)?;
+            match is_ambiguous(&shot) {
+                true => shoot_checked(plan),
+                false => Ok(shot),
+            }
+        }
+        // Times of flight are always checked.
+        _ => shoot_checked(plan),
+    };
+    let shots = plans.iter().zip(fast);
+    shots
+        .map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok))
+        .collect()
+}
+
+/// Shots with the step for their accuracy alone.
+fn unchecked(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+    let once = |own: Setting| {
+        let bare = Setting {
+            shapes: false,
+            ..own
+        };
+        run_lanes(plans, &systems(plans), set, &bare)
+    };
+    let own = plans.first().and_then(|plan| Setting::of(plan));
+    own.map_or_else(|| vec![None; plans.len()], once)
+}
+
+/// Plans that run side by side: equal in accuracy, sensor, length and what ends them.
+fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
+    let mut blocks = Vec::new();
+    let mut open: Vec<Vec<usize>> = Vec::new();
+    for (at, plan) in plans.iter().enumerate() {
+        if !suits(plan) {
+            blocks.push(vec![at]);
+            continue;
+        }
+        let together = |block: &&mut Vec<usize>| fit_together(&plans[block[0]], plan);
+        match open.iter_mut().find(together) {
+            Some(block) => block.push(at),
+            None => open.push(vec![at]),
+        }
+        let full = open
+            .iter()
+            .position(|block| block.len() == Precision::Single.lanes());
+        blocks.extend(full.map(|at| open.swap_remove(at)));
+    }
+    blocks.extend(open);
+    blocks
+}
+
+fn fit_together(one: &Plan, other: &Plan) -> bool {
+    one.accuracy == other.accuracy
+        && one.sensor_bead == other.sensor_bead
+        && one.picks().eq(other.picks())
+        && one.chain.beads.len() == other.chain.beads.len()
+        && one.duration_s.is_none() == other.duration_s.is_none()
+}
+
+/// Whether the loop with equal steps can run a plan to the accuracy asked.
+fn suits(plan: &Plan) -> bool {
+    plan.solver == Solver::Adaptive
+        && !plan.rebound
+        && !plan.budget
+        && plan.watch.is_none()
+        && plan.chain.suspension_m.is_none()
+        && !matches!(plan.chain.start, Start::Driven { .. })
+        && has_wall(&plan.chain.far)
+        && accuracy::equal_steps(plan).is_some()
+}
+
+/// Steps with which a shot is compared, over its own, and the weight of the change that they
+/// make. Two: one alone agrees by chance with what is wrong in one row of
+/// a hundred. The accuracy reached is the larger of both: an error of order 1,
+/// which closings leave now and then, is three times the change by the first
+/// and once and a half that by the second.
+pub const LONGER_STEPS: [(f64, f64); 2] = [(1.3, 3.0), (1.69, 1.5)];
+
+/// Rows of which forces are cut, or begin and end otherwise than the paper's, are up
+/// to 2.5 times as wrong as the changes say.
+const OF_SHARP: f64 = 3.0;
+
+/// Shots with equal steps and the accuracy they reached; `None` where that is not what was
+/// asked, or where the adaptive loop must say what is wrong.
+fn compared(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+    let Some(own) = plans.first().and_then(|plan| Setting::of(plan)) else {
+        return vec![None; plans.len()];
+    };
+    let systems = systems(plans);
+    let run = |setting: Setting| run_lanes(plans, &systems, set, &setting).into_iter();
+    let shots = plans.iter().zip(run(own));
+    let [near, far] = LONGER_STEPS.map(|(longer, _)| run(own.longer(longer)));
+    shots
+        .zip(near.zip(far))
+        .map(|((plan, shot), (near, far))| accurate(plan, shot?, [&near?, &far?]))
+        .collect()
+}
+
+/// The systems of plans; `None` for those that can't run with equal steps.
+fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
+    let system = |plan: &&Plan| {
+        let suits = suits(plan) && plan.check().is_ok();
+        suits.then(|| plan.chain.system().ok()).flatten()
+    };
+    plans.iter().map(system).collect()
+}
+
+/// A shot with the accuracy it reached, if that is what was asked.
+fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
+    let [near, far] = [0, 1].map(|at| LONGER_STEPS[at].1 * shot.change(longer[at]));
+    let margin = if accuracy::is_gentle(plan) { 1.0 } else { OF_SHARP };
+    let reached = near.max(far) * margin;
+    // Both changes may be small by chance: they confirm the accuracy asked and no better one.
+    shot.accuracy_reached = Some(reached.max(shot.accuracy_asked));
+    (reached <= shot.accuracy_asked).then_some(shot)
+}
+
+/// Step size and precision of plans that run side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Setting {
+    /// In contact times.
+    step: f64,
+    /// That of each plan's accuracy if `None`; where a load presses beads
+    /// together never single.
+    precision: Option<Precision>,
+    /// Whether openings are located.
+    openings: bool,
+    /// Pulses have widths, whether or not a pick needs their shape.
+    shapes: bool,
+    /// Shots end once the reflected pulse has passed, not when none can come
+    /// any more.
+    passed: bool,
+}
+
+impl Setting {
+    /// For a plan's accuracy.
+    fn of(plan: &Plan) -> Option<Self> {
+        let (step, openings) = accuracy::equal_steps(plan)?;
+        Some(Self {
+            step,
+            precision: None,
+            openings,
+            shapes: true,
+            passed: false,
+        })
+    }
+
+    fn precision(&self, plan: &Plan, system: &System) -> Precision {
+        match self.precision {
+            Some(Precision::Single) if !system.flies_free() => Precision::Double,
+            Some(precision) => precision,
+            None => accuracy::precision(plan, system),
+        }
+    }
+
+    /// The same with longer steps, to compare with; these shots wait for whatever may come.
+    fn longer(self, times: f64) -> Self {
+        Self {
+            step: times * self.step,
+            shapes: false,
+            passed: false,
+            ..self
+        }
+    }
+
+    fn end(&self, plan: &Plan) -> End {
+        match (plan.duration_s, self.passed) {
+            (Some(_), _) => End::Duration,
+            (None, true) => End::Passed,
+            (None, false) => End::Reflected,
+        }
+    }
+}
+
+/// Runs plans of one sensor and length side by side, those that have a system.
+fn run_lanes(
+    plans: &[&Plan],
+    systems: &[Option<Arc<System>>],
+    set: InstructionSet,
+    setting: &Setting,
+) -> Vec<Option<Shot>> {
+    let ready = plans.iter().zip(systems);
+    let ready: Vec<(&Plan, &System)> = ready
+        .filter_map(|(plan, system)| Some((*plan, &**system.as_ref()?)))
+        .collect();
+    let Some((first, system)) = ready.first() else {
+        return vec![None; plans.len()];
+    };
+    let shots: Vec<ensemble::Shot<'_>> = ready
+        .iter()
+        .map(|(plan, system)| ensemble::Shot {
+            system,
+            step: setting.step,
+            duration_s: duration::with_equal_steps_s(plan, system, setting.step),
+            precision: setting.precision(plan, system),
+        })
+        .collect();
+    let wall = system.contacts() - 1;
+    let shaped = |plan: &Plan| plan.picks().any(|pick| pick != Pick::Peak);
+    let settings = ensemble::Settings {
+        sensors: vec![Sensor::Bead(first.sensor_bead), Sensor::Contact(wall)],
+        end: setting.end(first),
+        set,
+        shapes: setting.shapes || ready.iter().any(|(plan, _)| shaped(plan)),
+        whole_chain: false,
+        openings: setting.openings,
+    };
+    let picked = |at: usize, lane: Result<Flown, _>| {
+        let (plan, system) = ready[at];
+        shot(plan, (system, settings.end), lane.ok()?)
+    };
+    let mut shots = ensemble::fire_each(&shots, &settings, &|| !stopped(), picked).into_iter();
+    let one = |system: &Option<Arc<System>>| system.as_ref().and_then(|_| shots.next()?);
+    systems.iter().map(one).collect()
+}
+
+/// A single step may correct a velocity by this fraction of the shot's speed:
+/// more, and something happens that equal steps do not resolve.
+const MOST_CORRECTION: f64 = 0.01;
+
+/// Errors of heights of equal steps over the accuracy asked: 19 of 20 random rows have less.
+const OF_HEIGHTS: f64 = 10.0;
+
+/// Whether the reflected peak may be another maximum than the largest sample: one that two
+/// runs with equal steps can both miss, because the sensor's signal is above it since the
+/// wall's peak and falls with hardly a rise, or where there is none at all.
+fn may_hide(plan: &Plan, passage: &Passage, (time_s, at_wall_n): (f64, f64)) -> bool {
+    let error = OF_HEIGHTS * plan.accuracy * passage.incident.value.max(passage.wall.value);
+    match passage.reflected {
+        Some(reflected) => at_wall_n > reflected.value - error,
+        None => time_s >= passage.search_ends_s,
+    }
+}
+
+/// What a plan asks for, from what its sensors showed.
+fn shot(plan: &Plan, (system, end): (&System, End), lane: Flown) -> Option<Shot> {
+    if lane.correction > MOST_CORRECTION {
+        return None;
+    }
+    let Ok([sensor, wall]) = <[_; 2]>::try_from(lane.signals) else {
+        return None;
+    };
+    let passages = Passages::from_signals(sensor, wall, lane.time_s);
+    let passage = passages.passage().ok()?;
+    // Where what came last changes what came first, looks between steps are too coarse.
+    let unfinished = match (end, plan.duration_s) {
+        (End::Duration, Some(duration_s)) => lane.time_s < duration_s,
+        (End::Reflected, _) => lane.time_s < passage.search_ends_s,
+        _ => false,
+    };
+    if unfinished || may_hide(plan, &passage, (lane.time_s, lane.at_wall_n)) {
+        return None;
+    }
+    let mut notes = Vec::from_iter(closed_gaps(plan, system));
+    notes.extend(ambiguous(&passage, plan.accuracy));
+    Some(Shot {
+        finished: lane.finished,
+        velocity_m_s: lane.velocity_m_s,
+        work: lane.work,
+        step_s: Some(lane.step_s),
+        notes,
+        ..Shot::picked(plan, &passages, Ok(passage), lane.time_s, EQUAL_STEPS)
+    })
+}
+
+/// The method's name.
+const EQUAL_STEPS: &str = "predictor–corrector of order 4, equal steps";
+
+/// Calibration shots that are enough for plans between which little changes: the paper's
+/// chains at a thousand speeds (`docs/numerics.md`).
+const CALIBRATION_SHOTS: usize = 40;
+
+/// What calibration shots are compared with is this many times as right as asked.
+const TIGHTER: f64 = 20.0;
+
+/// Steps of a guard, over those of the shot that it guards: what that changes
+/// by more than the accuracy asked is compared by itself. A guard also waits for
+/// what may come after the reflected pulse.
+const GUARD: f64 = 1.3;
+
+/// Two longer comparisons take 2.36 times the force passes of a shot. A calibrated shot ends when its
+/// pulse has passed, after 0.56 of them, and its guard takes 0.77 times: with
+/// steps below this share of a compared shot's, calibration saves nothing.
+const WORTHWHILE: f64 = 0.56;
+
+/// Calibration shots may use this share of the accuracy asked: between them others may
+/// be worse.
+const SHARE: f64 = 0.5;
+
+/// Step in contact times, cheapest first, in single precision.
+const SINGLE: [f64; 11] = [
+    0.3, 0.28, 0.26, 0.24, 0.22, 0.2, 0.18, 0.16, 0.14, 0.12, 0.1,
+];
+
+/// Steps in contact times in double precision, cheapest first, and whether openings are located.
+const DOUBLE: [(f64, bool); 12] = [
+    (0.2, false),
+    (0.17, false),
+    (0.15, false),
+    (0.12, false),
+    (0.1, true),
+    (0.08, true),
+    (0.065, true),
+    (0.05, true),
+    (0.04, true),
+    (0.03, true),
+    (0.02, true),
+    (0.01, true),
+];
+
+/// A setting of the loop with equal steps that calibration shots have shown to be right enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibration {
+    setting: Setting,
+    /// Largest relative error of a time of flight among the calibration shots.
+    pub reached: f64,
+    /// Number of calibration shots.
+    pub shots: usize,
+}
+
+impl Calibration {
+    /// The cheapest setting with which times of flight of all plans are within
+    /// half of the accuracy asked and change by no more than that with steps 1.3
+    /// times as long; `None` where there is none, or where plans
+    /// do not go together or not with equal steps, or where comparing each costs no more.
+    ///
+    /// They should span what the batch spans: speeds, coefficients of laws.
+    #[must_use]
+    pub fn new(plans: &[Plan], set: InstructionSet) -> Option<Self> {
+        let first = plans.first()?;
+        let fits = |plan: &Plan| suits(plan) && fit_together(first, plan);
+        if !plans.iter().all(fits) {
+            return None;
+        }
+        let shortest = WORTHWHILE * Setting::of(first)?.step;
+        let exact = exact(plans, set)?;
+        let plans: Vec<&Plan> = plans.iter().collect();
+        let systems = systems(&plans);
+        let single = SINGLE.map(|step| (Precision::Single, step, false));
+        let double = DOUBLE.map(|(step, openings)| (Precision::Double, step, openings));
+        let ways = single.into_iter().chain(double);
+        let mut ways = ways.filter(|(_, step, _)| *step >= shortest);
+        ways.find_map(|(precision, step, openings)| {
+            let setting = Setting {
+                step,
+                precision: Some(precision),
+                openings,
+                shapes: false,
+                passed: true,
+            };
+            let shots = guarded(&plans, &systems, set, setting);
+            let reached = worst(&shots, &exact)? + first.accuracy / TIGHTER;
+            (reached <= SHARE * first.accuracy).then_some(Self {
+                setting,
+                reached,
+                shots: plans.len(),
+            })
+        })
+    }
+
+    /// Places from 0 of the calibration shots in a batch of so many, evenly spread.
+    pub fn places(batch: usize) -> impl Iterator<Item = usize> {
+        let count = CALIBRATION_SHOTS.min(batch);
+        (0..count).map(move |i| i * (batch - 1) / (count - 1).max(1))
+    }
+
+    /// Shots of plans with equal steps, of those that are like the calibration shots.
+    fn run(&self, plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+        let mut shots = guarded(plans, &systems(plans), set, self.setting);
+        for shot in shots.iter_mut().flatten() {
+            shot.accuracy_reached = Some(self.reached);
+        }
+        shots
+    }
+}
+
+impl Display for Calibration {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
+        let precision = match self.setting.precision {
+            Some(Precision::Single) => "single",
+            _ => "double",
+        };
+        write!(
+            f,
+            "{precision} precision, steps of {} contact times, chosen by {} calibration shots that are right to {:.0e}",
+            self.setting.step, self.shots, self.reached
+        )
+    }
+}
+
+/// Shots that change by no more than the accuracy asked with longer steps.
+fn guarded(
+    plans: &[&Plan],
+    systems: &[Option<Arc<System>>],
+    set: InstructionSet,
+    setting: Setting,
+) -> Vec<Option<Shot>> {
+    let run = |setting: Setting| run_lanes(plans, systems, set, &setting).into_iter();
+    let guard = |(shot, guard): (Option<Shot>, Option<Shot>)| {
+        let (mut shot, guard) = (shot?, guard?);
+        if shot.change(&guard) > shot.accuracy_asked {
+            return None;
+        }
+        // A shot that ends when the pulse has passed has not seen all maxima that compete.
+        if let (Ok(seen), Ok(all)) = (&mut shot.passage, guard.passage) {
+            seen.competing = all.competing;
+            shot.notes = guard.notes;
+        }
+        Some(shot)
+    };
+    let shots = run(setting).zip(run(setting.longer(GUARD)));
+    shots.map(guard).collect()
+}
+
+/// Times of flight, however picked, right to a small share of what is asked.
+fn exact(plans: &[Plan], set: InstructionSet) -> Option<Vec<Shot>> {
+    let tighter = |plan: &Plan| plan.clone().with_accuracy(plan.accuracy / TIGHTER);
+    let plans: Vec<Plan> = plans.iter().map(tighter).collect();
+    let shots = run_plans(&plans, Control::PerShot { checked: true }, set, &|| {});
+    let right =
+        |shot: &Shot| (shot.accuracy_reached).is_some_and(|reached| reached <= shot.accuracy_asked);
+    let shots = shots.into_iter();
+    shots.map(|shot| shot.ok().filter(right)).collect()
+}
+
+/// Largest relative difference of times of flight; `None` if any is missing.
+fn worst(shots: &[Option<Shot>], exact: &[Shot]) -> Option<f64> {
+    let mut changes = shots
+        .iter()
+        .zip(exact)
+        .map(|(shot, exact)| Some(shot.as_ref()?.change(exact)));
+    changes.try_fold(0.0, |worst: f64, change| Some(worst.max(change?)))
+}
