@@ -107,7 +107,12 @@ fn shots_and_sweeps_of_a_fixed_sample_are_as_wrong_as_they_state_at_most() {
         assert_as_stated(&shot, right_s, &format!("shot of row {line}"));
         for accuracy in [1e-3, 1e-5] {
             let plans = [plan.clone().for_flights().with_accuracy(accuracy)];
-            let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
+            let shots = run_plans(
+                &plans,
+                Control::PerShot { checked: false },
+                InstructionSet::default(),
+                &|| {},
+            );
             let what = format!("sweep of row {line} at {accuracy:e}");
             assert_as_stated(shots[0].as_ref().unwrap(), right_s, &what);
         }

@@ -73,7 +73,12 @@ fn one_by_one(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
 /// Shots as a sweep fires them.
 fn together(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
     let plans = plans(name, accuracy)?;
-    let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
+    let shots = run_plans(
+        &plans,
+        Control::PerShot { checked: false },
+        InstructionSet::default(),
+        &|| {},
+    );
     shots.into_iter().map(|shot| Ok(shot?)).collect()
 }
 
@@ -228,7 +233,8 @@ fn judges() -> Result<()> {
                     Ok(fly(step)?.into_iter().map(|f| flight(f?)).collect())
                 };
                 let own = flights(step)?;
-                let longer = LONGER_STEPS.map(|(longer, counts)| Ok((flights(longer * step)?, counts)));
+                let longer =
+                    LONGER_STEPS.map(|(longer, counts)| Ok((flights(longer * step)?, counts)));
                 let longer = longer.into_iter().collect::<Result<Vec<_>>>()?;
                 let passes = |at: usize| {
                     let own = own[at]?;

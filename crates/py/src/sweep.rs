@@ -135,9 +135,8 @@ pub(crate) fn batch(
         set: input::instruction_set()?,
     };
     let batch = Batch::new(&experiment.inner, speeds_m_s.to_vec(), options)?;
-    let with = |batch: Batch, (name, values): &(String, Vec<f64>)| {
-        batch.with_number(name, values.clone())
-    };
+    let with =
+        |batch: Batch, (name, values): &(String, Vec<f64>)| batch.with_number(name, values.clone());
     let batch: Result<Batch, StudyError> = numbers.iter().try_fold(batch, with);
     Ok(batch?)
 }

@@ -52,7 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sum_s = 0.0;
         for part in rows.chunks(PIECE) {
             let plans: Result<Vec<Plan>, String> = part.par_iter().map(|at| plan(*at)).collect();
-            for shot in run_plans(&plans?, Control::PerShot { checked: false }, InstructionSet::default(), &|| {}) {
+            for shot in run_plans(
+                &plans?,
+                Control::PerShot { checked: false },
+                InstructionSet::default(),
+                &|| {},
+            ) {
                 sum_s += shot?.flight.map_or(0.0, |flight| flight.incident_s);
             }
         }

@@ -305,7 +305,11 @@ impl Batch {
         }
         let places = Calibration::places(self.shots());
         let planned = self.planned(&places.collect::<Vec<_>>());
-        let sound: Vec<Plan> = planned.into_iter().flatten().map(|(plan, _)| plan).collect();
+        let sound: Vec<Plan> = planned
+            .into_iter()
+            .flatten()
+            .map(|(plan, _)| plan)
+            .collect();
         Calibration::new(&sound, self.options.set)
     }
 
@@ -353,9 +357,15 @@ impl Batch {
     }
 
     fn planned(&self, places: &[usize]) -> Vec<Planned> {
-        let chunk = if self.numbers.is_empty() { 1 } else { NEIGHBOURS };
+        let chunk = if self.numbers.is_empty() {
+            1
+        } else {
+            NEIGHBOURS
+        };
         let chunks = places.par_chunks(chunk);
-        chunks.flat_map_iter(|chunk| self.in_sequence(chunk)).collect()
+        chunks
+            .flat_map_iter(|chunk| self.in_sequence(chunk))
+            .collect()
     }
 
     /// Plans of consecutive shots: the experiment is changed where numbers do.

@@ -7,8 +7,8 @@
 use crate::accuracy;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
-use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::plan::{Pick, Plan, Solver};
+use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::shot::{Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, Flown, Precision};
@@ -194,7 +194,11 @@ fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
 /// A shot with the accuracy it reached, if that is what was asked.
 fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
     let [near, far] = [0, 1].map(|at| LONGER_STEPS[at].1 * shot.change(longer[at]));
-    let margin = if accuracy::is_gentle(plan) { 1.0 } else { OF_SHARP };
+    let margin = if accuracy::is_gentle(plan) {
+        1.0
+    } else {
+        OF_SHARP
+    };
     let reached = near.max(far) * margin;
     // Both changes may be small by chance: they confirm the accuracy asked and no better one.
     shot.accuracy_reached = Some(reached.max(shot.accuracy_asked));

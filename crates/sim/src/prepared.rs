@@ -479,13 +479,7 @@ impl<'a> PreparedShot<'a> {
             work: outcome.work,
             other_picks: other_picks.unwrap_or_default(),
             notes: Vec::from_iter(following.decided_s().map(|_| DECIDED.to_owned())),
-            ..Shot::picked(
-                self.plan,
-                passages,
-                passage,
-                outcome.time_s,
-                method.name(),
-            )
+            ..Shot::picked(self.plan, passages, passage, outcome.time_s, method.name())
         }
     }
 }

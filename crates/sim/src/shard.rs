@@ -138,8 +138,7 @@ impl Batch {
         fs::create_dir_all(folder).map_err(|error| unusable(folder, &error))?;
         let path = folder.join(format!("{}{ENDING}", self.name(shard)));
         // The whole fingerprint: a name has a part of it.
-        let same =
-            |found: &BatchResult| found.batch == self.fingerprint() && found.shard == shard;
+        let same = |found: &BatchResult| found.batch == self.fingerprint() && found.shard == shard;
         // What is not whole is written anew.
         if let Some(result) = BatchResult::read(&path).ok().filter(same) {
             return Ok(StoredShard {
@@ -434,11 +433,17 @@ fn whole(of: usize, found: Found, damaged: &[String]) -> Result<BatchResult, Stu
             first.unwrap_or(&1),
             match missing.len() {
                 0 | 1 => String::new(),
-                _ => format!(" and so on, or in a Slurm array --array={}", ranges(&missing)),
+                _ => format!(
+                    " and so on, or in a Slurm array --array={}",
+                    ranges(&missing)
+                ),
             },
             match damaged {
                 [] => String::new(),
-                _ => format!("\nnot counted, as they are not whole:\n  {}\n", damaged.join("\n  ")),
+                _ => format!(
+                    "\nnot counted, as they are not whole:\n  {}\n",
+                    damaged.join("\n  ")
+                ),
             }
         ))),
     }

@@ -45,7 +45,9 @@ fn parse_plain_or(
 ) -> Result<f64, StudyError> {
     let text = text.trim();
     let quantity = parse_quantity(text).or_else(|error| {
-        refused(format!("`{text}`: {error}; expected {expected}, such as {example}"))
+        refused(format!(
+            "`{text}`: {error}; expected {expected}, such as {example}"
+        ))
     })?;
     let fits = |unit: &str| {
         parse_unit(unit).is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension))

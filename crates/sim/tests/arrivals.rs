@@ -23,7 +23,12 @@ fn row(beads: usize, striker_kg: f64) -> Plan {
 
 fn swept(plan: &Plan) -> Shot {
     let plans = [plan.clone().for_flights()];
-    let mut shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
+    let mut shots = run_plans(
+        &plans,
+        Control::PerShot { checked: false },
+        InstructionSet::default(),
+        &|| {},
+    );
     shots.remove(0).unwrap()
 }
 
@@ -273,7 +278,13 @@ fn a_maximum_that_hardly_rises_is_found_or_called_uncertain_at_any_accuracy() {
     for accuracy in [1e-3, 1e-5] {
         let at = |plan: &Plan| [plan.clone().with_accuracy(accuracy)];
         let estimated = shoot_estimated(&at(&plan)[0].clone().with_budget());
-        let fit = run_plans(&at(&flights), Control::None, InstructionSet::default(), &|| {}).remove(0);
+        let fit = run_plans(
+            &at(&flights),
+            Control::None,
+            InstructionSet::default(),
+            &|| {},
+        )
+        .remove(0);
         for shot in [estimated, Ok(swept(&at(&flights)[0])), fit] {
             let shot = shot.unwrap();
             let back_s = shot.flight.unwrap().reflected_s.unwrap();

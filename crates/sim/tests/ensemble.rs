@@ -14,7 +14,12 @@ fn plans(name: &str, speeds_m_s: &[f64], accuracy: f64) -> Vec<Plan> {
 }
 
 fn fly(plans: &[Plan]) -> Vec<Shot> {
-    let shots = run_plans(plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
+    let shots = run_plans(
+        plans,
+        Control::PerShot { checked: false },
+        InstructionSet::default(),
+        &|| {},
+    );
     shots.into_iter().map(Result::unwrap).collect()
 }
 
@@ -116,7 +121,12 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
     let mut plans = plans("dry", &[0.3, 0.4, 0.5], 1e-5);
     let exact = fly(&plans);
     plans[1].sensor_bead = 99;
-    let shots = run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
+    let shots = run_plans(
+        &plans,
+        Control::PerShot { checked: false },
+        InstructionSet::default(),
+        &|| {},
+    );
     assert!(shots[1].is_err());
     for at in [0, 2] {
         assert_eq!(shots[at].as_ref().unwrap(), &exact[at]);
@@ -126,7 +136,12 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
 #[test]
 fn a_checked_ensemble_tells_the_accuracy_it_reached() {
     let plans = plans("gear", &SPEEDS, 1e-6);
-    for shot in run_plans(&plans, Control::PerShot { checked: true }, InstructionSet::default(), &|| {}) {
+    for shot in run_plans(
+        &plans,
+        Control::PerShot { checked: true },
+        InstructionSet::default(),
+        &|| {},
+    ) {
         assert!(shot.unwrap().accuracy_reached.unwrap() <= 1e-6);
     }
 }

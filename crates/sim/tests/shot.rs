@@ -239,7 +239,10 @@ fn a_fixed_step_that_would_take_too_long_is_refused_up_front_with_its_steps() {
             let end = rest.find([' ', ',']).unwrap();
             rest[..end].parse().unwrap()
         };
-        let (steps, order) = (number("would take about "), number("divides the error only by 2^"));
+        let (steps, order) = (
+            number("would take about "),
+            number("divides the error only by 2^"),
+        );
         // The cubic term acts at once on impact, which leaves every method an order
         // between 1 and 2: from 7e-7 at 2e4 steps it is a thousandfold to go.
         assert!((1.0..2.0).contains(&order), "{solver:?}: {order}");

@@ -10,7 +10,7 @@ use hertzchain_chain::observe::Trace;
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_measure::signal::{FitError, PowerLaw};
-use hertzchain_sim::{Column, BatchResult};
+use hertzchain_sim::{BatchResult, Column};
 
 /// What a sensor is called in figures and its unit; the last contact is the wall's.
 pub(crate) fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str) {

@@ -4,7 +4,7 @@ use crate::format::{digits, r_squared, with_error};
 use hertzchain::missing;
 use hertzchain_experiment::Units;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
-use hertzchain_sim::{Column, BatchResult};
+use hertzchain_sim::{BatchResult, Column};
 
 /// A line for the incident and one for the reflected times of flight.
 pub(super) fn lines(part: &BatchResult) -> String {

@@ -9,7 +9,7 @@ use crate::pictures;
 use crate::print::{self, heading, print};
 use hertzchain::table::{self, cell};
 use hertzchain_experiment::Units;
-use hertzchain_sim::{COLUMNS, Column, BatchResult, Rows};
+use hertzchain_sim::{BatchResult, COLUMNS, Column, Rows};
 
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
