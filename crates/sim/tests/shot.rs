@@ -194,7 +194,8 @@ fn nonsense_is_refused() {
         shoot(&plan).unwrap_err()
     };
     let step = |p: &mut Plan| p.solver = Solver::Rk4 { step_s: Some(0.0) };
-    let cases: [(fn(&mut Plan), &str); 5] = [
+    type Case = (fn(&mut Plan), &'static str);
+    let cases: [Case; 5] = [
         (|p| p.accuracy = 0.0, "an accuracy of 0 "),
         (|p| p.accuracy = f64::NAN, "an accuracy of NaN "),
         (|p| p.sensor_bead = 41, "sensor bead 41 is outside"),
