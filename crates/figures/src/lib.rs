@@ -9,7 +9,6 @@
 //! commands such as `\mu`. Equal input gives equal bytes.
 
 pub mod inference;
-pub mod paper;
 
 mod animation;
 mod axis;

@@ -2,7 +2,5 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod covered;
-mod paper;
 mod pictures;
-mod rig;
 mod type_size;

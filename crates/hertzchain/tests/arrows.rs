@@ -10,10 +10,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("experiment", &["chain"]),
     ("sim", &["chain", "experiment", "measure"]),
     ("infer", &["chain", "experiment", "measure", "sim"]),
-    ("paper", &["chain", "experiment", "measure", "sim"]),
+    ("figures", &[]),
     (
-        "figures",
-        &["chain", "experiment", "measure", "paper", "sim"],
+        "paper",
+        &["chain", "experiment", "figures", "measure", "sim"],
     ),
     (
         "hertzchain",

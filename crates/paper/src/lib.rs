@@ -6,6 +6,7 @@
 //! by virtual ones, and [`reproduce`] computes everything with tables.
 
 pub mod claims;
+pub mod figures;
 pub mod readings;
 pub mod reproduce;
 pub mod rig_claims;

@@ -1,7 +1,6 @@
 //! Figures of a shot and of a sweep.
 
 mod energy;
-pub(crate) mod rig;
 
 pub(crate) use energy::energy;
 

@@ -7,8 +7,8 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
-use hertzchain_figures::paper::{self, PaperError};
 use hertzchain_paper::claims::{Judged, MEANING, Verdict, computed_text};
+use hertzchain_paper::figures::{captions, figures};
 use hertzchain_paper::readings::Scan;
 use hertzchain_paper::reproduce::{
     Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_leftovers, reproduce,
@@ -47,12 +47,11 @@ fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
     for (name, table) in computed.tables().map_err(|error| failure(&error))? {
         folder.write(name, table.as_bytes())?;
     }
-    let pictures = paper::files(computed).map_err(|error| match error {
-        PaperError::Reproduce(error) => failure(&error),
-        error => Failure::Ours(error.to_string()),
-    })?;
-    let mut pictures = pictures.into_iter();
-    pictures.try_for_each(|(name, content)| folder.write(&name, &content))
+    let figures = figures(computed).map_err(|error| failure(&error))?;
+    for (name, figure) in &figures {
+        folder.figure(name, figure)?;
+    }
+    folder.write("captions.md", captions(&figures).as_bytes())
 }
 
 /// The paper's chains come with the program: nothing here is the user's fault.

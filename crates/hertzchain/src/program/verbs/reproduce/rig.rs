@@ -3,8 +3,8 @@
 use super::{Bar, verdicts};
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::pictures::rig as pictures;
 use hertzchain_experiment::preset;
+use hertzchain_paper::figures::rig_figures;
 use hertzchain_paper::rig_claims::{Design, MEANING, RigClaims, observe, series_csv};
 
 /// Runs the campaigns and writes verdicts, table and pictures; returns what was found, for people.
@@ -18,7 +18,7 @@ pub(super) fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
     into.write("rig-claims.json", json.as_bytes())?;
     into.write("rig-claims.md", claims.markdown().as_bytes())?;
     into.write("rig-series.csv", series_csv(&evidence).as_bytes())?;
-    for (name, figure) in pictures::figures(&evidence, &claims) {
+    for (name, figure) in rig_figures(&evidence, &claims) {
         into.figure(name, &figure)?;
     }
     Ok(format!(

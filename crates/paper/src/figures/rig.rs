@@ -1,14 +1,13 @@
 //! The rig, drawn from an experiment: what the simulation uses, and around it
 //! what the file's `[rig]` describes.
 
-use super::PaperError;
-use crate::{FarEnd, Figure, RigDrawing};
+use hertzchain_figures::{FarEnd, Figure, RigDrawing};
 use hertzchain_chain::{Bead, Chain, FarEnd as ChainEnd, Push, Start};
 use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
-use hertzchain_paper::reproduce::{Cases, ReproduceError};
+use crate::reproduce::{Cases, ReproduceError};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
-pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {
+pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
     let missing = || ReproduceError::NoCase("motor".to_owned());
     let experiment = cases.get("motor").ok_or_else(missing)?;
     let drawing = RigDrawing {
@@ -31,8 +30,8 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, PaperError> {
 ///
 /// # Errors
 /// A chain that can't be set up.
-pub fn rig(experiment: &Experiment) -> Result<RigDrawing, PaperError> {
-    let (chain, _warnings) = experiment.chain(None).map_err(ReproduceError::from)?;
+pub fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError> {
+    let (chain, _warnings) = experiment.chain(None)?;
     let beads = chain.beads.len();
     let liquid = experiment.liquid().map(|liquid| unbroken(&liquid.name));
     let named = |kind| part(experiment, kind).map_or(String::new(), |part| label(experiment, part));
@@ -65,8 +64,8 @@ fn part(experiment: &Experiment, kind: RigPartKind) -> Option<&RigPart> {
 }
 
 /// What of the rig the model leaves out, as a sentence of a caption.
-fn beside_the_model(experiment: &Experiment) -> Result<String, PaperError> {
-    let (chain, _warnings) = experiment.chain(None).map_err(ReproduceError::from)?;
+fn beside_the_model(experiment: &Experiment) -> Result<String, ReproduceError> {
+    let (chain, _warnings) = experiment.chain(None)?;
     let name = |kind| part(experiment, kind).map(|part| part.name.clone());
     let pushed = chain.push.force_n() > 0.0;
     let absent = [

@@ -1,13 +1,14 @@
 //! Figures of the claims about the rig.
 
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
-use hertzchain_paper::claims::{Branch, Judged, Verdict as Found};
-use hertzchain_paper::rig_claims::{
+use crate::claims::{Branch, Judged, Verdict as Found};
+use crate::rig_claims::{
     AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
 };
 
 /// All of them by name.
-pub(crate) fn figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
+#[must_use]
+pub fn rig_figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
     vec![
         ("rig_verdicts", verdicts(claims)),
         ("rig_spreads", spreads(evidence)),
@@ -230,7 +231,3 @@ fn means(rows: &[&[f64]]) -> Vec<f64> {
     };
     (0..contacts).map(mean_of).collect()
 }
-
-#[cfg(test)]
-#[path = "tests/rig.rs"]
-mod tests;

@@ -1,9 +1,9 @@
 //! Where the energy of a shot is, over time.
 
 use super::{US, label};
-use crate::{Chart, Colour, Dash, Figure, Legend, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Series};
 use hertzchain_chain::wave::Budget;
-use hertzchain_paper::reproduce::Film;
+use crate::reproduce::Film;
 
 /// A panel of stacked shares for each shot, and what the budgets miss.
 pub(super) fn figure(films: &[Film]) -> Figure {
