@@ -4,8 +4,8 @@ use crate::covered::covered;
 use crate::type_size::smallest_type;
 use hertzchain_experiment::Reading;
 use hertzchain_figures::Figure;
-use hertzchain_paper::figures;
 use hertzchain_paper::claims::{Claim, Verdict, claims};
+use hertzchain_paper::figures;
 use hertzchain_paper::readings::{Row, Scan};
 use hertzchain_paper::reproduce::{Options, PROVENANCE, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
@@ -95,13 +95,24 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     let pictures = figures::figures(&computed).unwrap();
     let drawn: BTreeSet<&str> = pictures.iter().map(|(name, _)| *name).collect();
     assert_eq!(drawn, BTreeSet::from(FIGURES));
-    let names: Vec<&str> = tables.iter().map(|(name, _)| *name).chain([PROVENANCE]).collect();
-    assert_eq!(names.iter().copied().collect::<BTreeSet<_>>(), BTreeSet::from(TABLES));
+    let names: Vec<&str> = tables
+        .iter()
+        .map(|(name, _)| *name)
+        .chain([PROVENANCE])
+        .collect();
+    assert_eq!(
+        names.iter().copied().collect::<BTreeSet<_>>(),
+        BTreeSet::from(TABLES)
+    );
     let provenance = computed.provenance_json(&names);
     for name in names {
         assert!(provenance.contains(&format!("\"{name}\"")), "{name}");
     }
     let captions = figures::captions(&pictures);
-    assert!(drawn.iter().all(|name| captions.contains(&format!("## {name}\n"))));
+    assert!(
+        drawn
+            .iter()
+            .all(|name| captions.contains(&format!("## {name}\n")))
+    );
     assert!(pictures[0].1.png(100.0).unwrap().starts_with(b"\x89PNG"));
 }

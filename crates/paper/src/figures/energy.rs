@@ -1,9 +1,9 @@
 //! Where the energy of a shot is, over time.
 
 use super::{US, label};
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Series};
-use hertzchain_chain::wave::Budget;
 use crate::reproduce::Film;
+use hertzchain_chain::wave::Budget;
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Series};
 
 /// A panel of stacked shares for each shot, and what the budgets miss.
 pub(super) fn figure(films: &[Film]) -> Figure {

@@ -12,8 +12,8 @@ mod times;
 pub use rig::rig;
 pub use rig_claims::rig_figures;
 
-use hertzchain_figures::{Colour, Figure, Marker};
 use crate::reproduce::{ReproduceError, Reproduction};
+use hertzchain_figures::{Colour, Figure, Marker};
 
 /// All figures of a reproduction with their names.
 ///
@@ -37,9 +37,11 @@ pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, Reprodu
 /// Titles and captions of figures as Markdown.
 #[must_use]
 pub fn captions(figures: &[(&str, Figure)]) -> String {
-    figures.iter().fold(String::from("# Captions\n"), |text, (name, figure)| {
-        text + &format!("\n## {name}\n{}\n", figure.caption_text())
-    })
+    figures
+        .iter()
+        .fold(String::from("# Captions\n"), |text, (name, figure)| {
+            text + &format!("\n## {name}\n{}\n", figure.caption_text())
+        })
 }
 
 /// How a case is named in legends.

@@ -1,9 +1,9 @@
 //! Wet over dry times of flight, the paper's Fig. 4.
 
 use super::{label, look};
-use hertzchain_figures::{Chart, Dash, Figure, Series};
 use crate::claims::Evidence;
 use crate::reproduce::OILS;
+use hertzchain_figures::{Chart, Dash, Figure, Series};
 
 /// Three ratios against speed with a line at 1.
 pub(super) fn figure(evidence: &Evidence) -> Figure {

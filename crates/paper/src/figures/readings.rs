@@ -1,8 +1,8 @@
 //! Which claims hold in which reading.
 
-use hertzchain_figures::{Figure, Verdict, VerdictMatrix};
 use crate::claims::Verdict as Judged;
 use crate::readings::{FLIPPED, Row, Scan};
+use hertzchain_figures::{Figure, Verdict, VerdictMatrix};
 
 /// Claims against readings: the default, one switch at a time, the closest.
 ///

@@ -1,10 +1,10 @@
 //! The rig, drawn from an experiment: what the simulation uses, and around it
 //! what the file's `[rig]` describes.
 
-use hertzchain_figures::{FarEnd, Figure, RigDrawing};
+use crate::reproduce::{Cases, ReproduceError};
 use hertzchain_chain::{Bead, Chain, FarEnd as ChainEnd, Push, Start};
 use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
-use crate::reproduce::{Cases, ReproduceError};
+use hertzchain_figures::{FarEnd, Figure, RigDrawing};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
 pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {

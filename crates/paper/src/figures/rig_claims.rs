@@ -1,10 +1,10 @@
 //! Figures of the claims about the rig.
 
-use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
 use crate::claims::{Branch, Judged, Verdict as Found};
 use crate::rig_claims::{
     AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
 };
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
 
 /// All of them by name.
 #[must_use]

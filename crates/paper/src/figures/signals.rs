@@ -1,8 +1,8 @@
 //! The signals of the paper's Fig. 2.
 
 use super::{US, label, scaled};
-use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 use crate::reproduce::SignalShot;
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 
 /// Names and symbols of the three pulses.
 const PULSES: [(&str, Marker, Colour); 3] = [

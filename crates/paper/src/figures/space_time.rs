@@ -1,8 +1,8 @@
 //! Bead velocities over time and place.
 
 use super::{US, label};
-use hertzchain_figures::{Chart, ColourMap, Figure, HeatMap};
 use crate::reproduce::Film;
+use hertzchain_figures::{Chart, ColourMap, Figure, HeatMap};
 
 /// One map a shot, the wave running from below to the wall above and back.
 pub(super) fn figure(films: &[Film]) -> Figure {

@@ -1,8 +1,8 @@
 //! Dry times of flight against speed, the paper's Fig. 3.
 
 use super::{US, scaled};
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use crate::claims::{Branch, Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 
 /// Incident and reflected ToF with the log–log inset.
 pub(super) fn figure(evidence: &Evidence) -> Figure {
