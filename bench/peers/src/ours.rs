@@ -133,7 +133,7 @@ fn systems(case: Case, speeds_m_s: &[f64]) -> Vec<System> {
         .collect()
 }
 
-fn tofs(flown: ensemble::Flown) -> Option<(f64, f64)> {
+fn tofs(flown: ensemble::LaneResult) -> Option<(f64, f64)> {
     let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
     let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let (incident, wall, reflected) = passages.peaks().ok()?;

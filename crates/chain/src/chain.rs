@@ -207,4 +207,7 @@ pub enum ChainError {
     /// No static equilibrium exists.
     #[error("no static equilibrium: {0}")]
     Equilibrium(String),
+    /// A theory's number was not found to its accuracy.
+    #[error("{0}")]
+    NotConverged(String),
 }

@@ -7,7 +7,6 @@ use fearless_simd::Level;
 pub struct InstructionSet(Level);
 
 impl Default for InstructionSet {
-    /// The best one.
     fn default() -> Self {
         Self(Level::new())
     }

@@ -158,7 +158,6 @@ fn check_table(times_s: &[f64], positions_m: &[f64]) -> Result<(), String> {
     }
 }
 
-/// a sin²(πt/T) and its rate.
 fn push_and_back(amplitude_m: f64, duration_s: f64, time_s: f64) -> (f64, f64) {
     let omega = TAU / duration_s;
     let (sin, cos) = (omega * time_s).sin_cos();

@@ -7,12 +7,11 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{
-    End, EnsembleError, Flown, Precision, Settings, Shot, fire, fire_while,
-};
+use hertzchain_chain::ensemble::{End, LaneResult, Precision, Settings, Shot, fire, fire_while};
 use hertzchain_chain::laws::{
     DampingCubic, DampingLinear, DampingPower, ElasticHertz, ElasticPlasticThornton, Law, law,
 };
+use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::*;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -24,7 +23,7 @@ fn dry() -> Vec<Arc<dyn Law>> {
 }
 
 #[track_caller]
-fn same(one: &Flown, two: &Flown, which: impl Fn() -> String) {
+fn same(one: &LaneResult, two: &LaneResult, which: impl Fn() -> String) {
     if let Some(difference) = difference(one, two) {
         panic!("{}: {difference}", which());
     }
@@ -269,7 +268,7 @@ fn shots_that_nobody_wants_any_more_are_broken_off_within_few_steps() {
             let asked = Cell::new(0);
             let wanted = || asked.replace(asked.get() + 1) < most;
             for flown in fire_while(&shots, &settings, &wanted) {
-                assert_eq!(flown.unwrap_err(), EnsembleError::BrokenOff);
+                assert_eq!(flown.unwrap_err(), SolveError::BrokenOff);
             }
             assert_eq!(asked.get(), most + 1);
         }
@@ -304,13 +303,13 @@ fn a_shot_that_diverges_is_reported_alone_and_its_neighbours_keep_their_bits() {
             for (lane, flown) in fired(&systems).into_iter().enumerate() {
                 match flown {
                     Ok(flown) => same(&flown, &sound, || format!("lane {lane} beside {bad}")),
-                    Err(EnsembleError::NotFinite { .. }) => assert_eq!(lane, bad),
+                    Err(SolveError::Diverged(_)) => assert_eq!(lane, bad),
                     Err(error) => unreachable!("{error}"),
                 }
             }
         }
         let alone = fired(&[system(true)]);
-        assert!(matches!(alone[0], Err(EnsembleError::NotFinite { .. })));
+        assert!(matches!(alone[0], Err(SolveError::Diverged(_))));
     }
 }
 
@@ -330,7 +329,7 @@ fn a_shot_that_cannot_be_fired_is_refused_alone() {
         .collect();
     for (i, (shot, flown)) in shots.iter().zip(fire(&shots, &settings)).enumerate() {
         match (i, flown) {
-            (2 | 5, Err(EnsembleError::Setting { .. })) => {}
+            (2 | 5, Err(SolveError::Setting { .. })) => {}
             (_, flown) => {
                 let alone = fire_one(shot.system, (0.1, DURATION_S), &settings);
                 same(&flown.unwrap(), &alone, || format!("shot {i}"));
@@ -350,6 +349,8 @@ fn a_sensor_that_only_some_chains_have_is_refused_only_there() {
     let missing = Sensor::Bead(7);
     assert_eq!(
         flown[1].as_ref().err(),
-        Some(&EnsembleError::Sensor { sensor: missing })
+        Some(&SolveError::Refused(format!(
+            "the chain has no {missing:?}"
+        )))
     );
 }

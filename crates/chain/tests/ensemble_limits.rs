@@ -3,7 +3,8 @@
 use crate::common::ensemble::*;
 use crate::common::*;
 use allocation_counter::measure;
-use hertzchain_chain::ensemble::{EnsembleError, Settings};
+use hertzchain_chain::ensemble::Settings;
+use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::*;
 
 /// A row with a gap before a contact.
@@ -23,7 +24,7 @@ fn a_flight_through_a_long_gap_is_given_up_for_little_memory() {
     let took = measure(|| {
         // Twenty seconds: forty million steps.
         let flown = fire_all(&systems, (0.036, 20.0), &settings);
-        let Err(EnsembleError::TooManySteps { time_s }) = flown[0] else {
+        let Err(SolveError::TooManySteps { time_s, .. }) = flown[0] else {
             unreachable!("a flight of twenty seconds was followed")
         };
         // As soon as it is looked at: 4,096 steps after three beads have let go.

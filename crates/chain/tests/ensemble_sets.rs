@@ -2,7 +2,7 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{Flown, Precision, Settings};
+use hertzchain_chain::ensemble::{LaneResult, Precision, Settings};
 use hertzchain_chain::laws::{DampingTsuji, Law, law};
 use hertzchain_chain::observe::Passage;
 use hertzchain_chain::*;
@@ -26,7 +26,7 @@ fn both(
     precision: Precision,
     chain: &Chain,
     (step, openings): (f64, bool),
-) -> [Flown; 2] {
+) -> [LaneResult; 2] {
     let baseline = InstructionSet::available().pop().unwrap();
     let system = System::new(chain).unwrap();
     [baseline, set].map(|set| {
@@ -54,7 +54,7 @@ fn chains() -> [Chain; 4] {
 
 /// Largest relative differences of times of flight and of peaks, and of
 /// velocities at the end over the shot's.
-fn differences([one, two]: &[Flown; 2]) -> [f64; 3] {
+fn differences([one, two]: &[LaneResult; 2]) -> [f64; 3] {
     let velocity = one.velocity_m_s.iter().zip(&two.velocity_m_s);
     let velocity = velocity.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / 0.5;
     let [one, two] = [one, two].map(|flown| passage(flown).unwrap());

@@ -7,7 +7,7 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{End, Flown, Precision, Settings};
+use hertzchain_chain::ensemble::{End, LaneResult, Precision, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::*;
 use std::sync::Arc;
@@ -100,7 +100,7 @@ fn pair(
     lanes: usize,
     chain: impl Fn(f64) -> Chain,
     openings: bool,
-) -> [Vec<Flown>; 2] {
+) -> [Vec<LaneResult>; 2] {
     let speed = |lane: usize| 0.3 + 0.1 * lane as f64;
     let systems: Vec<System> = (0..lanes)
         .map(|lane| System::new(&chain(speed(lane))).unwrap())

@@ -2,15 +2,15 @@
 
 use crate::common::*;
 use hertzchain_chain::laws::{DampingLinear, DampingTsuji, Law, law};
-use hertzchain_chain::settle::{Rest, SettleError, SlowPhase, State, settle};
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::settle::{Rest, SlowPhase, State, settle};
+use hertzchain_chain::wave::{DormandPrince, Limits, SolveError, run};
 use hertzchain_chain::*;
 use std::sync::Arc;
 
 const FRICTION: f64 = 0.05;
 const G: f64 = chain::STANDARD_GRAVITY_M_S2;
 
-fn calm(system: &System, state: &mut State, slow: &SlowPhase) -> Result<Rest, SettleError> {
+fn calm(system: &System, state: &mut State, slow: &SlowPhase) -> Result<Rest, SolveError> {
     settle(system, state, slow, &mut |_, _, _| {})
 }
 
@@ -79,10 +79,9 @@ fn above_the_friction_angle_a_bead_slides_with_what_friction_leaves() {
     let moving = settle(&system, &mut state, &slow, &mut |time_s, state, _| {
         way = (time_s, state.displacement_m[1] - start);
     });
-    assert!(matches!(
-        moving,
-        Err(SettleError::StillMoving { body: 1, .. })
-    ));
+    let error = moving.unwrap_err();
+    assert!(matches!(error, SolveError::StillMoving { .. }));
+    assert!(error.to_string().contains("body 1 (0 is"), "{error}");
     let (sin, cos) = tangent.atan().sin_cos();
     let acceleration = G * (sin - FRICTION * cos);
     // A constant force is exact in a leapfrog: rounding alone.
@@ -126,7 +125,7 @@ fn two_beads_part_as_fast_as_in_the_wave_loop() {
         };
         let mut state = State::start(&system);
         let moving = calm(&system, &mut state, &slow);
-        assert!(matches!(moving, Err(SettleError::StillMoving { .. })));
+        assert!(matches!(moving, Err(SolveError::StillMoving { .. })));
         let found = rebound(&state.velocity_m_s, 0.18);
         // Steps of a twentieth of the period, openings and closings not located:
         // a damping that acts in full at the instant of touch is late by half a step.
@@ -279,19 +278,16 @@ fn what_is_wrong_is_said() {
     }
     let mut short = State::start(&system);
     short.velocity_m_s.pop();
-    assert!(matches!(
-        calm(&system, &mut short, &fine),
-        Err(SettleError::Shape { .. })
-    ));
+    let error = calm(&system, &mut short, &fine).unwrap_err();
+    assert!(error.to_string().starts_with("a state of "), "{error}");
     let mut lost = State::start(&system);
     lost.displacement_m[1] = f64::NAN;
     let error = calm(&system, &mut lost, &fine).unwrap_err();
-    assert_eq!(
-        error,
-        SettleError::NotFinite {
-            time_s: 0.0,
-            body: 1
-        }
+    assert!(matches!(error, SolveError::Diverged(_)));
+    let text = error.to_string();
+    assert!(
+        text.contains("after t = 0e0 s") && text.contains("body 1 (0 is"),
+        "{text}"
     );
     assert!(system.from_state(&lost).is_err() && system.from_state(&short).is_err());
     assert_eq!(lost.overlap_m(&system, 99), f64::NEG_INFINITY);
@@ -306,7 +302,8 @@ fn what_is_wrong_is_said() {
     };
     let ring = System::new(&ring).unwrap();
     let error = calm(&ring, &mut State::start(&ring), &fine).unwrap_err();
-    assert_eq!(error, SettleError::Restless("a ring"));
+    let text = error.to_string();
+    assert!(text.starts_with("a ring does not come to rest"), "{text}");
     assert!(ring.from_state(&State::start(&ring)).is_err());
 }
 

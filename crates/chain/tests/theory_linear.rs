@@ -1,6 +1,5 @@
 //! Linear theory: normal modes against closed forms, dispersion against modes.
 
-use hertzchain_chain::theory::TheoryError;
 use hertzchain_chain::theory::linear::{
     Dimer, Ends, UniformChain, contact_stiffness_n_m, normal_modes,
 };
@@ -203,13 +202,8 @@ fn waves_above_the_cutoff_decay_by_the_recurrence_of_the_lattice() {
 #[test]
 fn wrong_lists_are_refused() {
     let few = normal_modes(&[1.0, 1.0], &[1.0, 1.0], Ends::FreeFree);
-    assert!(matches!(
-        few,
-        Err(TheoryError::ContactCount {
-            expected: 1,
-            given: 2
-        })
-    ));
+    let text = few.unwrap_err().to_string();
+    assert!(text.starts_with("2 contact stiffnesses given"), "{text}");
     assert!(normal_modes(&[], &[], Ends::FreeFree).is_err());
     assert!(normal_modes(&[1.0, f64::NAN], &[1.0], Ends::FreeFree).is_err());
     assert!(normal_modes(&[1.0, 1.0], &[0.0], Ends::FreeFree).is_err());

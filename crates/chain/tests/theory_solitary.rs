@@ -1,7 +1,7 @@
 //! The exact lattice solitary wave against published digits, theorems and the lattice itself.
 
 use crate::row::verlet_step;
-use hertzchain_chain::theory::TheoryError;
+use hertzchain_chain::ChainError;
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave, kinetic_share_by_virial};
 
 const EXPONENTS: [f64; 9] = [1.02, 1.2, 1.5, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0];
@@ -161,7 +161,7 @@ fn widths_are_where_the_profiles_pass_half_their_height() {
 fn exponents_and_sizes_out_of_range_are_refused() {
     for exponent in [f64::NAN, -1.0, 1.0, 1e300] {
         let refused = SolitaryShape::new(exponent);
-        assert!(matches!(refused, Err(TheoryError::OutOfRange { .. })));
+        assert!(matches!(refused, Err(ChainError::Value { .. })));
     }
     let shape = SolitaryShape::hertz().unwrap();
     for force in [0.0, -1.0, f64::NAN, f64::INFINITY] {

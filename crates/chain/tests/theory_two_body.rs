@@ -1,6 +1,6 @@
 //! Two-body collisions: closed forms, series and integration against each other.
 
-use hertzchain_chain::theory::TheoryError;
+use hertzchain_chain::ChainError;
 use hertzchain_chain::theory::two_body::{
     ContactEnd, ElasticCollision, ViscoelasticCollision, rebound, reduced_mass_kg,
     restitution_by_series, restitution_coefficients,
@@ -172,6 +172,6 @@ fn parameters_out_of_range_are_refused() {
         (1.5, 1e9),
     ] {
         let refused = rebound(exponent, x, ContactEnd::ZeroOverlap);
-        assert!(matches!(refused, Err(TheoryError::OutOfRange { .. })));
+        assert!(matches!(refused, Err(ChainError::Value { .. })));
     }
 }

@@ -24,7 +24,7 @@ pub(crate) fn problem(spec: &Spec, error: &ChainError) -> Problem {
                 format!("expected it to be {expected}"),
             )
         }
-        ChainError::Layout(why) => {
+        ChainError::Layout(why) | ChainError::NotConverged(why) => {
             Problem::new(&beads(spec), why, "expected parts that fit together")
         }
     }

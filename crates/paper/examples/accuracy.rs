@@ -14,7 +14,7 @@
 //! longer steps by which a sweep tells how good a shot is: how many of the 66
 //! pass, and the largest error of those that do over what was asked.
 
-use hertzchain_chain::ensemble::{self, End, Flown, Precision};
+use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::wave::Work;
 use hertzchain_chain::{Sensor, System};
@@ -259,7 +259,7 @@ fn judges() -> Result<()> {
 }
 
 /// Relative changes of the incident and the reflected time of flight.
-fn rounded(double: Flown, single: Flown) -> Option<[f64; 2]> {
+fn rounded(double: LaneResult, single: LaneResult) -> Option<[f64; 2]> {
     let (double, single) = (flight(double)?, flight(single)?);
     let incident = single.incident_s / double.incident_s;
     let reflected = single.reflected_s? / double.reflected_s?;
@@ -272,7 +272,7 @@ fn flown(
     step: f64,
     (precision, openings): (Precision, bool),
     end: End,
-) -> Result<Vec<Option<Flown>>> {
+) -> Result<Vec<Option<LaneResult>>> {
     let plans = plans(name, EXACT)?;
     let systems = plans.iter().map(|plan| Ok(System::new(&plan.chain)?));
     let systems = systems.collect::<Result<Vec<_>>>()?;
@@ -293,11 +293,11 @@ fn flown(
         openings,
     };
     let flown = ensemble::fire(&shots, &settings).into_iter();
-    let trusted = |flown: &Flown| flown.correction <= MOST_CORRECTION;
+    let trusted = |flown: &LaneResult| flown.correction <= MOST_CORRECTION;
     Ok(flown.map(|flown| flown.ok().filter(trusted)).collect())
 }
 
-fn flight(flown: Flown) -> Option<Flight> {
+fn flight(flown: LaneResult) -> Option<Flight> {
     let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
     let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let passage = passages.passage().ok()?;

@@ -59,7 +59,7 @@ const OF_CHANGES: [f64; 2] = [2.0, 1.25];
 
 /// Runs may agree by chance; no result is trusted to less than this many
 /// tolerances of a step. Measured over the paper's chains and speeds: with both
-/// no error is larger than what is told, `docs/numerics.md`.
+/// no error is larger than the estimate, `docs/numerics.md`.
 const OF_TOLERANCE: f64 = 5.0;
 
 /// Laws of the rows on which margins of estimates were measured.
@@ -120,7 +120,7 @@ pub(crate) fn of_times(plan: &Plan) -> f64 {
 
 /// Steps of the ensemble loop, in contact times, with which rows of alike
 /// beads mostly reach an accuracy, and whether openings must be found: measured,
-/// `docs/numerics.md`. Each shot tells by two longer steps whether it has.
+/// `docs/numerics.md`. Two longer steps show whether each shot has.
 const EQUAL_STEPS: [(f64, f64, bool); 5] = [
     (1e-3, 0.13, false),
     (1e-4, 0.1, false),
@@ -129,7 +129,7 @@ const EQUAL_STEPS: [(f64, f64, bool); 5] = [
     (1e-7, 0.013, true),
 ];
 
-/// Chains longer than this lose more on the way than [`EQUAL_STEPS`] tells.
+/// Chains longer than this lose more on the way than [`EQUAL_STEPS`] allows for.
 const EQUAL_STEPS_FOR: f64 = 60.0;
 
 /// The step of the ensemble loop for a plan's accuracy, and whether openings
@@ -176,7 +176,6 @@ pub(crate) fn first_step_s(system: &System) -> f64 {
     FIRST_STEP * system.scales().time_s
 }
 
-/// A fixed-step solver.
 pub(crate) fn fixed(solver: Solver, step_s: f64) -> Box<dyn Method> {
     match solver {
         Solver::Verlet { .. } => Box::new(Verlet { step_s }),
@@ -201,9 +200,8 @@ pub(crate) struct Halvings {
     changes: Vec<f64>,
 }
 
-/// What an accuracy would take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Outlook {
+pub(crate) struct Forecast {
     /// Observed order of convergence, at least 1.
     pub order: f64,
     /// Halvings still to be made.
@@ -216,7 +214,6 @@ impl Halvings {
         self.changes.push(change);
     }
 
-    /// The latest change.
     pub(crate) fn last(&self) -> f64 {
         self.changes.last().copied().unwrap_or(f64::INFINITY)
     }
@@ -232,13 +229,13 @@ impl Halvings {
 
     /// Halvings that an accuracy still takes at the order seen so far (Richardson);
     /// `None` as long as too few changes are known.
-    pub(crate) fn outlook(&self, accuracy: f64) -> Option<Outlook> {
+    pub(crate) fn forecast(&self, accuracy: f64) -> Option<Forecast> {
         let seen = self.changes.get(self.changes.len().checked_sub(SEEN)?..)?;
         let (first, last) = (seen.first()?, seen.last()?);
         let order = (first / last).log2() / (SEEN - 1) as f64;
         let order = order.is_finite().then_some(order.max(LEAST_ORDER))?;
         let halvings = ((last / accuracy).log2() / order).ceil();
-        Some(Outlook { order, halvings })
+        Some(Forecast { order, halvings })
     }
 }
 

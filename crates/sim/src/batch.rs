@@ -100,7 +100,6 @@ impl BatchOptions {
 pub struct Batch {
     experiment: Experiment,
     speeds_m_s: Vec<f64>,
-    /// Full paths with one value a shot.
     numbers: Vec<(String, Vec<f64>)>,
     options: BatchOptions,
     /// A hash of all of the above: computed once, however many shards ask for it.

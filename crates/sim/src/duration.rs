@@ -4,13 +4,12 @@
 //! reflected pulse have been looked for, until 3 tw and tw + 3 (tw − tn); one that
 //! follows its striker goes on until the striker is away for good, or for [`RETURNS`] times the
 //! pulse's way to the wall, whichever comes first. A long chain ends earlier,
-//! once energy alone tells that neither can change any more. Without a wall a
+//! once energy alone shows that neither can change any more. Without a wall a
 //! shot ends when all bodies fly apart.
 
 use crate::plan::Plan;
 use hertzchain_chain::{FarEnd, Start, System};
 
-/// How a shot ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct End {
     /// Longest duration in s.
@@ -26,7 +25,7 @@ pub(crate) struct End {
     pub looks: Looks,
     /// The striker is followed until it is away for good.
     pub striker: bool,
-    /// Once energy tells that nothing can change any more.
+    /// Once energy shows that nothing can change any more.
     pub when_decided: bool,
 }
 

@@ -11,7 +11,7 @@ use crate::plan::{Pick, Plan, Solver};
 use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::shot::{Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
-use hertzchain_chain::ensemble::{self, End, Flown, Precision};
+use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
 use hertzchain_chain::observe::{Passage, Passages};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
@@ -208,12 +208,10 @@ fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
 /// Step size and precision of plans that run side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Setting {
-    /// In contact times.
     step: f64,
     /// That of each plan's accuracy if `None`; where a load presses beads
     /// together never single.
     precision: Option<Precision>,
-    /// Whether openings are located.
     openings: bool,
     /// Pulses have widths, whether or not a pick needs their shape.
     shapes: bool,
@@ -223,7 +221,6 @@ struct Setting {
 }
 
 impl Setting {
-    /// For a plan's accuracy.
     fn of(plan: &Plan) -> Option<Self> {
         let (step, openings) = accuracy::equal_steps(plan)?;
         Some(Self {
@@ -295,7 +292,7 @@ fn run_lanes(
         whole_chain: false,
         openings: setting.openings,
     };
-    let picked = |at: usize, lane: Result<Flown, _>| {
+    let picked = |at: usize, lane: Result<LaneResult, _>| {
         let (plan, system) = ready[at];
         shot(plan, (system, settings.end), lane.ok()?)
     };
@@ -323,7 +320,7 @@ fn may_hide(plan: &Plan, passage: &Passage, (time_s, at_wall_n): (f64, f64)) -> 
 }
 
 /// What a plan asks for, from what its sensors showed.
-fn shot(plan: &Plan, (system, end): (&System, End), lane: Flown) -> Option<Shot> {
+fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<Shot> {
     if lane.correction > MOST_CORRECTION {
         return None;
     }

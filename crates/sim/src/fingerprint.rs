@@ -8,7 +8,7 @@ use std::fmt::{Debug, Display, Formatter, Result as Formatted};
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Fingerprint([u8; 32]);
 
-/// Digits of the short form: 64 bits, enough to tell works of one place apart.
+/// Digits of the short form: 64 bits, enough to distinguish works of one place.
 const SHORT: usize = 16;
 
 impl Fingerprint {

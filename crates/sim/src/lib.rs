@@ -24,7 +24,6 @@ mod duration;
 mod engine;
 mod error;
 mod fingerprint;
-mod following;
 mod long_work;
 mod other_picks;
 mod plan;
@@ -34,6 +33,7 @@ mod shard;
 mod shot;
 mod speeds;
 mod stop;
+mod tracker;
 
 pub use batch::{Batch, BatchOptions, BatchResult, BatchShot, ErrorControl};
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};

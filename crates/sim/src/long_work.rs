@@ -68,7 +68,6 @@ impl fmt::Display for Expected {
     }
 }
 
-/// A duration as people say it.
 fn rough(time_s: f64) -> String {
     let units = [(86_400.0, "d"), (3600.0, "h"), (60.0, "min")];
     let unit = units.into_iter().find(|(unit_s, _)| time_s >= 1.5 * unit_s);
@@ -105,7 +104,6 @@ impl Counted {
         self.steps as f64 >= self.most_steps
     }
 
-    /// Progress in words.
     fn note(&self, time_s: f64) -> String {
         let share = (self.steps as f64 / self.expected).min(0.99);
         let left_s = self.begun.elapsed().as_secs_f64() * (1.0 / share - 1.0);

@@ -247,7 +247,6 @@ impl Plan {
         self
     }
 
-    /// Refuses what no shot can be.
     pub(crate) fn check(&self) -> Result<(), StudyError> {
         let beads = self.chain.beads.len();
         if !(1..=beads).contains(&self.sensor_bead) {

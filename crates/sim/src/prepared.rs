@@ -1,14 +1,14 @@
 //! Running a plan: once, with steps halved, or again to check.
 
-use crate::accuracy::{self, Halvings, MOST_HALVINGS, Outlook, TIGHTEST};
+use crate::accuracy::{self, Forecast, Halvings, MOST_HALVINGS, TIGHTEST};
 use crate::duration::{self, End};
 use crate::error::StudyError;
-use crate::following::Following;
 use crate::long_work::Counted;
 use crate::other_picks::other_picks;
 use crate::plan::{Plan, Solver, Watch};
 use crate::shot::{Rebound, Shot, ambiguous};
 use crate::stop::stopped;
+use crate::tracker::Tracker;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
@@ -192,7 +192,6 @@ impl<'a> PreparedShot<'a> {
         Ok(shot)
     }
 
-    /// The accuracy that a tolerance is for.
     fn accuracy_at(&self, tolerance: f64) -> f64 {
         self.plan.accuracy * tolerance / accuracy::tolerance(self.plan).0
     }
@@ -281,11 +280,11 @@ impl<'a> PreparedShot<'a> {
             if halvings.standing() <= self.plan.accuracy {
                 return self.converged(solver, step_s(halving), halvings.standing(), next);
             }
-            let outlook = halvings.outlook(self.plan.accuracy);
-            if let (Some(outlook), Ok(shot)) = (outlook, &next)
-                && f64::from(halving) + outlook.halvings > f64::from(MOST_HALVINGS)
+            let forecast = halvings.forecast(self.plan.accuracy);
+            if let (Some(forecast), Ok(shot)) = (forecast, &next)
+                && f64::from(halving) + forecast.halvings > f64::from(MOST_HALVINGS)
             {
-                return Err(self.too_many_steps(shot, outlook));
+                return Err(self.too_many_steps(shot, forecast));
             }
             last = next;
         }
@@ -301,8 +300,8 @@ impl<'a> PreparedShot<'a> {
     }
 
     /// The refusal of an accuracy, from a shot with a longer step.
-    fn too_many_steps(&self, shot: &Shot, outlook: Outlook) -> StudyError {
-        let finer = outlook.halvings.exp2();
+    fn too_many_steps(&self, shot: &Shot, forecast: Forecast) -> StudyError {
+        let finer = forecast.halvings.exp2();
         let (time_s, contact) = self.last_pulse(shot);
         StudyError::NotConverged(format!(
             "{} does not reach an accuracy of {:e} in reasonable time: it would take about {:.0e} steps of {:.0e} s, \
@@ -312,7 +311,7 @@ impl<'a> PreparedShot<'a> {
             self.plan.accuracy,
             shot.work.steps as f64 * finer,
             shot.step_s.unwrap_or(f64::NAN) / finer,
-            outlook.order,
+            forecast.order,
         ))
     }
 
@@ -359,7 +358,6 @@ impl<'a> PreparedShot<'a> {
         }
     }
 
-    /// One run with one method.
     fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
         self.integrate(method, sampled, accuracy::of_times(self.plan))
     }
@@ -371,13 +369,13 @@ impl<'a> PreparedShot<'a> {
         sampled: bool,
         slow_tolerance: f64,
     ) -> Result<Shot, StudyError> {
-        let mut following = Following::new(self.plan, &self.end);
+        let mut tracker = Tracker::new(self.plan, &self.end);
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
         let mut counted = Counted::new(self.plan, &self.system, &self.end);
         let mut observers: Vec<&mut dyn Observer> =
-            vec![&mut counted, &mut following, &mut separation];
+            vec![&mut counted, &mut tracker, &mut separation];
         if self.end.when_apart {
             observers.push(&mut apart);
         }
@@ -391,7 +389,7 @@ impl<'a> PreparedShot<'a> {
         if stopped() {
             return Err(StudyError::Stopped);
         }
-        if following.passages().is_full() {
+        if tracker.passages().is_full() {
             return Err(StudyError::Refused(format!(
                 "the sensors have shown more than is kept of a shot after {:.1e} steps, {:.3e} s after its start; \
                  give a shorter duration (--duration), a longer step or less accuracy",
@@ -399,16 +397,15 @@ impl<'a> PreparedShot<'a> {
             )));
         }
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
-        let mut shot = self.shot(method, outcome, &following, separation, trace);
+        let mut shot = self.shot(method, outcome, &tracker, separation, trace);
         shot.finished &= !counted.is_long();
-        shot.notes.extend(self.ended_early(&shot, &following));
+        shot.notes.extend(self.ended_early(&shot, &tracker));
         Ok(shot)
     }
 
-    /// What was not waited for.
-    fn ended_early(&self, shot: &Shot, following: &Following) -> Option<String> {
+    fn ended_early(&self, shot: &Shot, tracker: &Tracker) -> Option<String> {
         let searched_s = shot.passage.as_ref().ok()?.search_ends_s;
-        let decided = following.decided_s().is_some();
+        let decided = tracker.decided_s().is_some();
         (shot.duration_s < searched_s && !decided).then(|| {
             format!(
                 "the shot ends at t = {:.4e}, before the search for the wall's peak and the reflected pulse is over \
@@ -446,11 +443,11 @@ impl<'a> PreparedShot<'a> {
         &self,
         method: &dyn Method,
         outcome: Outcome,
-        following: &Following,
+        tracker: &Tracker,
         separation: Separation,
         trace: Option<Trace>,
     ) -> Shot {
-        let passages = following.passages();
+        let passages = tracker.passages();
         let passage = match duration::has_wall(&self.plan.chain.far) {
             true => passages.passage(),
             false => Err(PassageError::NoWallPulse {
@@ -465,7 +462,7 @@ impl<'a> PreparedShot<'a> {
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();
         let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         let at_end = at_end_m_s.map(|velocity_m_s| (outcome.time_s, velocity_m_s));
-        let end = following.last_word().or(at_end);
+        let end = tracker.last_word().or(at_end);
         Shot {
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),
@@ -478,7 +475,7 @@ impl<'a> PreparedShot<'a> {
             velocity_m_s: outcome.velocity_m_s,
             work: outcome.work,
             other_picks: other_picks.unwrap_or_default(),
-            notes: Vec::from_iter(following.decided_s().map(|_| DECIDED.to_owned())),
+            notes: Vec::from_iter(tracker.decided_s().map(|_| DECIDED.to_owned())),
             ..Shot::picked(self.plan, passages, passage, outcome.time_s, method.name())
         }
     }

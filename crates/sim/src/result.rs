@@ -189,7 +189,6 @@ impl Rows {
     }
 }
 
-/// What is stored of a shot.
 fn cells(speed_m_s: f64, shot: &Shot) -> [Option<f64>; COLUMNS.len()] {
     let seen = shot.passage.as_ref().ok();
     let (competing, reflected) = (shot.competing_arrival(), shot.competing_reflected());

@@ -167,7 +167,6 @@ const FORMAT: &str = "hertzchain sweep shard 1";
 const PREFIX: &str = "sweep-";
 const ENDING: &str = ".h5";
 
-/// What stands beside the numbers, as JSON.
 #[derive(Serialize, Deserialize)]
 struct Header {
     format: String,
@@ -348,7 +347,6 @@ impl BatchResult {
             .and_then(|((_, of), found)| whole(of, found, &damaged))
     }
 
-    /// Bit for bit, NaN included.
     fn equals(&self, other: &Self) -> bool {
         let bits = |part: &Self| {
             let values = part.rows.columns.iter().flatten();
@@ -360,7 +358,6 @@ impl BatchResult {
     }
 }
 
-/// Files called like shards, by name.
 fn files(folders: &[&Path]) -> Result<BTreeSet<PathBuf>, StudyError> {
     let mut files = BTreeSet::new();
     for folder in folders {
@@ -449,7 +446,6 @@ fn whole(of: usize, found: Found, damaged: &[String]) -> Result<BatchResult, Stu
     }
 }
 
-/// Ascending numbers as Slurm has them: 2,5-7.
 fn ranges(numbers: &[usize]) -> String {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for &number in numbers {

@@ -262,7 +262,6 @@ pub(crate) fn ambiguous(passage: &Passage, accuracy: f64) -> Vec<String> {
     pulses.into_iter().filter_map(note).collect()
 }
 
-/// Maxima above 5 % of the largest.
 fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
     let most = highest(maxima).map_or(0.0, |peak| peak.value);
     let large = |peak: &&Maximum| most > 0.0 && peak.value >= 0.05 * most;
@@ -276,7 +275,6 @@ const WIDTHS: f64 = 2.0;
 const SAMPLES: f64 = 100.0;
 
 impl Flight {
-    /// Picked from a passage.
     fn picked(pick: Pick, seen: &Passages, passage: &Passage) -> Option<Self> {
         match pick {
             Pick::Peak => Some(Self {

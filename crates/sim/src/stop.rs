@@ -1,4 +1,4 @@
-//! Breaking off what takes long, and telling how far it is.
+//! Cancellation and progress of long work.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
@@ -9,10 +9,10 @@ thread_local! {
     static OWN: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
-/// A wish to break off, which all threads of a pool look at: between blocks of
-/// an ensemble, between steps of a shot. The other way, they count here what is done.
+/// A request to stop, which all threads of a pool check between blocks of
+/// a batch and between steps of a shot, and counters of what is done.
 ///
-/// What is broken off ends with [`crate::StudyError::Stopped`]; nothing of it counts.
+/// What is stopped ends with [`crate::StudyError::Stopped`]; nothing of it counts.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<Shared>);
 
@@ -25,7 +25,7 @@ struct Shared {
 }
 
 impl Stop {
-    /// Asks everything in the pool to break off.
+    /// Asks everything in the pool to stop.
     pub fn ask(&self) {
         self.0.asked.store(true, Ordering::Relaxed);
     }
@@ -60,7 +60,7 @@ impl Stop {
         note.clone()
     }
 
-    /// Threads that look at this wish, all cores' if 0 are asked for.
+    /// Threads that check this request, all cores' if 0 are asked for.
     ///
     /// # Errors
     /// When the system gives no threads.
@@ -71,39 +71,37 @@ impl Stop {
         builder.start_handler(adopt).build()
     }
 
-    /// Makes the calling thread look at this wish from now on.
+    /// Makes the calling thread check this request from now on.
     pub fn adopt(self) {
         OWN.with(|own| *own.borrow_mut() = Some(self));
     }
 }
 
-/// Whether the calling thread has been asked to break off; never where nobody
-/// can ask.
+/// Whether the calling thread has been asked to stop.
 #[must_use]
 pub fn stopped() -> bool {
     OWN.with(|own| own.borrow().as_ref().is_some_and(Stop::is_asked))
 }
 
-/// Counts so many more as done for whoever can ask the calling thread to break
-/// off; for nobody where nobody can.
+/// Counts so many more as done on the calling thread's [`Stop`], if it has one.
 pub fn count_done(more: usize) {
-    told(|stop| stop.count(more as u64));
+    with_own(|stop| stop.count(more as u64));
 }
 
-/// Notes how far long work is, where the calling thread can be asked to break off.
+/// Notes how far long work is on the calling thread's [`Stop`], if it has one.
 pub fn note_progress(note: &dyn std::fmt::Display) {
-    told(|stop| {
+    with_own(|stop| {
         *stop.0.note.lock().unwrap_or_else(PoisonError::into_inner) = note.to_string();
     });
 }
 
 /// Counts steps of a shot in the same way.
 pub(crate) fn count_steps(more: u64) {
-    told(|stop| {
+    with_own(|stop| {
         stop.0.steps.fetch_add(more, Ordering::Relaxed);
     });
 }
 
-fn told(tell: impl Fn(&Stop)) {
-    OWN.with(|own| own.borrow().as_ref().map(tell));
+fn with_own(act: impl Fn(&Stop)) {
+    OWN.with(|own| own.borrow().as_ref().map(act));
 }

@@ -17,12 +17,11 @@ pub(super) struct Aligned<T> {
 }
 
 impl<T: Copy> Aligned<T> {
-    /// That many times a value.
     pub(super) fn of(value: T, length: usize) -> Self {
         // Room to move the first number to the beginning of a line.
         let spare = LINE / size_of::<T>();
         let values = vec![value; length + spare];
-        // Where alignment cannot be told, any place will do.
+        // Where alignment is not known, any place will do.
         let first = values.as_ptr().align_offset(LINE).min(spare);
         Self {
             values,

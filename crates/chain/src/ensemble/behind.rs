@@ -1,7 +1,7 @@
 //! What a reflected pulse leaves behind.
 //!
 //! A strongly nonlinear pulse is faster than anything that follows it, and
-//! what follows is weaker. On its way back from the wall it therefore tells
+//! what follows is weaker. On its way back from the wall it therefore shows
 //! nothing of what is some beads behind it, and a shot that ends when it has
 //! passed the sensor need not move those bodies any more. Each lane finds its
 //! own crest and lets go of its own bodies, so that its bits stay its own.
@@ -20,13 +20,11 @@ const LEAP: usize = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Behind<const W: usize> {
     lanes: usize,
-    /// Contacts of a chain.
     contacts: usize,
     /// Contact nearest to the wall that a sensor other than the wall watches.
     watched: usize,
     /// Where each lane's crest is, at the wall until it comes back.
     crest: [usize; W],
-    /// Lanes whose wall has been pressed.
     reached: [bool; W],
     /// First body that each lane has left behind.
     left: [usize; W],

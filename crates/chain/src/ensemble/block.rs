@@ -42,7 +42,6 @@ macro_rules! places {
     };
 }
 
-/// State of a block of shots.
 pub(super) struct Block<'a, N, const W: usize> {
     systems: &'a [&'a System],
     lanes: usize,
@@ -52,7 +51,6 @@ pub(super) struct Block<'a, N, const W: usize> {
     weights: Scaled<N, W>,
     motion: Motion<N, W>,
     offset_m: Column<N, W>,
-    /// Overlaps up to this are none.
     slightest_m: [N; W],
     /// Minus the static forces; `None` where there are none.
     at_rest: Option<Aligned<N>>,
@@ -63,7 +61,6 @@ pub(super) struct Block<'a, N, const W: usize> {
     changes: Option<Changes<W>>,
     /// Edges that still disturb steps: where, the edge, steps since.
     edges: Vec<(usize, Edge, usize)>,
-    /// No step has been made yet.
     starting: bool,
     /// Steps made.
     pub steps: usize,
@@ -192,7 +189,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         self.motion
             .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
         if !self.edges.is_empty() {
-            self.mend_edges();
+            self.correct_edges();
         }
         if self.systems[0].periodic {
             self.close_ring();
@@ -207,7 +204,6 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         self.bodies_looked_at += (self.window.bodies.len() * W) as u64;
     }
 
-    /// Forces of all contacts that are awake.
     pub(super) fn forces(&mut self) {
         let lanes = self.lanes;
         let awake = self.window.contacts.clone();
@@ -276,7 +272,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         if follow && self.steps > self.schedule.last_row() {
             for &at in changed {
                 if let Some(edge) = self.edge(at) {
-                    self.mend(at, &edge, 0);
+                    self.correct(at, &edge, 0);
                     self.edges.push((at, edge, 1));
                 }
             }
@@ -328,10 +324,10 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Gives the last step what earlier edges made it lack, before its forces.
-    fn mend_edges(&mut self) {
+    fn correct_edges(&mut self) {
         let mut edges = std::mem::take(&mut self.edges);
         for (at, edge, age) in &mut edges {
-            self.mend(*at, edge, *age);
+            self.correct(*at, edge, *age);
             *age += 1;
         }
         edges.retain(|(_, _, age)| *age < USED);
@@ -339,7 +335,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     }
 
     /// Gives the last step what an edge of some age made it lack.
-    fn mend(&mut self, at: usize, edge: &Edge, age: usize) {
+    fn correct(&mut self, at: usize, edge: &Edge, age: usize) {
         let (contact, lane) = (at / self.lanes, at % self.lanes);
         let h = self.paces[lane].step_s;
         let [sped, moved] = [edge.lacking[age][0] * h, edge.lacking[age][1] * h * h];

@@ -10,7 +10,6 @@ use crate::system::System;
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// Motion of all bodies of all lanes.
 #[derive(Debug)]
 pub(super) struct Motion<N, const W: usize> {
     /// Predicted positions and velocities, with a chunk to spare.
@@ -20,20 +19,18 @@ pub(super) struct Motion<N, const W: usize> {
     /// at `newest`, older ones after it, round the ring.
     accelerations: [Aligned<N>; USED],
     newest: usize,
-    /// Inverse masses in that unit.
     inverse_mass: Column<N, W>,
     /// Accelerations by what is not a contact, in that unit, if anything is.
     pub external: Option<Aligned<N>>,
 }
 
 /// The inverse mass that accelerations are multiples of, in 1/kg: bead 1's, so
-/// that a row of equal balls accelerates by as much as its forces tell, and no
+/// that a row of equal balls accelerates by as much as its forces say, and no
 /// sweep multiplies by a mass. Weights hold it instead.
 pub(super) fn unit_per_kg(system: &System) -> f64 {
     system.inverse_mass[1]
 }
 
-/// How far a lane steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     /// Full step in s.
@@ -53,7 +50,6 @@ pub(super) struct Scaled<N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Scaled<N, W> {
-    /// Of lanes that step so.
     pub(super) fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
         let none = [N::default(); W];
         let (mut velocity, mut position) = ([none; USED], [none; USED]);
@@ -93,7 +89,6 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
         }
     }
 
-    /// Accelerations of a step, 0 the newest.
     pub(super) fn accelerations(&self, age: usize) -> &[N] {
         &self.accelerations[(self.newest + age) % USED]
     }
@@ -106,7 +101,6 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
         }
     }
 
-    /// The newest accelerations.
     pub(super) fn newest_mut(&mut self) -> &mut [N] {
         &mut self.accelerations[self.newest]
     }
@@ -199,11 +193,8 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
     }
 }
 
-/// Chunks of bodies, all as many.
 struct Bodies<'a, N, const W: usize> {
-    /// From the left and from the right.
     force: [&'a [[N; W]]; 2],
-    /// Accelerations of earlier steps.
     earlier: [&'a [[N; W]]; EARLIER],
     now: &'a mut [[N; W]],
     x: &'a mut [[N; W]],
@@ -211,7 +202,7 @@ struct Bodies<'a, N, const W: usize> {
 }
 
 impl<N: Number<W>, const W: usize> Bodies<'_, N, W> {
-    /// A step of bodies that accelerate as told by their place and net force.
+    /// A step of bodies that accelerate as follows from their place and net force.
     #[inline(always)]
     fn step<S: Simd>(
         self,

@@ -65,13 +65,11 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
             .filter(|_| self.stride == 0)
     }
 
-    /// Whether all its numbers are this one.
     #[inline(always)]
     pub(super) fn is_all(&self, value: f64) -> bool {
         self.only == Some(N::of(value))
     }
 
-    /// A reader of chunks.
     #[inline(always)]
     pub(super) fn reader(&self) -> Reader<'_, N, W> {
         Reader {
@@ -81,7 +79,6 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
     }
 }
 
-/// Reads the chunks of a column.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a, N, const W: usize> {
     chunks: &'a [[N; W]],
@@ -89,13 +86,11 @@ pub(super) struct Reader<'a, N, const W: usize> {
 }
 
 impl<'a, N, const W: usize> Reader<'a, N, W> {
-    /// All its chunks.
     #[inline(always)]
     pub(super) fn all(&self) -> &'a [[N; W]] {
         self.chunks
     }
 
-    /// Chunk `i`.
     #[inline(always)]
     pub(super) fn at(&self, i: usize) -> &'a [N; W] {
         &self.chunks[i * self.stride]

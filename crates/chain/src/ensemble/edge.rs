@@ -40,7 +40,6 @@ impl Leading {
         self.at_once + s.sqrt() * (self.root + self.high * s)
     }
 
-    /// ∫ F from the edge to s.
     fn integral(&self, s: f64) -> f64 {
         s * (self.at_once + s.sqrt() * (self.root / 1.5 + self.high * s / 2.5))
     }

@@ -11,7 +11,7 @@ use crate::instruction_set::InstructionSet;
 use crate::observe::{Signal, least_n_s};
 use crate::sensor::Sensor;
 use crate::system::System;
-use crate::wave::Work;
+use crate::wave::{SolveError, Work};
 use fearless_simd::{Simd, dispatch};
 
 /// One shot to be fired.
@@ -74,52 +74,9 @@ pub struct Settings {
     pub openings: bool,
 }
 
-/// Why a shot could not be fired.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum EnsembleError {
-    /// The loop has no driven ends.
-    #[error("a driven end cannot be followed with equal steps")]
-    Driven,
-    /// A sensor that the chain does not have.
-    #[error("the chain has no {sensor:?}")]
-    Sensor {
-        /// The sensor.
-        sensor: Sensor,
-    },
-    /// A step or duration with which nothing can be computed.
-    #[error("{what} = {value} must be positive and finite")]
-    Setting {
-        /// Which one.
-        what: &'static str,
-        /// What it is.
-        value: f64,
-    },
-    /// A number stopped being finite.
-    #[error(
-        "the motion is not finite after t = {time_s:e} s: the step of {step_s:e} s is too long for this chain"
-    )]
-    NotFinite {
-        /// Time of the look that found it, in s.
-        time_s: f64,
-        /// Step in s.
-        step_s: f64,
-    },
-    /// More steps than are kept of a shot.
-    #[error(
-        "a batch keeps {MOST_STEPS} steps of a shot, and this one, at t = {time_s:e} s, takes more"
-    )]
-    TooManySteps {
-        /// Time reached in s.
-        time_s: f64,
-    },
-    /// Nobody wanted the shot any more.
-    #[error("the shot was broken off")]
-    BrokenOff,
-}
-
 /// One shot to its end.
 #[derive(Clone, Debug)]
-pub struct Flown {
+pub struct LaneResult {
     /// What each sensor showed.
     pub signals: Vec<Signal>,
     /// Duration in s.
@@ -160,19 +117,19 @@ const RESERVED: usize = 1 << 16;
 
 /// Fires shots, side by side where chains have the same shape; one that fails stops no other.
 #[must_use]
-pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<Flown, EnsembleError>> {
+pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<LaneResult, SolveError>> {
     fire_while(shots, settings, &|| true)
 }
 
 /// The same for as long as `wanted` says so, which is asked every few steps; what has not ended then
-/// is [`EnsembleError::BrokenOff`].
+/// is [`SolveError::BrokenOff`].
 #[must_use]
 pub fn fire_while(
     shots: &[Shot<'_>],
     settings: &Settings,
     wanted: &dyn Fn() -> bool,
-) -> Vec<Result<Flown, EnsembleError>> {
-    fire_each(shots, settings, wanted, |_, flown| flown)
+) -> Vec<Result<LaneResult, SolveError>> {
+    fire_each(shots, settings, wanted, |_, lane| lane)
 }
 
 /// The same, of each shot only what `kept` makes of it, by its place in the list: signals take
@@ -182,7 +139,7 @@ pub fn fire_each<T>(
     shots: &[Shot<'_>],
     settings: &Settings,
     wanted: &dyn Fn() -> bool,
-    kept: impl Fn(usize, Result<Flown, EnsembleError>) -> T,
+    kept: impl Fn(usize, Result<LaneResult, SolveError>) -> T,
 ) -> Vec<T> {
     let mut all: Vec<Option<T>> = shots.iter().map(|_| None).collect();
     let mut ready = Vec::with_capacity(shots.len());
@@ -194,7 +151,7 @@ pub fn fire_each<T>(
     }
     for block in blocks(shots, &ready) {
         let side_by_side: Vec<Shot<'_>> = block.iter().map(|&shot| shots[shot]).collect();
-        let mut keep = |lane: usize, flown| all[block[lane]] = Some(kept(block[lane], flown));
+        let mut keep = |lane: usize, result| all[block[lane]] = Some(kept(block[lane], result));
         match side_by_side[0].precision {
             Precision::Double => fire_block::<f64, 8>(&side_by_side, settings, wanted, &mut keep),
             Precision::Single => fire_block::<f32, 16>(&side_by_side, settings, wanted, &mut keep),
@@ -247,22 +204,24 @@ fn blocks(shots: &[Shot<'_>], ready: &[usize]) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), EnsembleError> {
+fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), SolveError> {
     let setting = |what, value: f64| match value > 0.0 && value.is_finite() {
         true => Ok(()),
-        false => Err(EnsembleError::Setting { what, value }),
+        false => Err(SolveError::Setting { what, value }),
     };
     setting("step in contact times", shot.step)?;
     setting("duration in s", shot.duration_s)?;
     let system = shot.system;
     if system.motion.is_some() {
-        return Err(EnsembleError::Driven);
+        let why = "a driven end cannot be followed with equal steps";
+        return Err(SolveError::Refused(why.to_owned()));
     }
     let missing = settings.sensors.iter().find(|sensor| !system.has(**sensor));
-    missing.map_or(Ok(()), |&sensor| Err(EnsembleError::Sensor { sensor }))
+    missing.map_or(Ok(()), |sensor| {
+        Err(SolveError::Refused(format!("the chain has no {sensor:?}")))
+    })
 }
 
-/// One lane until its end.
 #[derive(Clone, Debug)]
 struct Lane {
     passing: Passing,
@@ -286,7 +245,7 @@ fn fire_block<N: Number<W>, const W: usize>(
     shots: &[Shot<'_>],
     settings: &Settings,
     wanted: &dyn Fn() -> bool,
-    keep: &mut dyn FnMut(usize, Result<Flown, EnsembleError>),
+    keep: &mut dyn FnMut(usize, Result<LaneResult, SolveError>),
 ) {
     let schedule = Schedule::shared();
     // One shot runs alone; several fill the lanes, the last ones idly.
@@ -334,7 +293,7 @@ fn fire_block<N: Number<W>, const W: usize>(
             0 => 0.0,
             _ => lane.passing.at_wall_n(recorder.samples(0, at)),
         };
-        keep(at, lane.flown(signals, clock, (looked_at, at_wall_n)));
+        keep(at, lane.result(signals, clock, (looked_at, at_wall_n)));
     }
 }
 
@@ -403,7 +362,6 @@ impl Lane {
         }
     }
 
-    /// Notes how good the last step was.
     fn correct(&mut self, step: usize, correction: f64) {
         if self.state == State::Flying {
             self.correction = self.correction.max(correction);
@@ -462,32 +420,30 @@ impl Lane {
         }
     }
 
-    fn flown(
+    fn result(
         self,
         signals: Vec<Signal>,
         clock: Clock<'_>,
         (looked_at, at_wall_n): (u64, f64),
-    ) -> Result<Flown, EnsembleError> {
+    ) -> Result<LaneResult, SolveError> {
         let (step, finished) = match self.state {
             State::Finished { step, early } => (step, early),
             State::Flying => (self.last_step, false),
-            State::Failed { step } => {
-                let (time_s, step_s) = (clock.time_s(step), clock.step_s);
-                return Err(EnsembleError::NotFinite { time_s, step_s });
-            }
-            State::BrokenOff { .. } => return Err(EnsembleError::BrokenOff),
+            State::Failed { step } => return Err(diverged(clock, step)),
+            State::BrokenOff { .. } => return Err(SolveError::BrokenOff),
             State::TooLong { step } => {
                 let time_s = clock.time_s(step);
-                return Err(EnsembleError::TooManySteps { time_s });
+                let why = format!(
+                    "a batch keeps {MOST_STEPS} steps of a shot, and this one, at t = {time_s:e} s, takes more"
+                );
+                return Err(SolveError::TooManySteps { time_s, why });
             }
         };
-        let finite = self.velocity_m_s.iter().all(|v| v.is_finite());
-        if !finite {
-            let (time_s, step_s) = (clock.time_s(step), clock.step_s);
-            return Err(EnsembleError::NotFinite { time_s, step_s });
+        if !self.velocity_m_s.iter().all(|v| v.is_finite()) {
+            return Err(diverged(clock, step));
         }
         let bodies = self.velocity_m_s.len() as u64;
-        Ok(Flown {
+        Ok(LaneResult {
             signals,
             time_s: clock.time_s(step),
             finished,
@@ -504,4 +460,12 @@ impl Lane {
             bodies_looked_at: looked_at,
         })
     }
+}
+
+fn diverged(clock: Clock<'_>, step: usize) -> SolveError {
+    SolveError::Diverged(format!(
+        "the motion is not finite after t = {:e} s: the step of {:e} s is too long for this chain",
+        clock.time_s(step),
+        clock.step_s
+    ))
 }

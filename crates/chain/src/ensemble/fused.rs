@@ -19,7 +19,6 @@ use std::ops::Range;
 /// Most coefficients of a fused sum.
 const MOST: usize = 3;
 
-/// A sum of terms known when compiling.
 pub(super) trait Sum: Send + Sync + 'static {
     /// Coefficients of all terms.
     const COEFFICIENTS: usize;
@@ -28,7 +27,6 @@ pub(super) trait Sum: Send + Sync + 'static {
     fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N>;
 }
 
-/// A sum of one.
 struct One<T, const C: usize>(PhantomData<fn() -> T>);
 
 impl<T: Wide<C>, const C: usize> Sum for One<T, C> {
@@ -157,7 +155,6 @@ fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     }
 }
 
-/// Force of a chunk of contacts.
 #[inline(always)]
 fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     simd: S,

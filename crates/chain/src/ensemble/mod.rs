@@ -29,5 +29,5 @@ mod window;
 
 #[doc(hidden)]
 pub use fire::repeat_force_pass;
-pub use fire::{EnsembleError, Flown, Precision, Settings, Shot, fire, fire_each, fire_while};
+pub use fire::{LaneResult, Precision, Settings, Shot, fire, fire_each, fire_while};
 pub use passing::End;

@@ -35,7 +35,6 @@ const RETURNED: f64 = 0.1;
 /// Samples after a maximum that its interpolation may use.
 const MARGIN: usize = 8;
 
-/// The largest sample so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Peak {
     value: f64,
@@ -52,18 +51,13 @@ impl Peak {
     }
 }
 
-/// Follows the pulse of one lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passing {
-    /// Least height times step of a pulse.
     least: f64,
-    /// The sensor's largest maximum so far.
     highest: Peak,
-    /// The same before the wall's largest sample.
     incident: Peak,
     wall: Peak,
     returned: Peak,
-    /// The sensor's latest sample.
     now: f64,
     seen: usize,
 }
@@ -90,7 +84,7 @@ impl Passing {
         step: usize,
     ) {
         let first = self.seen + 1;
-        // A wall that is pressed harder than ever tells of a larger pulse: what
+        // A wall that is pressed harder than ever means a larger pulse: what
         // the sensor has shown until then is that pulse on its way in.
         let at_wall = wall.crest() > self.wall.value;
         let at_sensor = sensor.crest().max(self.now) > self.highest.value;
@@ -145,7 +139,6 @@ impl Passing {
         }
     }
 
-    /// Whether the shot is over.
     pub(super) fn is_over(&self, end: End, silent_n: f64) -> bool {
         if end == End::Duration || self.wall.value <= silent_n {
             return false;

@@ -3,14 +3,13 @@
 use super::number::Number;
 use super::record::Samples;
 use super::weights::Schedule;
-use crate::observe::{KEPT, Maximum, Signal, Stretch};
+use crate::observe::{LEAST_SHARE, Maximum, Signal, Stretch};
 use crate::sensor::Sensor;
 
 /// Samples on either side of the highest that its polynomial goes through.
 const REACH: usize = 3;
 const POINTS: usize = 2 * REACH + 1;
 
-/// Times of a lane's samples.
 #[derive(Clone, Copy)]
 pub(super) struct Clock<'a> {
     pub schedule: &'a Schedule,
@@ -18,7 +17,6 @@ pub(super) struct Clock<'a> {
 }
 
 impl Clock<'_> {
-    /// Time of a step in s.
     pub(super) fn time_s(&self, step: usize) -> f64 {
         self.step_s * self.schedule.time(step)
     }
@@ -47,12 +45,12 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
             let value = self.samples.at(step);
             largest = largest.max(value.abs());
             let high = value > self.samples.at(step + 1);
-            if high && value > self.silent.max(KEPT * largest) {
+            if high && value > self.silent.max(LEAST_SHARE * largest) {
                 maxima.push(self.maximum(step));
             }
         }
         let stretches = match shape {
-            true => self.stretches(self.silent.max(KEPT * largest)),
+            true => self.stretches(self.silent.max(LEAST_SHARE * largest)),
             false => Vec::new(),
         };
         Signal::assembled(sensor, (stretches, maxima), self.least_n_s)
@@ -139,7 +137,6 @@ fn through(nodes: [f64; POINTS], mut differences: [f64; POINTS]) -> [f64; POINTS
     polynomial
 }
 
-/// Value, slope and curvature.
 fn derivatives(polynomial: &[f64; POINTS], at: f64) -> (f64, f64, f64) {
     let sums = polynomial.iter().rev();
     sums.fold((0.0, 0.0, 0.0), |(p, d, c), k| {

@@ -14,7 +14,6 @@ struct Rows<N, const W: usize> {
     crest: [N; W],
 }
 
-/// Records sensors of all lanes.
 #[derive(Clone, Debug)]
 pub(super) struct Recorder<N, const W: usize> {
     lanes: usize,
@@ -39,12 +38,10 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
         }
     }
 
-    /// Number of sensors.
     pub(super) fn sensors(&self) -> usize {
         self.sensors.len()
     }
 
-    /// Adds what all sensors show now.
     #[inline(always)]
     pub(super) fn add(&mut self, block: &Block<'_, N, W>) {
         match self.lanes == W {
@@ -135,7 +132,6 @@ pub(super) struct Samples<'a, N, const W: usize> {
 }
 
 impl<'a, N: Number<W>, const W: usize> Samples<'a, N, W> {
-    /// The largest between the last two looks.
     pub(super) fn crest(self) -> f64 {
         self.rows.crest[self.lane].into()
     }

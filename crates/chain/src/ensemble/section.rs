@@ -101,7 +101,6 @@ struct Unfused {
     root: Vec<f64>,
     rate: Vec<f64>,
     across: Vec<f64>,
-    /// Largest overlaps so far.
     largest: Vec<f64>,
     sum: Vec<f64>,
 }
@@ -117,7 +116,6 @@ fn merged<'a>(of: impl Fn(usize) -> &'a [TermColumns], lanes: usize) -> Vec<Term
 }
 
 impl Unfused {
-    /// For chunks of `width`.
     fn new(systems: &[&System], index: usize, width: usize) -> Self {
         let sections: Vec<&SectionColumns> = systems.iter().map(|s| &s.sections[index]).collect();
         let (lanes, contacts) = (sections.len(), sections[0].contacts.clone());

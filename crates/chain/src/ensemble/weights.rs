@@ -28,7 +28,6 @@ const GROWTH: f64 = 1.2;
 /// from a velocity. That is four orders beyond the method's own.
 const RUNS_AHEAD: f64 = -2.6;
 
-/// [`RUNS_AHEAD`] for a step in contact times.
 pub(super) fn ahead_of(step: f64) -> f64 {
     RUNS_AHEAD * step.powi(4)
 }
@@ -69,7 +68,6 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    /// The schedule, made once.
     pub(super) fn shared() -> &'static Self {
         static SCHEDULE: LazyLock<Schedule> = LazyLock::new(Schedule::new);
         &SCHEDULE
@@ -88,12 +86,10 @@ impl Schedule {
         Self { rows, times }
     }
 
-    /// Weights of step `n`.
     pub(super) fn row(&self, n: usize) -> &Weights {
         &self.rows[n.min(self.rows.len() - 1)]
     }
 
-    /// The row that lasts for ever.
     pub(super) fn steady(&self) -> &Weights {
         &self.rows[self.rows.len() - 1]
     }
@@ -103,12 +99,10 @@ impl Schedule {
         self.rows.len() - 1
     }
 
-    /// The first step that is full.
     pub(super) fn first_full_step(&self) -> usize {
         self.rows.len() - USED - 1
     }
 
-    /// Time of step `n` in full steps.
     pub(super) fn time(&self, n: usize) -> f64 {
         let last = self.times.len() - 1;
         match self.times.get(n) {

@@ -40,7 +40,6 @@ impl<N: Number<W>, const W: usize> Places<'_, N, W> {
         (now.simd_lt(zero) & then.simd_lt(zero)).all_true()
     }
 
-    /// Whether any body of a chunk moves.
     #[inline(always)]
     fn moves<S: Simd>(&self, simd: S, chunk: usize) -> bool {
         let v = N::Wide::<S>::from_slice(simd, &self.v[chunk * W..(chunk + 1) * W]);
@@ -49,7 +48,6 @@ impl<N: Number<W>, const W: usize> Places<'_, N, W> {
     }
 }
 
-/// Chunks that a step looks at.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     /// Chunks from the striker on that the wave has reached in any lane.
@@ -60,9 +58,7 @@ pub(super) struct Window {
     /// method; those outside fly on.
     pub bodies: Range<usize>,
     all: usize,
-    /// Chunks that hold contacts.
     with_contacts: usize,
-    /// Nothing but contacts moves bodies.
     may_sleep: bool,
 }
 
@@ -181,7 +177,6 @@ impl Window {
         }
     }
 
-    /// All chunks.
     pub(super) fn whole(&self) -> Self {
         Self {
             chunks: self.all,

@@ -100,7 +100,6 @@ pub struct Signal {
     largest: f64,
     /// Least height times time of a pulse, in N s.
     least_n_s: f64,
-    /// Lowest sample since the latest maximum.
     lowest: f64,
     /// End of the previous step: time, value, slope.
     before: Option<(f64, f64, f64)>,
@@ -108,7 +107,7 @@ pub struct Signal {
 
 /// Steps at whose ends the signal is below this fraction of its largest value
 /// so far are not kept: they lie below anything that is picked.
-pub(crate) const KEPT: f64 = 1e-4;
+pub(crate) const LEAST_SHARE: f64 = 1e-4;
 
 /// Height times time of a pulse's peak is at least this share of the momentum of the
 /// lightest body at the shot's speed; below are rounding and the forerunners of the
@@ -236,7 +235,7 @@ impl Signal {
     /// dip between them, which the steps found twice, the higher, if that is the later.
     fn keep(&mut self, maximum: Maximum) {
         let force = !matches!(self.sensor, Sensor::Position(_) | Sensor::Velocity(_));
-        if force && maximum.value <= KEPT * self.largest {
+        if force && maximum.value <= LEAST_SHARE * self.largest {
             return;
         }
         let lowest = std::mem::replace(&mut self.lowest, f64::INFINITY);
@@ -322,7 +321,7 @@ impl Observer for Signal {
         let size = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
-        if size <= KEPT * self.largest || size <= piece.system().silence(self.sensor) {
+        if size <= LEAST_SHARE * self.largest || size <= piece.system().silence(self.sensor) {
             self.fall_silent();
             return Flow::Continue;
         }

@@ -33,7 +33,6 @@ impl Touch {
     }
 }
 
-/// All bodies and contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     pub touch: Touch,
@@ -93,7 +92,6 @@ impl Columns {
         }
     }
 
-    /// Takes the striker out of the motion.
     pub(super) fn withdraw(&mut self) {
         self.striker_gone = true;
         self.offset[0] = f64::NEG_INFINITY;
@@ -156,7 +154,6 @@ impl Columns {
         ));
     }
 
-    /// Positions a step later.
     pub(super) fn drift(&self, step_s: f64, x: &mut [f64]) {
         dispatch!(self.set.level(), simd => simd.vectorize(
             #[inline(always)]
@@ -189,7 +186,6 @@ fn remember(touch: &mut Touch) {
     }
 }
 
-/// Sums of all terms of all sections.
 fn add_laws(system: &System, set: InstructionSet, touch: &Touch, force: &mut [f64]) {
     force.fill(0.0);
     for section in system.sections.iter() {

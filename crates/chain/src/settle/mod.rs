@@ -12,15 +12,14 @@
 //! Friction is ours, the paper has none. Rolling is not modelled.
 
 mod columns;
-mod error;
 mod pace;
 mod run;
 mod state;
 
-pub use error::SettleError;
 pub use state::State;
 
 use crate::system::System;
+use crate::wave::SolveError;
 use run::Slow;
 
 /// How a chain comes to rest.
@@ -90,13 +89,85 @@ pub struct Rest {
 /// forgotten, and the state is not one of rest for the next phase.
 ///
 /// # Errors
-/// See [`SettleError`]; the state is then the last one reached.
+/// See [`SolveError`]; the state is then the last one reached.
 pub fn settle(
     system: &System,
     state: &mut State,
     slow: &SlowPhase,
     seen: &mut dyn FnMut(f64, &State, &[f64]),
-) -> Result<Rest, SettleError> {
-    error::check(system, state, slow)?;
+) -> Result<Rest, SolveError> {
+    check(system, state, slow)?;
     Slow::new(system, slow, state).run(seen)
+}
+
+/// Longest step that is stable for sure, as a fraction of the shortest period:
+/// a leapfrog's limit is 1/π.
+const LONGEST_STEP: f64 = 0.25;
+
+fn must_be(what: &str, value: f64, expected: &str) -> SolveError {
+    SolveError::Refused(format!("{what} = {value} must be {expected}"))
+}
+
+pub(super) fn not_finite(time_s: f64, body: usize) -> SolveError {
+    SolveError::Diverged(format!(
+        "the motion is not finite any more: after t = {time_s:e} s the speed or the place of body {body} \
+         (0 is the striker) is beyond all numbers; look at the laws of the contacts beside it, \
+         and at the state it started from"
+    ))
+}
+
+fn check_settings(slow: &SlowPhase) -> Result<(), SolveError> {
+    let friction = slow.friction_coefficient;
+    if !(friction >= 0.0 && friction.is_finite()) {
+        let what = "friction coefficient";
+        return Err(must_be(what, friction, "0 or more, and finite"));
+    }
+    for (what, value) in [
+        ("time of sticking in s", slow.stuck_for_s),
+        ("longest time to rest in s", slow.longest_s),
+        ("distance of withdrawal in m", slow.withdrawn_at_m),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(must_be(what, value, "positive and finite"));
+        }
+    }
+    match slow.step > 0.0 && slow.step <= LONGEST_STEP {
+        true => Ok(()),
+        false => {
+            let what = "step as a fraction of the shortest period";
+            Err(must_be(what, slow.step, "above 0 and at most 0.25"))
+        }
+    }
+}
+
+fn check(system: &System, state: &State, slow: &SlowPhase) -> Result<(), SolveError> {
+    check_settings(slow)?;
+    let refused = |why: String| Err(SolveError::Refused(why));
+    for (restless, what) in [
+        (system.periodic, "a ring"),
+        (system.motion.is_some(), "a driven chain"),
+    ] {
+        if restless {
+            return refused(format!(
+                "{what} does not come to rest between shots: only chains with two ends of their own do"
+            ));
+        }
+    }
+    if system.is_in_state() {
+        let why = "a chain made from a state is for one shot: friction is frozen in its balance. \
+             Settle the chain itself, from the state after the shot";
+        return refused(why.to_owned());
+    }
+    let (displacements, velocities) = (state.displacement_m.len(), state.velocity_m_s.len());
+    let bodies = system.bodies();
+    if displacements != bodies || velocities != bodies {
+        return refused(format!(
+            "a state of {displacements} displacements and {velocities} velocities does not fit a chain of \
+             {bodies} bodies, the striker and the far end among them"
+        ));
+    }
+    match state.first_not_finite() {
+        Some(body) => Err(not_finite(0.0, body)),
+        None => Ok(()),
+    }
 }

@@ -5,7 +5,6 @@ use crate::system::{FLUSH, System};
 use fearless_simd::{dispatch, prelude::*};
 use std::f64::consts::{SQRT_2, TAU};
 
-/// Steps between two looks at the contacts.
 pub(super) const LOOK_EVERY: u64 = 8;
 
 /// A step grows only if it may grow by this much: steps that change all the
@@ -25,7 +24,6 @@ const STEEPEST: f64 = 3.0;
 /// Chooses steps from the stiffness of the contacts.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
-    /// Fraction of the shortest period.
     fraction: f64,
     longest_s: f64,
     /// Squared rate in rad²/s² that springs and threads add.
@@ -129,7 +127,6 @@ fn close(ahead: &mut Touch, columns: &Columns, x: &[f64], time_s: f64) {
     ahead.across.fill(0.0);
 }
 
-/// Overlaps smaller by [`SOFTER`].
 #[inline(always)]
 fn soften(ahead: &mut Touch) {
     for (overlap, root) in ahead.overlap.iter_mut().zip(&mut ahead.root) {

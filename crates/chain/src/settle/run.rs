@@ -2,8 +2,9 @@
 
 use super::columns::Columns;
 use super::pace::{LOOK_EVERY, Pace};
-use super::{Rest, SettleError, SlowPhase, State, Withdrawn};
+use super::{Rest, SlowPhase, State, Withdrawn, not_finite};
 use crate::system::System;
+use crate::wave::SolveError;
 
 /// Speeds in m/s up to this count as none. Friction stops a body exactly;
 /// without it, this is when the last ringing is over.
@@ -18,7 +19,6 @@ const MOST_STEPS: u64 = 50_000_000;
 /// A step below this fraction of the longest time leads nowhere.
 const SHORTEST: f64 = 1e-12;
 
-/// A slow phase under way.
 pub(super) struct Slow<'a> {
     system: &'a System,
     slow: &'a SlowPhase,
@@ -27,7 +27,6 @@ pub(super) struct Slow<'a> {
     pace: Pace,
     time_s: f64,
     step_s: f64,
-    /// Since when all bodies have been still.
     still_since_s: Option<f64>,
     withdrawn: Option<Withdrawn>,
     steps: u64,
@@ -54,7 +53,7 @@ impl<'a> Slow<'a> {
     pub(super) fn run(
         mut self,
         seen: &mut dyn FnMut(f64, &State, &[f64]),
-    ) -> Result<Rest, SettleError> {
+    ) -> Result<Rest, SolveError> {
         // Velocities lag half a step behind positions, but not at the start.
         let mut kick_s = 0.0;
         loop {
@@ -74,8 +73,7 @@ impl<'a> Slow<'a> {
         }
     }
 
-    /// Looks around; tells whether the chain is at rest.
-    fn look(&mut self) -> Result<bool, SettleError> {
+    fn look(&mut self) -> Result<bool, SolveError> {
         self.withdraw_striker();
         let fastest = self.fastest()?;
         let speed_m_s = self.columns.v[fastest].abs();
@@ -89,17 +87,19 @@ impl<'a> Slow<'a> {
         }
         if self.time_s >= self.slow.longest_s {
             self.park_striker();
-            return Err(SettleError::StillMoving {
-                time_s: self.time_s,
-                body: fastest,
-                speed_m_s,
-            });
+            let time_s = self.time_s;
+            let why = format!(
+                "not at rest after {time_s:.3} s: body {fastest} (0 is the striker) still moves at {speed_m_s:.2e} m/s. \
+                 Allow more time, or look at friction: a coefficient of 0 stops nothing, and on an incline \
+                 a bead slides where the coefficient is below the tangent of the angle"
+            );
+            return Err(SolveError::StillMoving { time_s, why });
         }
         self.choose_step()?;
         Ok(false)
     }
 
-    fn choose_step(&mut self) -> Result<(), SettleError> {
+    fn choose_step(&mut self) -> Result<(), SolveError> {
         let (x, before) = (&self.state.displacement_m, self.step_s);
         self.step_s = self.pace.step(self.system, &self.columns, x, before);
         // At the start nothing is known of what comes, and a step that has
@@ -108,17 +108,19 @@ impl<'a> Slow<'a> {
         self.next_look = self.steps + if calm { LOOK_EVERY } else { 1 };
         let leads_on = self.step_s > SHORTEST * self.slow.longest_s;
         match self.steps >= MOST_STEPS || !leads_on {
-            true => Err(SettleError::TooManySteps {
+            true => Err(SolveError::TooManySteps {
                 time_s: self.time_s,
-                steps: self.steps,
-                step_s: self.step_s,
+                why: format!(
+                    "gave up at t = {:e} s after {} steps: the last one was {:e} s, set by the stiffest contact; \
+                     look at the contacts' laws and at the lightest bead",
+                    self.time_s, self.steps, self.step_s
+                ),
             }),
             false => Ok(()),
         }
     }
 
-    /// The fastest body.
-    fn fastest(&self) -> Result<usize, SettleError> {
+    fn fastest(&self) -> Result<usize, SolveError> {
         let (mut fastest, mut most) = (0, 0.0);
         for (i, (x, v)) in self
             .state
@@ -128,10 +130,7 @@ impl<'a> Slow<'a> {
             .enumerate()
         {
             if !(x.is_finite() && v.is_finite()) {
-                return Err(SettleError::NotFinite {
-                    time_s: self.time_s,
-                    body: i,
-                });
+                return Err(not_finite(self.time_s, i));
             }
             if v.abs() > most {
                 (fastest, most) = (i, v.abs());

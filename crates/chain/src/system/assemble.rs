@@ -196,7 +196,6 @@ fn loads(chain: &Chain, system: &System) -> Vec<f64> {
     loads
 }
 
-/// Static overlap and force of every contact.
 fn settle(chain: &Chain, pairs: &[Option<Pair>], system: &mut System) -> Result<(), ChainError> {
     let loads = loads(chain, system);
     let alike =

@@ -4,7 +4,6 @@ use super::{SectionColumns, System};
 use crate::laws::Closed;
 
 impl System {
-    /// The section that a contact belongs to.
     pub(crate) fn section(&self, contact: usize) -> Option<&SectionColumns> {
         self.sections.get(*self.section_of.get(contact)? as usize)
     }

@@ -30,7 +30,6 @@ pub(crate) struct TermColumns {
     pub columns: Columns,
 }
 
-/// Consecutive contacts that share their laws.
 #[derive(Clone, Debug)]
 pub(crate) struct SectionColumns {
     pub contacts: Range<usize>,
@@ -39,7 +38,6 @@ pub(crate) struct SectionColumns {
 }
 
 impl SectionColumns {
-    /// All terms, gated ones first.
     pub(crate) fn terms(&self) -> impl Iterator<Item = &TermColumns> {
         self.gated.iter().chain(&self.ungated)
     }
@@ -190,7 +188,6 @@ impl System {
             && (self.pendulum_per_s2 > 0.0) == (other.pendulum_per_s2 > 0.0)
     }
 
-    /// Whether the last body can never move.
     pub(crate) fn ends_fixed(&self) -> bool {
         let last = self.bodies() - 1;
         !self.periodic && self.inverse_mass[last] == 0.0 && self.velocity_m_s[last] == 0.0

@@ -35,7 +35,6 @@ pub(super) fn kinds(system: &System, pairs: &[Option<Pair>]) -> Vec<(usize, Pair
         .collect()
 }
 
-/// Shortest turning time of all contacts.
 fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f64 {
     kinds.iter().fold(f64::INFINITY, |shortest, (c, pair)| {
         let mass_kg = match pair.mass_kg.is_finite() {

@@ -10,7 +10,7 @@
 //! | [`long_wave`] | the same wave with the beads smeared out (Nesterenko) | asymptotic for waves much longer than a bead; Hertz waves are five beads long, the speed is off by 1 % |
 //! | [`linear`] | sound speed, cutoff, band gap, normal modes of a preloaded row | exact for motions much smaller than the static overlap |
 //! | [`two_body`] | contact time, largest overlap and force, restitution of two bodies | elastic: closed form; viscoelastic: integration to 1e-13, and a series for weak losses |
-//! | [`striker`] | speed, force and momentum of the leading pulse after an impact | exact once its energy share is given, which only the equations of motion tell |
+//! | [`striker`] | speed, force and momentum of the leading pulse after an impact | exact once its energy share is given, by the equations of motion |
 //!
 //! What none of this knows: losses along the chain, preload below a large pulse
 //! (except [`long_wave::preloaded_speed_beads_s`], asymptotic), beads that
@@ -24,10 +24,10 @@
 //! wave's momentum over m c ([`solitary::SolitaryWave::shift_m`]).
 //!
 //! ```
-//! use hertzchain_chain::theory::TheoryError;
+//! use hertzchain_chain::ChainError;
 //! use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave};
 //!
-//! # fn main() -> Result<(), TheoryError> {
+//! # fn main() -> Result<(), ChainError> {
 //! let shape = SolitaryShape::hertz()?;
 //! let (stiffness, mass_kg, peak_bead_speed_m_s) = (8.79e9, 8.54e-3, 0.68);
 //! let wave = SolitaryWave::from_peak_bead_speed(&shape, stiffness, mass_kg, peak_bead_speed_m_s)?;
@@ -37,12 +37,29 @@
 //! # }
 //! ```
 
-mod error;
 pub mod linear;
 pub mod long_wave;
 pub mod solitary;
 pub mod striker;
 pub mod two_body;
 
-pub use error::TheoryError;
-use error::require_positive;
+use crate::chain::ChainError;
+
+fn require_positive(quantity: &str, value: f64) -> Result<(), ChainError> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(out_of_range(quantity, value, "positive and finite")),
+    }
+}
+
+fn out_of_range(quantity: &str, value: f64, expected: &'static str) -> ChainError {
+    ChainError::Value {
+        what: quantity.to_owned(),
+        value,
+        expected,
+    }
+}
+
+fn not_converged(computation: &str, error: f64) -> ChainError {
+    ChainError::NotConverged(format!("{computation} did not converge: {error:e} left"))
+}

@@ -4,7 +4,7 @@
 //! equations of motion only: nothing here predicts the share. Given it, the
 //! exact solitary wave fixes everything else about the leading pulse.
 
-use crate::theory::TheoryError;
+use crate::chain::ChainError;
 use crate::theory::solitary::{SolitaryShape, SolitaryWave};
 
 /// The leading pulse of a just touching chain hit by a striker, in units of
@@ -31,12 +31,12 @@ impl LeadingPulse {
     /// \[HinchSaintJean1999\].
     ///
     /// # Errors
-    /// [`TheoryError::OutOfRange`] unless both are positive and finite.
+    /// [`ChainError::Value`] unless both are positive and finite.
     pub fn from_energy_share(
         shape: &SolitaryShape,
         mass_ratio: f64,
         energy_share: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         let energy = 0.5 * mass_ratio * energy_share;
         let wave = SolitaryWave::from_energy(shape, 1.0, 1.0, energy)?;
         Ok(Self {

@@ -16,7 +16,6 @@ impl Wave<'_> {
         }
     }
 
-    /// The same without the seams.
     pub(super) fn owned(&self) -> Range<usize> {
         let moving = self.moving();
         let start = moving.start + usize::from(self.slow.holds(moving.start));
@@ -37,7 +36,6 @@ impl Wave<'_> {
         }
     }
 
-    /// The gates of short steps.
     pub(super) fn usual_gates(&self) -> Gates {
         match self.control {
             Control::Adaptive { .. } => Gates::Frozen,
@@ -87,7 +85,6 @@ impl Wave<'_> {
         false
     }
 
-    /// Bodies that a long step serves badly.
     pub(super) fn needy(&self, step_s: f64) -> Option<Range<usize>> {
         let (Some(weights), Control::Adaptive { tolerance }) = (&self.table.error, self.control)
         else {

@@ -18,7 +18,6 @@ use std::ops::Range;
 pub struct Piece<'a> {
     pub(super) system: &'a System,
     pub(super) table: &'a Table,
-    /// State at the start of the step.
     pub(super) state: &'a State,
     pub(super) step_s: f64,
     /// Positions and velocities at the end of the step.
@@ -315,7 +314,6 @@ impl Piece<'_> {
     }
 }
 
-/// c_1 θ + c_2 θ² + …
 pub(super) fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
     coefficients
         .iter()

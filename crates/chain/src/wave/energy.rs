@@ -93,7 +93,6 @@ pub(super) fn stored(system: &System, state: &State, law: Option<&str>) -> f64 {
     sum
 }
 
-/// Energy that contacts hold at static equilibrium.
 pub(super) fn rest_energy(system: &System) -> f64 {
     (0..system.contacts())
         .filter(|&c| system.offset_m[c] > 0.0)

@@ -84,7 +84,6 @@ impl Pass {
         self.push_bodies(system, bodies, x, a);
     }
 
-    /// Overlaps, their roots and their rates.
     fn kinematics(&mut self, system: &System, contacts: Range<usize>, x: &[f64], v: &[f64]) {
         let n = contacts.len();
         let (first, end) = (contacts.start, contacts.end);
@@ -222,7 +221,6 @@ impl Pass {
     }
 }
 
-/// What acts on single bodies beside contacts.
 fn push_ends(system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
     let last = if system.pendulum_per_s2 > 0.0 {
         bodies.end

@@ -19,7 +19,6 @@ enum Change {
     Turn,
 }
 
-/// A change located in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Event {
     pub contact: usize,
@@ -77,7 +76,7 @@ impl Watch {
         self.landing = 0.1 * self.tolerance * speed_m_s * self.time_s;
     }
 
-    /// The change a contact has made by the end of a step, judged from the
+    /// The change a contact has made by the end of a step, estimated from the
     /// force pass there.
     fn change(&self, system: &System, state: &State, pass: &Pass, c: usize) -> Option<Change> {
         let gap = pass.gap[c];
@@ -171,7 +170,7 @@ impl Watch {
     }
 
     /// Sets the modes at the end of an accepted step; `aimed` is the change
-    /// that the step was made to end at. Tells whether any mode changed.
+    /// that the step was made to end at. Returns whether any mode changed.
     pub(super) fn settle(
         &mut self,
         system: &System,

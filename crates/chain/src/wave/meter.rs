@@ -10,7 +10,6 @@ use std::ops::Range;
 /// Integrates powers along the steps of a method.
 #[derive(Clone, Debug)]
 pub(crate) struct Meter {
-    /// Laws whose work is not all stored.
     laws: Vec<&'static str>,
     /// Powers of the laws, then of the cut, then of the driven end; a row a stage.
     powers_w: Vec<Vec<f64>>,
@@ -88,7 +87,6 @@ impl Meter {
         self.most_j = self.most_j.max(put_in).max(kinetic_j);
     }
 
-    /// Adds the work of a long step.
     pub(super) fn finish_slow(&mut self, step_s: f64, weights: &[f64]) {
         add(&mut self.work_j, step_s, weights, &self.slow_powers_w);
     }
@@ -156,7 +154,6 @@ impl Meter {
     }
 }
 
-/// Adds Σ h b_s P_s to works.
 fn add(work_j: &mut [f64], step_s: f64, weights: &[f64], powers_w: &[Vec<f64>]) {
     for (weight, powers) in weights.iter().zip(powers_w) {
         for (work, power) in work_j.iter_mut().zip(powers) {
@@ -165,7 +162,6 @@ fn add(work_j: &mut [f64], step_s: f64, weights: &[f64], powers_w: &[Vec<f64>]) 
     }
 }
 
-/// Terms whose work is not all stored.
 fn lossy(system: &System) -> impl Iterator<Item = &TermColumns> {
     system
         .sections
@@ -210,7 +206,6 @@ fn term_power(
     acting.zip(rate).map(|(f, rate)| f * rate).sum()
 }
 
-/// Σ (F_clipped − F_unclipped) δ̇.
 fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
     if system.tension == crate::chain::Tension::Allowed {
         return 0.0;

@@ -123,6 +123,31 @@ pub enum SolveError {
         /// What it is.
         value: f64,
     },
+    /// A chain, a sensor or a setting with which nothing can be computed.
+    #[error("{0}")]
+    Refused(String),
+    /// With equal steps, or on the way to rest, a number stopped being finite.
+    #[error("{0}")]
+    Diverged(String),
+    /// With equal steps, or on the way to rest, steps become too many.
+    #[error("{why}")]
+    TooManySteps {
+        /// Time reached in s.
+        time_s: f64,
+        /// In words.
+        why: String,
+    },
+    /// No rest within the longest time.
+    #[error("{why}")]
+    StillMoving {
+        /// Time in s.
+        time_s: f64,
+        /// In words.
+        why: String,
+    },
+    /// The computation was cancelled.
+    #[error("the shot was broken off")]
+    BrokenOff,
     /// Rounding alone is larger than the error asked for.
     #[error(
         "a tolerance of {tolerance:e} per step cannot be reached in double precision; \
@@ -159,7 +184,6 @@ fn time(time_s: f64) -> String {
     }
 }
 
-/// Why a motion stops being finite.
 fn reasons(step_s: Option<f64>) -> &'static str {
     match step_s {
         Some(_) => "the fixed step is too long for a stiff contact or a strong damping",
@@ -170,7 +194,6 @@ fn reasons(step_s: Option<f64>) -> &'static str {
     }
 }
 
-/// What to do about it.
 fn remedy(step_s: Option<f64>) -> String {
     match step_s {
         Some(step_s) => format!(

@@ -1,4 +1,4 @@
-//! The loop itself: step, judge, locate, accept, show.
+//! The loop itself: step, error control, event location, observers.
 
 use super::dense::Piece;
 use super::forces::{Gates, Pass};
@@ -36,7 +36,6 @@ pub fn run(
     Ok(wave.outcome(finished))
 }
 
-/// A shot under way.
 pub(super) struct Wave<'a> {
     pub(super) system: &'a System,
     pub(super) table: &'a Table,
@@ -53,7 +52,6 @@ pub(super) struct Wave<'a> {
     pub(super) a: Vec<Vec<f64>>,
     pub(super) x: Vec<f64>,
     pub(super) v: Vec<f64>,
-    /// Step the error control proposes.
     pub(super) proposed_s: f64,
     /// Change that the next step is shortened to end at.
     pub(super) aimed: Option<Event>,
@@ -175,7 +173,7 @@ impl<'a> Wave<'a> {
         self.hold_seams(self.state.time_s + node * h);
     }
 
-    /// One accepted step; tells whether an observer is finished.
+    /// One accepted step; returns whether an observer is finished.
     fn advance(&mut self, observers: &mut [&mut dyn Observer]) -> Result<bool, SolveError> {
         let h = match self.control {
             Control::Fixed { step_s } => self.fixed_step(step_s)?,
@@ -265,7 +263,6 @@ impl<'a> Wave<'a> {
         }
     }
 
-    /// Shows the step to the observers.
     fn show(&self, h: f64, observers: &mut [&mut dyn Observer]) -> bool {
         let piece = self.piece(h);
         let mut finished = false;
@@ -360,7 +357,7 @@ impl<'a> Wave<'a> {
             .settle(self.system, &mut self.state, &self.pass, contacts, aimed)
     }
 
-    /// With fixed steps modes only tell the energy budget what touches.
+    /// With fixed steps modes only report to the energy budget what touches.
     fn follow_gates(&mut self) -> bool {
         for contact in self.contacts() {
             let touches = self.state.overlap(self.system, contact) >= 0.0;

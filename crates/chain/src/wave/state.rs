@@ -13,7 +13,6 @@ pub(crate) enum Mode {
     Cut,
 }
 
-/// State of a chain between two steps.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub time_s: f64,
@@ -58,7 +57,6 @@ impl State {
         system.offset_m[contact] - (self.x[contact + 1] - self.x[contact])
     }
 
-    /// Changes a contact's mode.
     pub(super) fn set(&mut self, contact: usize, mode: Mode) {
         self.mode[contact] = mode;
         self.passing[contact] = f64::from(u8::from(mode == Mode::Closed));

@@ -1,6 +1,5 @@
 //! Explicit one-step methods for x″ = a(x, x′) as tables of numbers.
 
-/// Degree of the polynomials in dense output.
 pub(crate) const DEGREE: usize = 4;
 
 /// A method in position–velocity form: with accelerations A_j of the stages,
@@ -9,7 +8,6 @@ pub(crate) const DEGREE: usize = 4;
 /// of the step.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Times of the stages within the step.
     pub(crate) nodes: Vec<f64>,
     /// Velocity weights of the stages, then of the end.
     pub(crate) velocity: Vec<Vec<f64>>,
@@ -23,12 +21,10 @@ pub struct Table {
     pub(crate) dense_position: Vec<[f64; DEGREE]>,
     /// The last stage is evaluated at the end of the step.
     pub(crate) last_is_end: bool,
-    /// Nominal order.
     pub(crate) order: f64,
 }
 
 impl Table {
-    /// Number of stages.
     pub(crate) fn stages(&self) -> usize {
         self.nodes.len()
     }

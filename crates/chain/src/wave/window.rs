@@ -37,7 +37,6 @@ pub(crate) struct Window {
     length_floor: f64,
     relaxed_speed: f64,
     relaxed_length: f64,
-    /// Bodies from here on have never moved.
     untouched: usize,
     sleeps_again: bool,
     until_look: usize,
@@ -86,7 +85,6 @@ impl Window {
         self.sleeps_again
     }
 
-    /// Bodies from here on have never moved.
     pub(super) fn untouched(&self) -> usize {
         self.untouched
     }
@@ -132,7 +130,6 @@ impl Window {
         }
     }
 
-    /// Neither pressed nor closing, but for rounding.
     fn is_quiet(&self, system: &System, state: &State, contact: usize) -> bool {
         if !system.has_contact(contact) {
             return true;
@@ -203,7 +200,6 @@ impl Window {
         }
     }
 
-    /// Wakes everything.
     pub(super) fn wake_all(&mut self, state: &mut State) {
         let (first, end) = (self.bodies.start, self.bodies.end);
         self.wake(state, 0..first);

@@ -29,7 +29,6 @@ const RATIOS: (f64, f64) = (3.0, 64.0);
 /// A long step changes its ratio by this factor.
 const ADJUST: f64 = 1.05;
 
-/// The long step under way.
 #[derive(Clone, Debug)]
 pub(super) struct Slow {
     /// Between the start and the end of a long step.
@@ -100,7 +99,6 @@ impl Slow {
         self.ratio <= RATIOS.1
     }
 
-    /// No long step now.
     pub(super) fn give_up(&mut self) {
         self.wait = LOOK_EVERY;
         self.ratio = self.ratio.clamp(RATIOS.0, RATIOS.1);
@@ -155,12 +153,10 @@ impl Slow {
         self.active && self.window.contains(&body) && !self.quick.contains(&body)
     }
 
-    /// Whether both bodies of a contact are.
     pub(super) fn holds_contact(&self, contact: usize) -> bool {
         self.holds(contact) && self.holds(contact + 1)
     }
 
-    /// Bodies on the long step.
     pub(super) fn bodies(&self) -> impl Iterator<Item = usize> + use<> {
         let before = self.window.start..self.quick.start.max(self.window.start);
         let after = self.quick.end.min(self.window.end)..self.window.end;

@@ -1,7 +1,8 @@
 //! Shots of the ensemble loop, for its tests.
 
 use super::*;
-use hertzchain_chain::ensemble::{End, EnsembleError, Flown, Precision, Settings, Shot, fire};
+use hertzchain_chain::ensemble::{End, LaneResult, Precision, Settings, Shot, fire};
+use hertzchain_chain::wave::SolveError;
 
 /// What the paper's rig watches: a bead (the seventh, or the last of a shorter
 /// row) and the wall.
@@ -29,7 +30,7 @@ pub fn fire_all(
     systems: &[System],
     step: (f64, f64),
     settings: &Settings,
-) -> Vec<Result<Flown, EnsembleError>> {
+) -> Vec<Result<LaneResult, SolveError>> {
     fire_all_in(Precision::Double, systems, step, settings)
 }
 
@@ -39,7 +40,7 @@ pub fn fire_all_in(
     systems: &[System],
     (step, duration_s): (f64, f64),
     settings: &Settings,
-) -> Vec<Result<Flown, EnsembleError>> {
+) -> Vec<Result<LaneResult, SolveError>> {
     let shot = |system| Shot {
         system,
         step,
@@ -51,7 +52,7 @@ pub fn fire_all_in(
 }
 
 /// Fires one system alone, in double precision.
-pub fn fire_one(system: &System, step: (f64, f64), settings: &Settings) -> Flown {
+pub fn fire_one(system: &System, step: (f64, f64), settings: &Settings) -> LaneResult {
     fire_one_in(Precision::Double, system, step, settings)
 }
 
@@ -61,13 +62,13 @@ pub fn fire_one_in(
     system: &System,
     step: (f64, f64),
     settings: &Settings,
-) -> Flown {
+) -> LaneResult {
     let mut flown = fire_all_in(precision, std::slice::from_ref(system), step, settings);
     flown.remove(0).unwrap()
 }
 
 /// Pulses of a shot that watched a bead and the wall.
-pub fn passage(flown: &Flown) -> Option<Passage> {
+pub fn passage(flown: &LaneResult) -> Option<Passage> {
     let [sensor, wall] = flown.signals.as_slice() else {
         return None;
     };
@@ -86,7 +87,7 @@ pub fn tofs(passage: &Passage) -> [f64; 2] {
 
 /// The first number in which two flights differ, if any; the cost in bodies is
 /// the block's and may.
-pub fn difference(one: &Flown, two: &Flown) -> Option<String> {
+pub fn difference(one: &LaneResult, two: &LaneResult) -> Option<String> {
     let (one, two) = (numbers(one), numbers(two));
     if one.len() != two.len() {
         return Some(format!("{} and {} numbers", one.len(), two.len()));
@@ -99,7 +100,7 @@ pub fn difference(one: &Flown, two: &Flown) -> Option<String> {
 }
 
 /// Everything that a shot gives, with names.
-fn numbers(flown: &Flown) -> Vec<(&'static str, f64)> {
+fn numbers(flown: &LaneResult) -> Vec<(&'static str, f64)> {
     let named = |name| move |value| (name, value);
     let maxima = flown.signals.iter().flat_map(|signal| signal.maxima());
     let stretches = flown.signals.iter().flat_map(|signal| signal.stretches());

@@ -30,7 +30,6 @@ pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
     }
 }
 
-/// A group a section.
 pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
     let specs = experiment.sections();
     let described = specs.iter().zip(&chain.sections);
@@ -69,7 +68,6 @@ fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[Pair]) {
     }
 }
 
-/// What materials decide.
 fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pairs: &[Pair]) {
     let relaxation = match law.name() {
         "damping_brilliantov_1996" => Material::relaxation_time_1996_s,

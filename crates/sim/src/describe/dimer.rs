@@ -106,7 +106,6 @@ impl Row {
 struct Wave {
     exponent: f64,
     squared: f64,
-    /// β, over the fourth derivative.
     spread: f64,
     /// What multiplies δ^{1−n} in the exponent of the integrating factor.
     weight: f64,

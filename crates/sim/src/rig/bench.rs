@@ -1,7 +1,7 @@
 //! The chain on its track, from impact to impact.
 
+use crate::StudyError;
 use crate::rig::chance::Chance;
-use crate::rig::error::ShotError;
 use crate::rig::laying;
 use hertzchain_chain::settle::{Rest, SlowPhase, State, settle};
 use hertzchain_chain::{Chain, System};
@@ -26,7 +26,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that can't be built or does not come to rest.
-    pub fn lay(experiment: &'a Experiment, chance: &mut Chance) -> Result<Self, ShotError> {
+    pub fn lay(experiment: &'a Experiment, chance: &mut Chance) -> Result<Self, StudyError> {
         let campaign = experiment.campaign();
         let beads = experiment.beads();
         let sizes = laying::sizes(&campaign.laying, beads, chance);
@@ -58,7 +58,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that does not come to rest.
-    pub fn tap(&mut self, speed_m_s: f64) -> Result<Rest, ShotError> {
+    pub fn tap(&mut self, speed_m_s: f64) -> Result<Rest, StudyError> {
         self.state.strike(&self.tapped, speed_m_s);
         let rest = settle(&self.tapped, &mut self.state, &self.slow, &mut |_, _, _| {})?;
         self.hold_wall();
@@ -70,7 +70,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that can't be built at this speed.
-    pub fn aim(&self, speed_m_s: f64) -> Result<(System, System), ShotError> {
+    pub fn aim(&self, speed_m_s: f64) -> Result<(System, System), StudyError> {
         let system = System::new(&chain(self.experiment, &self.sizes, speed_m_s)?)?;
         let mut state = self.state.clone();
         state.strike(&system, speed_m_s);
@@ -88,7 +88,7 @@ impl<'a> Bench<'a> {
         system: &System,
         state: State,
         seen: &mut dyn FnMut(f64, &[f64]),
-    ) -> Result<Rest, ShotError> {
+    ) -> Result<Rest, StudyError> {
         self.state = state;
         let mut seen = |time_s: f64, _: &State, forces_n: &[f64]| seen(time_s, forces_n);
         let rest = settle(system, &mut self.state, &self.slow, &mut seen)?;
@@ -123,7 +123,7 @@ impl<'a> Bench<'a> {
 }
 
 /// The chain at a speed with the sizes of its beads.
-fn chain(experiment: &Experiment, sizes: &[f64], speed_m_s: f64) -> Result<Chain, ShotError> {
+fn chain(experiment: &Experiment, sizes: &[f64], speed_m_s: f64) -> Result<Chain, StudyError> {
     let (mut chain, _) = experiment.chain(Some(speed_m_s))?;
     laying::resize(&mut chain, sizes);
     Ok(chain)

@@ -1,9 +1,7 @@
 //! What can be wrong with a campaign, told to people.
 
+use crate::StudyError;
 use crate::rig::striker::OutOfRange;
-use hertzchain_chain::ChainError;
-use hertzchain_chain::settle::SettleError;
-use hertzchain_chain::wave::SolveError;
 use hertzchain_experiment::{Mistakes, PathError};
 use hertzchain_measure::records::RecordError;
 use std::io;
@@ -40,7 +38,7 @@ pub enum RigError {
         /// Which shot or tap.
         when: String,
         /// Why.
-        why: ShotError,
+        why: StudyError,
     },
     /// A recording that can't be written.
     #[error("{0}; `campaign` with the same folder goes on from there")]
@@ -110,30 +108,7 @@ fn first(names: &[String]) -> String {
     }
 }
 
-/// Why a tap or a shot can't be computed.
-#[derive(Debug, thiserror::Error)]
-pub enum ShotError {
-    /// The experiment at this speed.
-    #[error(transparent)]
-    Mistakes(#[from] Box<Mistakes>),
-    /// The chain at this speed.
-    #[error(transparent)]
-    Chain(#[from] ChainError),
-    /// The wave.
-    #[error(transparent)]
-    Wave(#[from] SolveError),
-    /// The time after it.
-    #[error(transparent)]
-    Slow(#[from] SettleError),
-}
-
 impl From<Mistakes> for RigError {
-    fn from(mistakes: Mistakes) -> Self {
-        Self::Mistakes(Box::new(mistakes))
-    }
-}
-
-impl From<Mistakes> for ShotError {
     fn from(mistakes: Mistakes) -> Self {
         Self::Mistakes(Box::new(mistakes))
     }

@@ -44,7 +44,7 @@ pub use bench::Bench;
 pub use campaign::{Done, Progress, campaign};
 pub use chance::{Chance, Purpose};
 pub use converter::Converter;
-pub use error::{RigError, ShotError};
+pub use error::RigError;
 pub use keep::{TOLD_IN, told_plan};
 pub use merge::{Merged, merge};
 pub use outlook::outlook;

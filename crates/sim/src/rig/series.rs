@@ -2,9 +2,10 @@
 //!
 //! What a shot leaves, positions, gaps and all, is what the next taps find.
 
+use crate::StudyError;
 use crate::rig::bench::Bench;
 use crate::rig::chance::{Chance, Purpose};
-use crate::rig::error::{RigError, ShotError};
+use crate::rig::error::RigError;
 use crate::rig::photogate::Passing;
 use crate::rig::plan::{Plan, Series};
 use crate::rig::record::{Record, Window};
@@ -64,7 +65,7 @@ pub fn run(
     (0..shots).try_for_each(|number| take(run.repeat(number)?))
 }
 
-fn failed(series: &Series, when: String, why: ShotError) -> RigError {
+fn failed(series: &Series, when: String, why: StudyError) -> RigError {
     RigError::Shot {
         series: series.name.clone(),
         when,

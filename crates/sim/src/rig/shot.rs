@@ -1,7 +1,7 @@
 //! One shot: the wave, and what follows until rest.
 
+use crate::StudyError;
 use crate::rig::bench::Bench;
-use crate::rig::error::ShotError;
 use crate::rig::tape::{Tape, Taping};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::{Rest, State};
@@ -55,7 +55,7 @@ pub fn shoot(
     sensor_bead: usize,
     speed_m_s: f64,
     tape: &mut Tape,
-) -> Result<Shot, ShotError> {
+) -> Result<Shot, StudyError> {
     let (before, gaps_before_m) = (bench.state().clone(), bench.gaps_m());
     let (system, shot) = bench.aim(speed_m_s)?;
     let wall = shot.beads();
@@ -97,7 +97,7 @@ fn slow(
     outcome: &Outcome,
     sensor_bead: usize,
     tape: &mut Tape,
-) -> Result<Rest, ShotError> {
+) -> Result<Rest, StudyError> {
     let still_n = |contact: usize| shot.static_contact(contact).force_n;
     let contacts = [sensor_bead - 1, sensor_bead, shot.beads()];
     let still_n = contacts.map(still_n);

@@ -1,6 +1,7 @@
 //! Normal modes of a finite chain with any masses and contact stiffnesses.
 
-use crate::theory::{TheoryError, require_positive};
+use crate::chain::ChainError;
+use crate::theory::{not_converged, out_of_range, require_positive};
 
 /// These take some twenty seconds, and the work grows with the cube.
 const MOST_BEADS: usize = 1000;
@@ -41,13 +42,13 @@ pub struct Mode {
 /// (rings) come with some orthogonal pair of shapes.
 ///
 /// # Errors
-/// [`TheoryError::ContactCount`] if the lists do not fit, [`TheoryError::OutOfRange`]
+/// [`ChainError::Layout`] if the lists do not fit, [`ChainError::Value`]
 /// for 0 or more than 1000 beads and for anything not positive and finite.
 pub fn normal_modes(
     masses_kg: &[f64],
     contact_stiffnesses_n_m: &[f64],
     ends: Ends,
-) -> Result<Vec<Mode>, TheoryError> {
+) -> Result<Vec<Mode>, ChainError> {
     check(masses_kg, contact_stiffnesses_n_m, ends)?;
     let mut columns = strain_columns(masses_kg, contact_stiffnesses_n_m, ends);
     orthogonalise(&mut columns)?;
@@ -62,14 +63,11 @@ pub fn normal_modes(
     Ok(modes)
 }
 
-fn check(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Result<(), TheoryError> {
+fn check(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Result<(), ChainError> {
     let beads = masses_kg.len();
     if !(1..=MOST_BEADS).contains(&beads) {
-        return Err(TheoryError::OutOfRange {
-            quantity: "number of beads for normal modes",
-            value: beads as f64,
-            expected: "between 1 and 1000",
-        });
+        let what = "number of beads for normal modes";
+        return Err(out_of_range(what, beads as f64, "between 1 and 1000"));
     }
     let expected = match ends {
         Ends::FreeFree => beads - 1,
@@ -78,7 +76,9 @@ fn check(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Result<(), Theor
     };
     let given = stiffnesses.len();
     if given != expected {
-        return Err(TheoryError::ContactCount { expected, given });
+        return Err(ChainError::Layout(format!(
+            "{given} contact stiffnesses given, the beads and ends need {expected}"
+        )));
     }
     masses_kg
         .iter()
@@ -124,7 +124,7 @@ fn strain_columns(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Vec<Col
     masses_kg.iter().enumerate().map(column).collect()
 }
 
-fn orthogonalise(columns: &mut [Column]) -> Result<(), TheoryError> {
+fn orthogonalise(columns: &mut [Column]) -> Result<(), ChainError> {
     let mut largest = f64::INFINITY;
     for _ in 0..MOST_SWEEPS {
         largest = sweep(columns);
@@ -132,10 +132,7 @@ fn orthogonalise(columns: &mut [Column]) -> Result<(), TheoryError> {
             return Ok(());
         }
     }
-    Err(TheoryError::NotConverged {
-        computation: "normal modes",
-        error: largest,
-    })
+    Err(not_converged("normal modes", largest))
 }
 
 /// Turns every pair of columns once; gives the largest cosine that was worth a turn.

@@ -1,7 +1,8 @@
 //! The dimensionless shape of the exact lattice solitary wave.
 
 use super::solver::{Solution, sinc, solve};
-use crate::theory::TheoryError;
+use crate::chain::ChainError;
+use crate::theory::out_of_range;
 
 /// Exponents for which the solver's window and spectrum stay small.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.02..=20.0;
@@ -27,15 +28,12 @@ impl SolitaryShape {
     /// Solves for the shape at force exponent `exponent` (1.02 to 20; Hertz 3/2).
     ///
     /// # Errors
-    /// [`TheoryError::OutOfRange`] for other exponents,
-    /// [`TheoryError::NotConverged`] if rounding accuracy is not reached.
-    pub fn new(exponent: f64) -> Result<Self, TheoryError> {
+    /// [`ChainError::Value`] for other exponents,
+    /// [`ChainError::NotConverged`] if rounding accuracy is not reached.
+    pub fn new(exponent: f64) -> Result<Self, ChainError> {
         if !EXPONENTS.contains(&exponent) {
-            return Err(TheoryError::OutOfRange {
-                quantity: "force exponent",
-                value: exponent,
-                expected: "between 1.02 and 20",
-            });
+            let expected = "between 1.02 and 20";
+            return Err(out_of_range("force exponent", exponent, expected));
         }
         let solved = solve(exponent)?;
         Ok(Self { exponent, solved })
@@ -45,7 +43,7 @@ impl SolitaryShape {
     ///
     /// # Errors
     /// As [`SolitaryShape::new`]; none is known to happen.
-    pub fn hertz() -> Result<Self, TheoryError> {
+    pub fn hertz() -> Result<Self, ChainError> {
         Self::new(1.5)
     }
 

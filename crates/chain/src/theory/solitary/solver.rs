@@ -1,7 +1,8 @@
 //! The fixed-point iteration behind the solitary shape.
 
 use super::grid::CosineGrid;
-use crate::theory::TheoryError;
+use crate::chain::ChainError;
+use crate::theory::not_converged;
 
 /// The spectrum counts as resolved when its last tenth is below this; the
 /// coefficients add up to the peak, 1, so this is a share of the peak.
@@ -35,7 +36,7 @@ pub(super) struct Solution {
 }
 
 /// Solves for the shape on grids twice as fine each, until the spectrum is resolved.
-pub(super) fn solve(exponent: f64) -> Result<Solution, TheoryError> {
+pub(super) fn solve(exponent: f64) -> Result<Solution, ChainError> {
     let half_window = half_window_beads(exponent);
     let mut per_bead = COARSEST;
     while per_bead <= FINEST {
@@ -77,7 +78,7 @@ struct FixedPoint {
 /// p ← Λ∗pⁿ / (Λ∗pⁿ)(0). Fixing the peak removes the one growing direction
 /// (factor n), evenness removes the translation (factor 1); what is left
 /// shrinks by about 1/n a step.
-fn fixed_point(grid: &CosineGrid, exponent: f64) -> Result<FixedPoint, TheoryError> {
+fn fixed_point(grid: &CosineGrid, exponent: f64) -> Result<FixedPoint, ChainError> {
     let variance = gaussian_variance(exponent);
     let mut overlap: Vec<f64> = grid
         .positions()
@@ -151,8 +152,4 @@ fn half_window_beads(exponent: f64) -> usize {
 /// sin(x)/x: the factor of averaging over a bead, at x half the wave number.
 pub(super) fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
-}
-
-fn not_converged(computation: &'static str, error: f64) -> TheoryError {
-    TheoryError::NotConverged { computation, error }
 }

@@ -1,7 +1,8 @@
 //! A solitary wave with units.
 
 use super::SolitaryShape;
-use crate::theory::{TheoryError, require_positive};
+use crate::chain::ChainError;
+use crate::theory::require_positive;
 
 /// The exact solitary wave of a row of equal, just touching beads.
 ///
@@ -21,13 +22,13 @@ impl<'shape> SolitaryWave<'shape> {
     /// The wave with peak overlap δ_m.
     ///
     /// # Errors
-    /// [`TheoryError::OutOfRange`] unless all three are positive and finite.
+    /// [`ChainError::Value`] unless all three are positive and finite.
     pub fn from_peak_overlap(
         shape: &'shape SolitaryShape,
         stiffness: f64,
         mass_kg: f64,
         peak_overlap_m: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         require_positive("contact stiffness", stiffness)?;
         require_positive("bead mass", mass_kg)?;
         require_positive("size of the solitary wave", peak_overlap_m)?;
@@ -48,7 +49,7 @@ impl<'shape> SolitaryWave<'shape> {
         stiffness: f64,
         mass_kg: f64,
         peak_force_n: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         let peak_overlap_m = (peak_force_n / stiffness).powf(1.0 / shape.exponent());
         Self::from_peak_overlap(shape, stiffness, mass_kg, peak_overlap_m)
     }
@@ -62,7 +63,7 @@ impl<'shape> SolitaryWave<'shape> {
         stiffness: f64,
         mass_kg: f64,
         speed_beads_s: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         let power = mass_kg * speed_beads_s.powi(2) / (shape.speed_squared() * stiffness);
         let peak_overlap_m = power.powf(1.0 / (shape.exponent() - 1.0));
         Self::from_peak_overlap(shape, stiffness, mass_kg, peak_overlap_m)
@@ -77,7 +78,7 @@ impl<'shape> SolitaryWave<'shape> {
         stiffness: f64,
         mass_kg: f64,
         peak_bead_speed_m_s: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         let n = shape.exponent();
         let speed_beads_s = shape.speed_per_velocity_power()
             * (stiffness / mass_kg).powf(1.0 / (n + 1.0))
@@ -94,7 +95,7 @@ impl<'shape> SolitaryWave<'shape> {
         stiffness: f64,
         mass_kg: f64,
         energy_j: f64,
-    ) -> Result<Self, TheoryError> {
+    ) -> Result<Self, ChainError> {
         let power = energy_j / (stiffness * shape.energy());
         let peak_overlap_m = power.powf(1.0 / (shape.exponent() + 1.0));
         Self::from_peak_overlap(shape, stiffness, mass_kg, peak_overlap_m)

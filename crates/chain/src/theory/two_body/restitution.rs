@@ -11,7 +11,8 @@ use libm::tgamma;
 
 use super::ElasticCollision;
 use super::stepper::{State, extrapolated_step};
-use crate::theory::TheoryError;
+use crate::chain::ChainError;
+use crate::theory::{not_converged, out_of_range};
 
 /// When the bodies count as separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +56,7 @@ impl ViscoelasticCollision {
     ///
     /// # Errors
     /// As [`rebound`].
-    pub fn rebound(&self, end: ContactEnd) -> Result<Rebound, TheoryError> {
+    pub fn rebound(&self, end: ContactEnd) -> Result<Rebound, ChainError> {
         let n = self.elastic.exponent;
         let scaled = rebound(n, self.parameter(), end)?;
         let power = self.elastic.reduced_mass_kg * self.elastic.speed_m_s.powi(2);
@@ -103,9 +104,9 @@ pub fn restitution_by_series(exponent: f64, parameter: f64) -> f64 {
 /// times differentiable for β = 1/8 otherwise.
 ///
 /// # Errors
-/// [`TheoryError::OutOfRange`] unless 1 ≤ n ≤ 10 and 0 ≤ x ≤ 20,
-/// [`TheoryError::NotConverged`] if the steps become too many.
-pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound, TheoryError> {
+/// [`ChainError::Value`] unless 1 ≤ n ≤ 10 and 0 ≤ x ≤ 20,
+/// [`ChainError::NotConverged`] if the steps become too many.
+pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound, ChainError> {
     check_range("force exponent", exponent, 1.0, 10.0, "between 1 and 10")?;
     check_range(
         "damping parameter",
@@ -130,7 +131,6 @@ pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound
 struct Desingularised {
     exponent: f64,
     parameter: f64,
-    /// 1/β: y = s^{1/β}.
     inverse_root: f64,
 }
 
@@ -165,7 +165,7 @@ fn advance_until(
     rates: &impl Fn(&State) -> State,
     start: State,
     reached: impl Fn(&State) -> bool,
-) -> Result<State, TheoryError> {
+) -> Result<State, ChainError> {
     const TOLERANCE: f64 = 1e-14;
     const MOST_STEPS: usize = 200_000;
     let mut state = start;
@@ -181,10 +181,7 @@ fn advance_until(
             h *= 1.3;
         }
     }
-    Err(TheoryError::NotConverged {
-        computation: "two-body collision",
-        error: h,
-    })
+    Err(not_converged("two-body collision", h))
 }
 
 fn bisect_step(
@@ -212,13 +209,9 @@ fn check_range(
     lowest: f64,
     highest: f64,
     expected: &'static str,
-) -> Result<(), TheoryError> {
+) -> Result<(), ChainError> {
     if (lowest..=highest).contains(&value) {
         return Ok(());
     }
-    Err(TheoryError::OutOfRange {
-        quantity,
-        value,
-        expected,
-    })
+    Err(out_of_range(quantity, value, expected))
 }

@@ -1,4 +1,4 @@
-//! Following pulses and the striker to the end of a shot.
+//! Tracker pulses and the striker to the end of a shot.
 
 use crate::duration::{End, has_wall};
 use crate::plan::Plan;
@@ -9,14 +9,13 @@ use hertzchain_chain::{FarEnd, Start};
 /// Pulses past the sensor bead and the wall, and the striker until it is away
 /// for good.
 #[derive(Clone, Debug)]
-pub(crate) struct Following {
+pub(crate) struct Tracker {
     passages: Passages,
     end: End,
     sensor_bead: usize,
-    /// m₁/m₀.
     bead_over_striker: f64,
     wall: bool,
-    /// When energy alone told that nothing can change any more, in s.
+    /// When energy alone showed that nothing can change any more, in s.
     decided_s: Option<f64>,
     looked: u64,
     last_word: Option<(f64, f64)>,
@@ -25,7 +24,7 @@ pub(crate) struct Following {
     handed_on: Vec<f64>,
 }
 
-impl Following {
+impl Tracker {
     /// Of a plan's sensor bead, wall and striker.
     pub(crate) fn new(plan: &Plan, end: &End) -> Self {
         let wall = has_wall(&plan.chain.far);
@@ -45,7 +44,6 @@ impl Following {
         }
     }
 
-    /// The pulses.
     pub(crate) fn passages(&self) -> &Passages {
         &self.passages
     }
@@ -56,7 +54,7 @@ impl Following {
         self.last_word
     }
 
-    /// When energy alone told that nothing can change any more, in s; the shot
+    /// When energy alone showed that nothing can change any more, in s; the shot
     /// ended with that step.
     pub(crate) fn decided_s(&self) -> Option<f64> {
         self.decided_s
@@ -116,7 +114,7 @@ impl Following {
     }
 }
 
-impl Observer for Following {
+impl Observer for Tracker {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         let returned = self.passages.step(piece) == Flow::Finished;
         if self.end.when_decided || self.awaits_striker() {

@@ -1,4 +1,4 @@
-//! Judging a step: its error, and when there is no going on.
+//! Error control of a step, and when there is no going on.
 
 use super::Control;
 use super::outcome::SolveError;
