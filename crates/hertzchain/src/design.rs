@@ -1,9 +1,9 @@
 //! `design`: what to measure next.
 
-use crate::arguments::infer::{Design as Arguments, Push, WayKind};
 use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
 use crate::inference::{references_json, user};
+use crate::options::{DesignOptions as Arguments, Preload, WayKind};
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
     Goodness, Identifiability, Kind, Problem, design, fit, titled, ways, wrong_speed,
@@ -87,8 +87,8 @@ fn choices(arguments: &Arguments) -> Choices {
         sensor_beads: arguments.sensors.clone(),
         ..Choices::default()
     };
-    for push in &arguments.preloads {
-        if let Push::Of(force_n) = push {
+    for preload in &arguments.preloads {
+        if let Preload::Of(force_n) = preload {
             choices.preloads_n.push(*force_n);
         }
     }
@@ -124,7 +124,7 @@ pub fn designed(
     let candidates = problem
         .candidates(&fit, &ways, speeds, &errors)
         .map_err(user)?;
-    let picks = arguments.picks;
+    let picks = arguments.picks.0;
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
     let aims = found.aims.iter().enumerate();
     let (names, units) = aims.map(|(at, aim)| called(problem, at, aim)).unzip();

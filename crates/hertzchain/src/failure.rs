@@ -1,7 +1,6 @@
 //! What went wrong, told to people.
 
-use crate::arguments::How;
-use crate::given::has_unit;
+use crate::options::{SimulationOptions as How, has_unit};
 use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, Warning};
 use hertzchain_infer::SamplingError;
 use hertzchain_sim::{StudyError, parse_speed};

@@ -1,8 +1,8 @@
 //! From arguments to an experiment and a plan.
 
-use crate::arguments::{How, Input, Pick, Solver};
 use crate::failure::Failure;
-use crate::given::Given;
+use crate::options::Given;
+use crate::options::{Input, Pick, SimulationOptions as How, Solver};
 use crate::quantity::Style;
 use hertzchain_chain::System;
 use hertzchain_experiment::{Experiment, Mistakes, OpenError, Units, longest_duration_s, preset};
@@ -110,7 +110,7 @@ pub fn instruction_set() -> Result<InstructionSet, Failure> {
 
 /// Puts what the command line says in place of what the experiment says.
 pub fn adjust(how: &How, plan: &mut Plan) {
-    plan.accuracy = how.accuracy.unwrap_or(plan.accuracy);
+    plan.accuracy = how.accuracy.map_or(plan.accuracy, |accuracy| accuracy.0);
     let step = how.step.as_ref().map(Given::value);
     let duration = how.duration.as_ref().map(Given::value);
     plan.duration_s = duration.or(plan.duration_s);

@@ -2,7 +2,10 @@
 //! those that say what could be measured, those that would say nothing.
 
 use crate::common::{compact, curve, file, folder, json, refused, run, with_errors};
+use hertzchain::options::{FitOptions, ModelOptions, from_json, recorded};
+use hertzchain::{fit, inference};
 use serde_json::Value;
+use std::path::Path;
 
 #[test]
 fn options_of_a_results_json_give_the_same_bits_again() {
@@ -31,24 +34,23 @@ fn options_of_a_results_json_give_the_same_bits_again() {
     ];
     let found = json(&with_errors(&fit));
     assert_eq!(found["version"], env!("CARGO_PKG_VERSION"));
-    let options = found["options"].as_array().unwrap().iter();
-    let options: Vec<&str> = options.map(|word| word.as_str().unwrap()).collect();
-    let (data, model) = (
-        found["data"]["file"].as_str().unwrap(),
-        found["model"].as_str().unwrap().trim_end_matches(".toml"),
-    );
-    let again = ["fit", data, "-p", model, "--json"];
-    assert_eq!(json(&[&again[..], &options].concat()), found);
-    // Without one of them it is another fit.
-    let fewer: Vec<&str> = options
-        .iter()
-        .copied()
-        .filter(|word| !word.starts_with("--set"))
-        .collect();
-    assert_ne!(
-        json(&[&again[..], &fewer].concat())["parameters"],
+    let options: FitOptions = from_json("fit", found["options"].clone()).unwrap();
+    assert_eq!(recorded(&options), found["options"]);
+    let data = inference::data(Path::new(&data), &options.measured).unwrap();
+    let dry = inference::experiment(&options.modelled, None).unwrap();
+    let again = hertzchain::fit(&data, &dry, &options).unwrap();
+    assert_eq!(
+        fit::json(&again, &options)["parameters"],
         found["parameters"]
     );
+    // Without one of them it is another fit.
+    let other = FitOptions {
+        modelled: ModelOptions::default(),
+        ..options
+    };
+    let dry = inference::experiment(&other.modelled, None).unwrap();
+    let other = hertzchain::fit(&data, &dry, &other).unwrap();
+    assert_ne!(other.inferred.fit.point, again.inferred.fit.point);
 }
 
 #[test]

@@ -482,13 +482,6 @@ fn the_amplifiers_low_pass_has_the_names_that_fit_gives_it() {
         assert_eq!(output.status.code(), Some(2), "{options:?}");
         String::from_utf8(output.stderr).unwrap()
     };
-    for former in ["--bandwidth", "--bandwidth-order"] {
-        let words = refused(&[former, "first"]);
-        assert!(
-            words.contains("--low-pass") && words.contains("--filter"),
-            "{words}"
-        );
-    }
     let words = refused(&["--filter", "butterworth2"]);
     assert!(words.contains("--low-pass or --rig"), "{words}");
     let words = refused(&["--low-pass", "50kHz", "--filter", "bessel4"]);

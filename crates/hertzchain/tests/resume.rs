@@ -74,55 +74,6 @@ fn walkers_with_any_flipped_bit_are_refused() {
     }
 }
 
-/// Residuals are written as they come: a run that is killed goes on from there to the
-/// bits of one that was not.
-#[test]
-fn a_fit_and_its_profiles_that_are_killed_go_on_to_the_bits_of_one_that_was_not() {
-    let folder = folder("killed-profile");
-    let data = curve(&folder, "dry");
-    let fit = |out: &str, more: &[&str]| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
-        program
-            .args([
-                "fit", &data, "-p", "dry", "--free", "eta,B", "--starts", "3",
-            ])
-            .args(["--method", "profile", "--accuracy", "1e-7", "--seed", "5"])
-            .args(ERRORS)
-            .arg("--out")
-            .arg(folder.join(out))
-            .args(more)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        program
-    };
-    let parts = |out: &str| {
-        let found = fs::read_dir(folder.join(out).join("partial"));
-        found.map_or(0, |found| {
-            let names = found.map(|entry| entry.unwrap().file_name());
-            names
-                .filter(|name| name.to_str().unwrap().starts_with("part-"))
-                .count()
-        })
-    };
-    let mut more: &[&str] = &[];
-    for wanted in [2, 4] {
-        let mut child = fit("broken", more).spawn().unwrap();
-        while parts("broken") < wanted && child.try_wait().unwrap().is_none() {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        assert!(parts("broken") >= wanted, "it ended before it was killed");
-        more = &["--resume"];
-    }
-    let result = |out: &str| fs::read(folder.join(out).join("fit.json"));
-    assert!(result("broken").is_err());
-    assert!(fit("broken", more).status().unwrap().success());
-    assert!(fit("whole", &[]).status().unwrap().success());
-    assert_eq!(result("broken").unwrap(), result("whole").unwrap());
-    assert_eq!(parts("broken"), 0);
-}
-
 #[test]
 fn a_posterior_is_the_same_in_one_run_and_in_two() {
     let folder = folder("posterior");
@@ -155,43 +106,4 @@ fn a_posterior_is_the_same_in_one_run_and_in_two() {
     );
     let then = run_into(&parts, &["--steps", "400", "--resume"]);
     assert_eq!(at_once["posterior"], then["posterior"]);
-}
-
-/// Other models' residuals are kept as the fit's own.
-#[test]
-fn a_fit_that_is_killed_among_other_models_goes_on_to_the_bits_of_one_that_was_not() {
-    let folder = folder("killed-against");
-    let data = curve(&folder, "dry");
-    let fit = |out: &str, more: &[&str]| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
-        program
-            .args([
-                "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "B=90",
-            ])
-            .args(["--bounds", "B=78:200", "--accuracy", "1e-7"])
-            .args(["--against", "hertz-viscoelastic=eta"])
-            .args(ERRORS)
-            .arg("--out")
-            .arg(folder.join(out))
-            .args(more)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        program
-    };
-    let rival = folder.join("broken/partial/against-0");
-    let mut child = fit("broken", &[]).spawn().unwrap();
-    while !rival.exists() && child.try_wait().unwrap().is_none() {
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    let result = |out: &str| fs::read(folder.join(out).join("fit.json"));
-    assert!(
-        rival.exists() && result("broken").is_err(),
-        "it ended before it was killed"
-    );
-    assert!(fit("broken", &["--resume"]).status().unwrap().success());
-    assert!(fit("whole", &[]).status().unwrap().success());
-    assert_eq!(result("broken").unwrap(), result("whole").unwrap());
-    assert!(!folder.join("broken/partial").exists());
 }

@@ -133,7 +133,7 @@ fn threads_are_counted_from_1() {
 #[test]
 fn a_sweep_judged_by_pilots_says_so() {
     let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:100"];
-    let pilots = [&speeds[..], &["--judges", "pilots"]].concat();
+    let pilots = [&speeds[..], &["--error-control", "calibrated"]].concat();
     let printed = text(&sweep(&pilots).stdout);
     assert!(printed.contains("chosen by 40 pilots"), "{printed}");
     let each = sweep(&[&speeds[..], &["--json"]].concat());

@@ -4,11 +4,13 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
-use hertzchain::arguments::infer::{Design, Fit, Gauge, Measured};
-use hertzchain::arguments::parsed;
 use hertzchain::failure::Failure;
 use hertzchain::fit::pulses;
 use hertzchain::inference::{changed, in_case, model, parsed as data, problem, user};
+use hertzchain::options::parsed;
+use hertzchain::options::{
+    CurveOptions as Measured, DesignOptions as Design, FitOptions as Fit, GaugeOptions as Gauge,
+};
 use hertzchain::{design as designing, fit as fitting, gauge as gauging};
 use hertzchain_infer::gauge::{Chains, known_oils, oils};
 use hertzchain_infer::{CurveProblem, Data};
@@ -60,7 +62,7 @@ fn found<'py>(
     fitted: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Fit = parsed("fit", options).map_err(Failed::from)?;
-    let threads = arguments.modelled.threads.unwrap_or(0);
+    let threads = arguments.modelled.threads.map_or(0, |threads| threads.0);
     let found = Job::pooled(progress, threads).run(py, |_| fitted(&arguments))?;
     found.told(py)
 }
@@ -165,7 +167,7 @@ pub(crate) fn design<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Design = parsed("design", &options).map_err(Failed::from)?;
-    let threads = arguments.modelled.threads.unwrap_or(0);
+    let threads = arguments.modelled.threads.map_or(0, |threads| threads.0);
     let found = Job::pooled(progress, threads).run(py, |_| {
         let data = read(&table, &arguments.measured, None)?;
         let speeds = designing::speeds(&data, &arguments)?;
@@ -193,25 +195,26 @@ pub(crate) fn gauge<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Gauge = parsed("gauge", &options).map_err(Failed::from)?;
     let (wet_model, dry_model) = (experiments.0.inner.clone(), experiments.1.inner.clone());
-    let found = Job::pooled(progress, arguments.threads.unwrap_or(0)).run(py, |_| {
-        let measured = &arguments.measured;
-        let wet = read(&tables.0, measured, arguments.wet_case.as_ref())?;
-        let dry = read(&tables.1, measured, arguments.dry_case.as_ref())?;
-        let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
-        if let Some((name, text)) = &more_oils {
-            all.extend(oils(name, text).map_err(user)?);
-        }
-        let chains = Chains {
-            wet: &in_case(wet_model, &wet.case)?,
-            dry: &in_case(dry_model, &dry.case)?,
-            free: &arguments.dry_free,
-            own: &arguments.own,
-            accuracy: arguments.accuracy,
-        };
-        let gauged = gauging::gauged(&chains, (dry, wet), all, arguments.form)?;
-        let mut told = gauging::json(&gauged);
-        told["options"] = arguments.words().into();
-        Ok(told)
-    })?;
+    let found =
+        Job::pooled(progress, arguments.threads.map_or(0, |threads| threads.0)).run(py, |_| {
+            let measured = &arguments.measured;
+            let wet = read(&tables.0, measured, arguments.wet_case.as_ref())?;
+            let dry = read(&tables.1, measured, arguments.dry_case.as_ref())?;
+            let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
+            if let Some((name, text)) = &more_oils {
+                all.extend(oils(name, text).map_err(user)?);
+            }
+            let chains = Chains {
+                wet: &in_case(wet_model, &wet.case)?,
+                dry: &in_case(dry_model, &dry.case)?,
+                free: &arguments.dry_free,
+                own: &arguments.own,
+                accuracy: arguments.accuracy.0,
+            };
+            let gauged = gauging::gauged(&chains, (dry, wet), all, arguments.form)?;
+            let mut told = gauging::json(&gauged);
+            told["options"] = hertzchain::options::recorded(&arguments);
+            Ok(told)
+        })?;
     json::object(py, &found)
 }

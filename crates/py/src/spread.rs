@@ -4,10 +4,10 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::inference::{Found, Table, left, posed};
 use crate::job::Job;
-use hertzchain::arguments::infer::Fit;
-use hertzchain::arguments::parsed;
 use hertzchain::failure::Failure;
 use hertzchain::fit as fitting;
+use hertzchain::options::FitOptions as Fit;
+use hertzchain::options::parsed;
 use hertzchain_infer::{Batch, CurveProblem, ModelError, Outcomes, Problem, Residuals, Spread};
 use hertzchain_sim::{Stop, StudyError, stopped};
 use pyo3::exceptions::PyConnectionError;
@@ -167,7 +167,10 @@ pub(crate) fn fit_spread<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments = &likelihood.arguments;
-    let job = Job::pooled(progress, arguments.modelled.threads.unwrap_or(0));
+    let job = Job::pooled(
+        progress,
+        arguments.modelled.threads.map_or(0, |threads| threads.0),
+    );
     let stop = job.stop.clone();
     let elsewhere = compute.map(|compute| Elsewhere {
         compute,

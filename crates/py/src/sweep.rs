@@ -5,8 +5,8 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
-use hertzchain::arguments::{How, parsed};
 use hertzchain::failure::Failure;
+use hertzchain::options::{SimulationOptions as How, parsed};
 use hertzchain::{input, json as results};
 use hertzchain_sim::{
     Batch, BatchOptions, Calibration, Column, ErrorControl, Plan, Rows, Shard, StudyError,

@@ -5,7 +5,7 @@ use crate::failure::{Failed, finding};
 use crate::job::Job;
 use crate::json;
 use hertzchain::failure::Failure;
-use hertzchain::given::Given;
+use hertzchain::options::Given;
 use hertzchain::{input, json as results};
 use hertzchain_chain::Chain;
 use hertzchain_experiment as experiment;

@@ -98,21 +98,6 @@ def test_what_is_masked_was_not_measured(dry_data):
         hc.fit({**dry_data, "case": names}, free="B")
 
 
-def test_a_fit_that_was_broken_off_goes_on_in_its_folder(dry_data, tmp_path):
-    class Enough(Exception):
-        pass
-
-    def enough(more: int) -> None:
-        raise Enough
-
-    how = {"free": "eta,B", "method": "profile", "accuracy": 1e-6}
-    with pytest.raises(Enough):
-        hc.fit(dry_data, folder=tmp_path, progress=enough, **how)
-    assert any((tmp_path / "partial").glob("part-*"))
-    assert hc.fit(dry_data, folder=tmp_path, **how).details == hc.fit(dry_data, **how).details
-    assert not (tmp_path / "partial").exists()
-
-
 def test_walkers_in_a_folder_are_led_on(dry_data, tmp_path):
     how = {"free": "eta,B", "method": "posterior"}
     hc.fit(dry_data, folder=tmp_path, steps=40, **how)

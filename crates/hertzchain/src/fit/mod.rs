@@ -1,30 +1,30 @@
 //! `fit`: times of flight to parameters.
 
-mod heeded;
+mod checkpoint;
 mod limits;
 mod more;
-mod partial;
 pub mod pulses;
 mod results;
 mod rivals;
 mod tables;
-mod words;
+mod validation;
 
+pub use checkpoint::{CHAIN, finished, leave, saved};
 pub use limits::{Limit, Limits};
-pub use more::{CHAIN, Curves, More, Sampled, leave, saved};
-pub use partial::{PARTIAL, begun, finished};
+pub use more::{Curves, More, Sampled};
 pub use results::{inferred, joined, json, rows_json};
 pub use rivals::{Lost, Rival, Rivals};
 pub use tables::{Table, of_any as tables_of_any, tables};
 
-use crate::arguments::infer::Fit as Arguments;
 use crate::failure::Failure;
-use crate::inference::{user, wanted};
+use crate::inference::{self, user, wanted};
+use crate::options::FitOptions as Arguments;
+use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    Advice, Covariance, CurveProblem, Fit, FittedCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started, fit,
+    Advice, Covariance, CurveProblem, Data, Fit, FittedCurve, Fitting, FreeNumber, Goodness,
+    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started,
+    fit as least_squares,
 };
-use partial::Remembered;
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
 const OUTLIER: f64 = 1.345;
@@ -106,8 +106,8 @@ impl Fitted {
     /// each.
     #[must_use]
     pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
-        let accuracy = (arguments.modelled.accuracy, self.problem.model().accuracy);
-        unasked(&self.inferred.fit, accuracy, arguments.starts)
+        let accuracy = (arguments.modelled.accuracy.0, self.problem.model().accuracy);
+        unasked(&self.inferred.fit, accuracy, arguments.starts.0)
     }
 
     /// That several pairs of K and A may give the data, where both are free and two times of
@@ -150,7 +150,7 @@ const FEW: usize = 8;
 /// The best fit, as asked; where chance can't be why the data are so far from it, the best of
 /// several starts: a minimum may be another than the data's.
 fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Result<Fit, Failure> {
-    let found = fit(problem, how);
+    let found = least_squares(problem, how);
     wanted()?;
     let first = found.map_err(user)?;
     let one = how.starts == 1 && how.loss == Loss::Squares && first.point.len() <= FEW;
@@ -158,7 +158,7 @@ fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Res
         return Ok(first);
     }
     let starts = UNASKED;
-    let found = fit(problem, &Fitting { starts, ..*how });
+    let found = least_squares(problem, &Fitting { starts, ..*how });
     wanted()?;
     Ok(found.unwrap_or(first))
 }
@@ -230,10 +230,37 @@ fn asked(arguments: &Arguments) -> Fitting {
             true => Loss::Huber { scale: OUTLIER },
             false => Loss::Squares,
         },
-        starts: arguments.starts,
+        starts: arguments.starts.0,
         seed: arguments.seed,
         ..Fitting::default()
     }
+}
+
+/// Fits the free numbers of an experiment to times of flight in memory.
+///
+/// ```
+/// use hertzchain::prelude::*;
+///
+/// let row = preset("dry")?;
+/// let table = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n\
+///              0.2,1e-4,9.030e-4,2e-7\n0.5,1e-4,7.565e-4,2e-7\n1.0,1e-4,6.829e-4,2e-7\n";
+/// let options = FitOptions::free(["eta"]);
+/// let data = inference::parsed("table", table, &options.measured, None)?;
+/// let found = fit(&data, &row, &options)?;
+/// assert_eq!(found.inferred.parameters[0].name, "eta");
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// Options, data and model that do not fit together; what is in the way of a fit.
+pub fn fit(data: &Data, experiment: &Experiment, options: &Arguments) -> Result<Fitted, Failure> {
+    let experiment = inference::in_case(experiment.clone(), &data.case)?;
+    let experiment = inference::changed(experiment, &options.modelled.set)?;
+    let model = inference::model(&experiment, &options.modelled, &options.freed)?;
+    fitted(
+        inference::problem(model, data.clone(), &options.freed)?,
+        options,
+    )
 }
 
 /// Fits a curve, tells the uncertainty as the method asks, and compares with
@@ -242,23 +269,19 @@ fn asked(arguments: &Arguments) -> Fitting {
 /// # Errors
 /// What is in the way of a fit.
 pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
-    heeded::of_table(arguments)?;
+    validation::of_table(arguments)?;
     attempted(problem, 0, arguments)
 }
 
 /// The same, after so many attempts with less accurate curves.
 fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<Fitted, Failure> {
-    let own = (None, times);
-    let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
+    let fit = best_of_starts(&problem, 0, &asked(arguments))?;
     if let Some(finer) = finer(&problem, &fit, times) {
-        kept.sound()?;
         return attempted(finer, times + 1, arguments);
     }
     let covariance = Covariance::new(problem.parameters(), &fit);
-    let more = more::more((&problem, &kept), (&fit, &covariance), arguments)?;
-    let found = judged((&problem, &kept), (fit, covariance, more), arguments)?;
-    kept.sound()?;
+    let more = more::more(&problem, (&fit, &covariance), arguments)?;
+    let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
     told(problem, found)
 }
 
@@ -273,31 +296,31 @@ pub fn fitted_elsewhere(
     computed: &dyn Problem,
     arguments: &Arguments,
 ) -> Result<Fitted, Failure> {
-    heeded::of_table(arguments)?;
-    let kept = Remembered::new(computed, || problem.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
+    validation::of_table(arguments)?;
+    let fit = best_of_starts(computed, 0, &asked(arguments))?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more = more::more_of(
-        (computed, &kept),
+        computed,
+        computed,
         (&fit, &covariance),
         Curves::Computed(None),
         arguments,
     )?;
-    let found = judged((&problem, &kept), (fit, covariance, more), arguments)?;
-    kept.sound()?;
+    let found = concluded(&problem, computed, (fit, covariance, more), arguments)?;
     told(problem, found)
 }
 
 /// What else takes many curves: limits at bounds, and other models.
-fn judged(
-    (problem, kept): (&CurveProblem, &Remembered<'_>),
+fn concluded(
+    problem: &CurveProblem,
+    computed: &dyn Problem,
     (fit, covariance, more): (Fit, Covariance, More),
     arguments: &Arguments,
 ) -> Result<(Inferred, Option<Rivals>), Failure> {
     let label = |at: usize| problem.residual_label(at);
     let identifiability = Identifiability::new(problem.parameters(), &fit, label);
-    let limits = limits::limits(kept, (&fit, &covariance), &identifiability, &more)?;
-    let rivals = rivals::rivals((problem, kept), &fit, arguments)?;
+    let limits = limits::limits(computed, (&fit, &covariance), &identifiability, &more)?;
+    let rivals = rivals::rivals((problem, computed), &fit, arguments)?;
     let inferred = Inferred {
         parameters: problem.parameters().to_vec(),
         goodness: Goodness::new(problem, &fit),

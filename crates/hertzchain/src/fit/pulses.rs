@@ -1,13 +1,12 @@
 //! Whole pulses of recordings to parameters.
 
-use super::partial::Remembered;
 use super::{
-    Curves, Inferred, asked, best_of_starts, finer, heeded, inferred, joined, limits, more, unasked,
+    Curves, Inferred, asked, best_of_starts, finer, inferred, joined, limits, more, unasked,
 };
-use crate::arguments::infer::{Filter, Fit as Arguments};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::measure::{files, list};
+use crate::options::{Filter, FitOptions as Arguments};
 use crate::table::cell;
 use hertzchain_experiment::{Amplifier as Numbers, Experiment};
 use hertzchain_infer::{
@@ -52,13 +51,13 @@ pub fn recorded(arguments: &Arguments) -> Result<Recorded, Failure> {
 /// # Errors
 /// As [`recorded`].
 pub fn recorded_of(experiment: &Experiment, arguments: &Arguments) -> Result<Recorded, Failure> {
-    heeded::of_recordings(arguments)?;
+    super::validation::of_recordings(arguments)?;
     let experiment = &with_filter(experiment, arguments)?;
     let model = inference::model(experiment, &arguments.modelled, &arguments.freed)?;
     let (records, refused) = records(experiment, arguments)?;
     Ok(Recorded {
         model,
-        records: spread(records, arguments.recorded.most_shots),
+        records: spread(records, arguments.recorded.most_shots.0),
         refused,
         respond: respond(),
     })
@@ -69,7 +68,11 @@ fn with_filter(experiment: &Experiment, arguments: &Arguments) -> Result<Experim
     let recorded = &arguments.recorded;
     let name = |value: Option<Filter>| value.map(Filter::names);
     let (order, kind) = name(recorded.filter).unzip();
-    let changed = experiment.with_low_pass(recorded.low_pass, order, kind.flatten());
+    let changed = experiment.with_low_pass(
+        recorded.low_pass.map(|corner| corner.0),
+        order,
+        kind.flatten(),
+    );
     changed.map_err(user)
 }
 
@@ -97,7 +100,7 @@ fn records(
     let recorded = &arguments.recorded;
     let told = recorded.shots.as_deref().map(list).transpose()?;
     let reading = ReadOptions {
-        rate_hz: recorded.rate,
+        rate_hz: recorded.rate.map(|rate| rate.0),
         channels: recorded.channel.clone(),
         ..ReadOptions::default()
     };
@@ -147,7 +150,9 @@ fn speed(
     let usual = experiment.campaign().photogate.error_m_s;
     Some(Estimate {
         value,
-        sigma: error.or(arguments.measured.speed_error).unwrap_or(usual),
+        sigma: error
+            .or(arguments.measured.speed_error.map(|error| error.0))
+            .unwrap_or(usual),
     })
 }
 
@@ -195,29 +200,25 @@ fn attempted(
     times: u32,
     arguments: &Arguments,
 ) -> Result<Pulsed, Failure> {
-    let own = (None, times);
-    let kept = Remembered::of_attempt(&problem, own, || problem.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, problem.nuisance_count(), &asked(arguments))?;
+    let fit = best_of_starts(&problem, problem.nuisance_count(), &asked(arguments))?;
     if let Some(finer) = finer(&problem, &fit, times) {
-        kept.sound()?;
         return attempted(finer, refused, times + 1, arguments);
     }
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);
     let how = Curves::Computed(None);
-    let more = more::more_of((&problem, &kept), (&fit, &covariance), how, arguments)?;
+    let more = more::more_of(&problem, &problem, (&fit, &covariance), how, arguments)?;
     let identifiability = Identifiability::new(parameters, &fit, label);
     let found = Inferred {
         parameters: parameters.to_vec(),
-        limits: limits::limits(&kept, (&fit, &covariance), &identifiability, &more)?,
+        limits: limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?,
         identifiability,
         goodness: Goodness::beside(problem.nuisance_count(), &problem, &fit),
         more,
         covariance,
         fit,
     };
-    kept.sound()?;
     Ok(Pulsed {
         problem,
         inferred: found,
@@ -230,8 +231,8 @@ impl Pulsed {
     /// each.
     #[must_use]
     pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
-        let accuracy = (arguments.modelled.accuracy, self.problem.model().accuracy);
-        unasked(&self.inferred.fit, accuracy, arguments.starts)
+        let accuracy = (arguments.modelled.accuracy.0, self.problem.model().accuracy);
+        unasked(&self.inferred.fit, accuracy, arguments.starts.0)
     }
 
     /// The amplifier's filters that the model's signals have passed, in words.

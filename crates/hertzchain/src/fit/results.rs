@@ -3,8 +3,8 @@
 use super::more::{Curves, More};
 use super::rivals::{Rival, Rivals};
 use super::{Fitted, Inferred, Limit};
-use crate::arguments::infer::Fit as Arguments;
 use crate::inference::{assumed, held_loads, kept, references_json, widened};
+use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
@@ -62,7 +62,7 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fitted.fit, &fitted.goodness);
     json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "options": arguments.words(),
+        "options": crate::options::recorded(arguments),
         "free": arguments.freed.free,
         "seed": arguments.seed,
         "robust": arguments.robust,

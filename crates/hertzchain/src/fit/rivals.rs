@@ -1,11 +1,11 @@
 //! Other models of the same data.
 
-use super::Arguments;
-use super::partial::Remembered;
 use super::{asked, best_of_starts, finer};
-use crate::arguments::infer::{Against, Assignment, Freed};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, kept, user, wanted};
+use crate::options::{
+    Accuracy, Against, Assignment, FitOptions as Arguments, ParameterOptions as Freed,
+};
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_infer::{
     Compared, Comparison, CrossValidation, CurveProblem, Fit, Folding, Problem, compare,
@@ -63,8 +63,8 @@ pub(super) fn rivals(
     );
     let mut all = vec![rival(name, (problem, kept), own.clone(), arguments.seed)?];
     let mut lost = Vec::new();
-    for (number, against) in arguments.against.iter().enumerate() {
-        match other((number, against), problem, arguments)? {
+    for against in &arguments.against {
+        match other(against, problem, arguments)? {
             Ok(rival) => all.push(rival),
             Err(without) => lost.push(without),
         }
@@ -89,7 +89,7 @@ pub(super) fn rivals(
 }
 
 fn other(
-    (number, against): (usize, &Against),
+    against: &Against,
     problem: &CurveProblem,
     arguments: &Arguments,
 ) -> Result<Result<Rival, Lost>, Failure> {
@@ -99,24 +99,21 @@ fn other(
         other => other,
     };
     let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
-    attempted((name.clone(), number), posed, without, 0, arguments).map_err(of_rival)
+    attempted(name.clone(), posed, without, 0, arguments).map_err(of_rival)
 }
 
 /// The fit of another model, after so many attempts with less accurate curves.
 fn attempted(
-    (name, number): (String, usize),
+    name: String,
     posed: CurveProblem,
     without: Vec<String>,
     times: u32,
     arguments: &Arguments,
 ) -> Result<Result<Rival, Lost>, Failure> {
     let told = kept(posed.model(), &arguments.modelled.set);
-    let own = (Some(number), times);
-    let kept = Remembered::of_attempt(&posed, own, || posed.fingerprint(), arguments)?;
-    let fit = best_of_starts(&kept, 0, &asked(arguments))?;
+    let fit = best_of_starts(&posed, 0, &asked(arguments))?;
     if let Some(finer) = finer(&posed, &fit, times) {
-        kept.sound()?;
-        return attempted((name, number), finer, without, times + 1, arguments);
+        return attempted(name, finer, without, times + 1, arguments);
     }
     if !fit.ending.converged() {
         return Ok(Err(Lost {
@@ -125,8 +122,7 @@ fn attempted(
             name,
         }));
     }
-    let rival = rival(name.clone(), (&posed, &kept), fit, arguments.seed)?;
-    kept.sound()?;
+    let rival = rival(name.clone(), (&posed, &posed), fit, arguments.seed)?;
     Ok(Ok(Rival {
         without,
         kept: told,
@@ -143,7 +139,7 @@ fn posed(
 ) -> Result<(CurveProblem, Vec<String>), Failure> {
     let mut modelled = against.modelled(&arguments.modelled);
     // A model far from the data is steep there: its noise would hide the minimum.
-    modelled.accuracy = modelled.accuracy.min(RIVALS_ACCURACY);
+    modelled.accuracy = Accuracy(modelled.accuracy.0.min(RIVALS_ACCURACY));
     let data = problem.data().clone();
     let sets = std::mem::take(&mut modelled.set);
     let plain = inference::experiment(&modelled, Some(&data.case))?;

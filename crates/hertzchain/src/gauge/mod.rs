@@ -6,10 +6,10 @@ mod tables;
 pub use results::json;
 pub use tables::tables;
 
-use crate::arguments::infer::{Gauge as Arguments, Measured, WetForm};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::input::assumed_preset;
+use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments, WetForm};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{

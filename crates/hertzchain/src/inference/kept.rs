@@ -1,7 +1,7 @@
 //! Numbers that are kept while their unit changes with another's value, and loads that no number
 //! of the model describes.
 
-use crate::arguments::infer::Assignment;
+use crate::options::Assignment;
 use crate::quantity::digits;
 use hertzchain_experiment::{Experiment, Place};
 use hertzchain_infer::{FreeNumber, Model};

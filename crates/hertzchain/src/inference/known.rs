@@ -1,7 +1,7 @@
 //! What the command line says of parameters: starts, bounds, priors, scales.
 
-use crate::arguments::infer::{Assignment, Freed};
 use crate::failure::Failure;
+use crate::options::{Assignment, ParameterOptions as Freed};
 use hertzchain_experiment::units::{Dimension, parse_quantity, parse_unit};
 use hertzchain_infer::{Parameter, Prior};
 

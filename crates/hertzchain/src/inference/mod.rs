@@ -8,10 +8,13 @@ pub use kept::{held_loads, kept};
 pub use known::is_meant;
 pub use reference::{references, references_json};
 
-use crate::arguments::Input;
-use crate::arguments::infer::{Assignment, ErrorShots, Freed, Measured, Modelled, What};
 use crate::failure::Failure;
 use crate::input;
+use crate::options::Input;
+use crate::options::{
+    Assignment, CurveOptions as Measured, ErrorShots, ModelOptions as Modelled,
+    ParameterOptions as Freed, Speed, Threads, What,
+};
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
     CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeError, FreeNumber, FreeNumbers, Model,
@@ -104,9 +107,9 @@ pub fn parsed(
         case,
         observables: measured.observables.iter().map(|what| of(*what)).collect(),
         defaults: Defaults {
-            speed_m_s: measured.speed_error,
-            time_s: measured.tof_error,
-            ratio: measured.ratio_error,
+            speed_m_s: measured.speed_error.map(|error| error.0),
+            time_s: measured.tof_error.map(|error| error.0),
+            ratio: measured.ratio_error.map(|error| error.0),
             scatter: scatter(measured),
         },
     };
@@ -199,7 +202,7 @@ fn not_there(data: &Data, measured: &Measured) -> Option<String> {
 }
 
 fn exact_speeds(data: &Data, measured: &Measured) -> Option<String> {
-    if measured.speed_error == Some(0.0) {
+    if measured.speed_error == Some(Speed(0.0)) {
         return None;
     }
     let which = which(data, &data.lines_of_exact_speeds())?;
@@ -340,6 +343,11 @@ pub fn model(
     modelled: &Modelled,
     freed: &Freed,
 ) -> Result<Model, Failure> {
+    if freed.free.is_empty() {
+        return Err(user(
+            "nothing is free: --free (free in Python) names numbers, such as eta,B",
+        ));
+    }
     let number = |name: &String| {
         let plain = name.split(':').next().unwrap_or_default().trim();
         let start = freed.start.iter().find(|start| start.name == plain);
@@ -349,7 +357,7 @@ pub fn model(
     };
     let numbers: Result<Vec<_>, FreeError> = freed.free.iter().map(number).collect();
     let numbers = FreeNumbers::new(numbers.map_err(user)?).map_err(user)?;
-    let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy);
+    let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy.0);
     model.set = input::instruction_set()?;
     Ok(model)
 }
@@ -369,9 +377,9 @@ pub fn pulses(problem: PulseProblem, freed: &Freed) -> Result<PulseProblem, Fail
 }
 
 /// As many threads as asked for.
-pub fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
+pub fn pool(threads: Option<Threads>) -> Result<ThreadPool, Failure> {
     let pool = ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
+        .num_threads(threads.map_or(0, |threads| threads.0))
         .build();
     pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
 }

@@ -4,11 +4,13 @@ mod results;
 
 pub use results::{json, write_json};
 
-use crate::arguments::Input;
-use crate::arguments::infer::Filter;
-use crate::arguments::measure::{Measure as Arguments, MethodName, Picking, RowsAre, Way};
 use crate::failure::Failure;
 use crate::input;
+use crate::options::Filter;
+use crate::options::Input;
+use crate::options::{
+    Corner, MeasureOptions as Arguments, MethodName, PickOptions as Picking, RowsAre, Way,
+};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::signal::{
@@ -91,14 +93,14 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let high_pass_hz = ac_coupling_hz(&arguments.picking, rig.as_ref());
     Ok(Options {
         keep_droop: high_pass_hz == Some(0.0),
-        keep_low_pass: arguments.picking.low_pass == Some(0.0),
+        keep_low_pass: arguments.picking.low_pass == Some(Corner(0.0)),
         reading: ReadOptions {
-            rate_hz: reading.rate,
+            rate_hz: reading.rate.map(|rate| rate.0),
             trust_rate: reading.trust_rate,
             channels: reading.channel.clone(),
-            time_unit_s: reading.time_unit,
+            time_unit_s: reading.time_unit.map(|unit| unit.0),
             parts: match (reading.shot_samples, reading.level) {
-                (Some(samples), None) => Parts::Shots(samples),
+                (Some(samples), None) => Parts::Shots(samples.0),
                 _ => Parts::Whole,
             },
             rows: match reading.rows {
@@ -111,8 +113,8 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
         },
         cutting: match (reading.level, reading.whole) {
             (Some(volts), _) => Cut::Level(Level {
-                volts,
-                samples: reading.shot_samples,
+                volts: volts.0,
+                samples: reading.shot_samples.map(|samples| samples.0),
             }),
             (None, true) => Cut::Never,
             (None, false) => Cut::Plain,
@@ -121,6 +123,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
         list: arguments.shots.as_deref().map(list).transpose()?,
         speed_error_m_s: arguments
             .speed_error
+            .map(|error| error.0)
             .or_else(|| Some(rig.as_ref()?.campaign().photogate.error_m_s)),
     })
 }
@@ -150,7 +153,7 @@ pub fn list(file: &Path) -> Result<ShotList, Failure> {
 /// Corner of the amplifier's high-pass in Hz, 0 for none, if an option or the rig's file has it.
 fn ac_coupling_hz(picking: &Picking, rig: Option<&Experiment>) -> Option<f64> {
     let of_rig = || Some(rig?.campaign().amplifier.high_pass_hz);
-    picking.ac_coupling.or_else(of_rig)
+    picking.ac_coupling.map(|corner| corner.0).or_else(of_rig)
 }
 
 fn measuring(
@@ -158,7 +161,10 @@ fn measuring(
     rig: Option<&Experiment>,
     high_pass_hz: Option<f64>,
 ) -> Result<Measuring, Failure> {
-    let beads = picking.beads.zip(picking.sensor);
+    let beads = picking
+        .beads
+        .zip(picking.sensor)
+        .map(|(beads, sensor)| (beads.0, sensor.0));
     if let Some((beads, sensor)) = beads.filter(|(beads, sensor)| sensor >= beads) {
         return Err(Failure::User(format!(
             "--sensor {sensor} is not one of --beads {beads} before the last"
@@ -177,8 +183,8 @@ fn measuring(
         high_pass_s: high_pass_hz
             .filter(|hz| *hz > 0.0)
             .map(|hz| (TAU * hz).recip()),
-        low_pass: picking.smooth.map(|cutoff_hz| LowPass {
-            cutoff_hz,
+        low_pass: picking.smooth.map(|cutoff| LowPass {
+            cutoff_hz: cutoff.0,
             order: ORDER,
         }),
         bandwidth: bandwidth(picking, rig)?,
@@ -188,7 +194,10 @@ fn measuring(
 /// The amplifier's low-pass, if an option or the rig's file states it; 0 for none.
 fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandwidth>, Failure> {
     let amplifier = rig.map(|rig| &rig.campaign().amplifier);
-    let corner_hz = picking.low_pass.or(amplifier.map(|of| of.low_pass_hz));
+    let corner_hz = picking
+        .low_pass
+        .map(|corner| corner.0)
+        .or(amplifier.map(|of| of.low_pass_hz));
     if picking.filter.is_some() && corner_hz.is_none() {
         return Err(Failure::User(
             "--filter is of the amplifier's low-pass, whose corner --low-pass or --rig states"
@@ -236,7 +245,7 @@ fn method(picking: &Picking) -> Method {
     match picking.method {
         MethodName::Local => Method::default(),
         MethodName::Onset => Method::Onset {
-            fraction: picking.onset,
+            fraction: picking.onset.0,
         },
         MethodName::Correlation => Method::CrossCorrelation(Template::Passing),
         MethodName::Shape => Method::MatchedShape {
@@ -250,7 +259,7 @@ fn method(picking: &Picking) -> Method {
 #[must_use]
 pub fn grouping(arguments: &Arguments) -> Grouping {
     Grouping {
-        gap_m_s: arguments.speed_gap,
+        gap_m_s: arguments.speed_gap.0,
         reference: arguments.reference.clone(),
         keep_dubious: arguments.keep_dubious,
     }

@@ -1,10 +1,11 @@
 //! The command line, declared once: help, man pages and completions follow.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use hertzchain::arguments::{How, Input, infer, measure, threads};
-use hertzchain::given::Given;
-use hertzchain_sim::Shard;
+use hertzchain::options::{
+    CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
+    ShotOptions, SweepOptions,
+};
 use std::path::PathBuf;
 
 /// Rows of beads and their solitary waves.
@@ -41,25 +42,25 @@ pub(crate) enum Verb {
     /// Compute everything in the paper: tables, figures, verdicts on its claims
     Reproduce(Reproduce),
     /// Compute one shot: times of flight, peaks, rebound, energy
-    Shot(Shot),
+    Shot(ShotOptions),
     /// Compute times of flight against speed, with power-law fits
-    Sweep(Sweep),
+    Sweep(SweepOptions),
     /// Put the shards of a sweep or a campaign together that several machines have computed
     Merge(Merge),
     /// Run a campaign on a virtual rig: taps and shots, recorded as by a real one
-    Campaign(Campaign),
+    Campaign(CampaignOptions),
     /// Measure times of flight on recordings of any rig, with errors and curves
-    Measure(measure::Measure),
+    Measure(MeasureOptions),
     /// Fit contact parameters to times of flight, with errors one can trust
-    Fit(infer::Fit),
+    Fit(FitOptions),
     /// Rank what to measure next so that parameters tighten most
-    Design(infer::Design),
+    Design(DesignOptions),
     /// Tell the oil on a row's contacts from times of flight, wet and dry
-    Gauge(infer::Gauge),
+    Gauge(GaugeOptions),
     /// Check an experiment file and print what was understood; run nothing
-    Check(Check),
+    Check(CheckOptions),
     /// Print what theory says of a chain's waves
-    Theory(Check),
+    Theory(CheckOptions),
     /// List every contact law with its equation, parameters and source
     Laws(Laws),
     /// List the experiments that come with the program, or print one
@@ -79,82 +80,6 @@ pub(crate) enum Verb {
     },
 }
 
-/// Arguments of `shot`.
-#[derive(Debug, Args)]
-pub(crate) struct Shot {
-    /// Which experiment.
-    #[command(flatten)]
-    pub input: Input,
-    /// Speed of the striker, such as "0.5 m/s" or 0.5; a plain number is in m/s, or dimensionless
-    /// where the experiment is
-    #[arg(long, short, value_name = "SPEED", value_parser = Given::speed, allow_hyphen_values = true)]
-    pub speed: Option<Given>,
-    /// How to compute.
-    #[command(flatten)]
-    pub how: How,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Write traces (CSV) and figures (SVG, PNG) into this folder
-    #[arg(long, short, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Also write positions, velocities and forces of all bodies as NPY
-    #[arg(long, requires = "out")]
-    pub npy: bool,
-    /// Write a moving picture of the shot as one HTML file, into --out or here
-    #[arg(long)]
-    pub animate: bool,
-}
-
-/// Judges by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Judges {
-    /// Two more shots each, with longer steps
-    Each,
-    /// Forty speeds, computed much more tightly, choose the cheapest steps for all: two to five
-    /// times as fast on dry rows
-    Pilots,
-}
-
-/// Arguments of `sweep`.
-#[derive(Debug, Args)]
-pub(crate) struct Sweep {
-    /// Which experiment.
-    #[command(flatten)]
-    pub input: Input,
-    /// Speeds in m/s, or dimensionless where the experiment is: 0.1,0.2,0.5 or FROM:TO:COUNT or
-    /// log:FROM:TO:COUNT
-    #[arg(
-        long,
-        value_name = "SPEEDS",
-        default_value = "log:0.075:1.23:25",
-        allow_hyphen_values = true
-    )]
-    pub speeds: String,
-    /// How to compute.
-    #[command(flatten)]
-    pub how: How,
-    /// Print JSON; without an energy budget, which only `shot` keeps
-    #[arg(long)]
-    pub json: bool,
-    /// Write the table (CSV) and a figure (SVG, PNG) into this folder
-    #[arg(long, short, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Only the i-th of n parts, for several machines, as one file in --out, unless it is there;
-    /// `hertzchain merge` puts them together
-    #[arg(long, value_name = "i/n", requires = "out", conflicts_with = "json")]
-    pub shard: Option<Shard>,
-    /// Follow the striker until it is away for good and give its velocity; takes the slower loop
-    #[arg(long)]
-    pub rebound: bool,
-    /// Who tells how right times of flight are
-    #[arg(long, value_enum, value_name = "WHO", default_value = "each")]
-    pub judges: Judges,
-    /// Threads; all cores when absent
-    #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
-    pub threads: Option<usize>,
-}
-
 /// Arguments of `merge`.
 #[derive(Debug, Args)]
 pub(crate) struct Merge {
@@ -164,41 +89,6 @@ pub(crate) struct Merge {
     /// Folder to write the whole into: the files of a run that was never cut
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
-}
-
-/// Arguments of `campaign`.
-#[derive(Debug, Args)]
-pub(crate) struct Campaign {
-    /// Which experiment.
-    #[command(flatten)]
-    pub input: Input,
-    /// Folder to write recordings into; the same folder again goes on where a run was broken off
-    #[arg(long, short, value_name = "DIR", default_value = "campaign")]
-    pub out: PathBuf,
-    /// Only the i-th of n parts, for several machines: series are dealt out like cards
-    #[arg(long, value_name = "i/n", default_value = "1/1")]
-    pub shard: Shard,
-    /// Seed of all that is random, in place of the experiment's
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    pub seed: Option<u64>,
-    /// Threads; all cores when absent; recordings do not depend on it
-    #[arg(long, value_name = "COUNT", value_parser = threads, allow_hyphen_values = true)]
-    pub threads: Option<usize>,
-}
-
-/// Arguments of `check` and `theory`.
-#[derive(Debug, Args)]
-pub(crate) struct Check {
-    /// Which experiment.
-    #[command(flatten)]
-    pub input: Input,
-    /// Speed of the striker, such as "0.5 m/s" or 0.5; a plain number is in m/s, or dimensionless
-    /// where the experiment is
-    #[arg(long, short, value_name = "SPEED", value_parser = Given::speed, allow_hyphen_values = true)]
-    pub speed: Option<Given>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Arguments of `laws`.

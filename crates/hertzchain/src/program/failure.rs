@@ -2,12 +2,12 @@
 //! for ours.
 
 use crate::print::note;
-use hertzchain::arguments::infer::{Assignment, Measured};
 use hertzchain::failure;
 pub(crate) use hertzchain::failure::{Failure, of_speed};
-use hertzchain::given::Given;
 use hertzchain::inference::{assumed, held_loads, kept};
 use hertzchain::input::option;
+use hertzchain::options::Given;
+use hertzchain::options::{Assignment, CurveOptions as Measured};
 use hertzchain_experiment::Warning;
 use hertzchain_infer::{Data, Model};
 use hertzchain_measure::records::without_controls;

@@ -112,7 +112,7 @@ def kept(folder: str | os.PathLike[str] | None) -> list[str]:
     if folder is None:
         return []
     into = Path(folder).resolve()
-    begun = (into / CHAIN).exists() or any((into / "partial").glob("part-*"))
+    begun = (into / CHAIN).exists()
     return [f"--out={into}", *(["--resume"] if begun else [])]
 
 

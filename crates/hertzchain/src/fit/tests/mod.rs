@@ -1,6 +1,6 @@
 use super::*;
-use crate::arguments::parsed;
 use crate::inference;
+use crate::options::parsed;
 
 /// A row of the paper's wet chain, K = 1.186e10 N/m^1.5 and A = 2.60 µs, with errors as
 /// of 20 shots.

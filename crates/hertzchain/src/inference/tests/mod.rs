@@ -1,6 +1,6 @@
 use super::*;
-use crate::arguments::infer::Fit;
-use crate::arguments::parsed as arguments;
+use crate::options::FitOptions as Fit;
+use crate::options::parsed as arguments;
 
 fn fit(more: &[&str]) -> Fit {
     let begin = ["data.csv", "--preset=dry", "--free=eta"];

@@ -1,9 +1,9 @@
 //! `hertzchain campaign`: what a rig does alone, on a virtual rig.
 
-use crate::arguments::Campaign as Arguments;
 use crate::failure::Failure;
 use crate::print::{self, print};
 use hertzchain::input;
+use hertzchain::options::CampaignOptions as Arguments;
 use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, outlook};
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in outlook(&plan).map_err(failure)? {
         print::note(&format!("warning: {warning}"));
     }
-    let threads = arguments.threads.unwrap_or(0);
+    let threads = arguments.threads.map_or(0, |threads| threads.0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let shown = Shown::new();

@@ -1,8 +1,8 @@
 //! `hertzchain check`: what was understood; runs nothing.
 
-use crate::arguments::Check;
 use crate::failure::{self, Failure};
 use crate::{format, print};
+use hertzchain::options::CheckOptions as Check;
 use hertzchain::{input, json};
 use hertzchain_sim::describe;
 use serde_json::json;

@@ -5,17 +5,21 @@ use crate::folder::Folder;
 use crate::format::{self, digits};
 use crate::print::{self, heading};
 use crate::words::{lines, misfit};
-use hertzchain::arguments::infer::Design as Arguments;
 use hertzchain::design::Designed;
+use hertzchain::options::DesignOptions as Arguments;
 use hertzchain::{design, inference};
 use hertzchain_infer::{CurveProblem, Expected, titled};
+use std::path::Path;
 
 /// Candidates that anybody reads.
 const SHOWN: usize = 15;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let data = inference::data(&arguments.data, &arguments.measured)?;
+    let data = inference::data(
+        arguments.data.as_deref().unwrap_or(Path::new("")),
+        &arguments.measured,
+    )?;
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
@@ -27,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = inference::pool(arguments.modelled.threads)?;
     let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
     let mut all = design::json(&problem, &designed);
-    all["options"] = arguments.words().into();
+    all["options"] = hertzchain::options::recorded(arguments);
     let assumed = inference::assumed_model(&arguments.modelled);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());

@@ -10,9 +10,9 @@ use crate::folder::Folder;
 use crate::notes::with_notes;
 use crate::print;
 use crate::words::lines;
-use hertzchain::arguments::infer::{Fit as Arguments, Method};
 use hertzchain::fit::{self, Fitted, Inferred, More};
 use hertzchain::inference;
+use hertzchain::options::{FitOptions as Arguments, Method};
 use hertzchain_infer::{CurveProblem, Problem, Surrogate};
 
 /// Runs the verb.
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = inference::problem(model, data, &arguments.freed)?;
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.modelled.threads;
+    let threads = arguments.modelled.threads.map(|threads| threads.0);
     let fitted = with_notes(threads, || fit::fitted(problem, arguments))??;
     let mut all = fit::json(&fitted, arguments);
     show(arguments, &mut all, || report::text(&fitted, arguments))?;

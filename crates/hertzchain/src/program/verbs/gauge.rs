@@ -7,23 +7,18 @@ use crate::failure::{Failure, print_assumed};
 use crate::folder::Folder;
 use crate::print;
 use crate::words::lines;
-use hertzchain::arguments::infer::Gauge as Arguments;
 use hertzchain::gauge::{self, Gauged};
 use hertzchain::inference;
+use hertzchain::options::GaugeOptions as Arguments;
 use hertzchain_infer::gauge::Chains;
+use std::path::Path;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let wet = gauge::data(
-        &arguments.wet,
-        &arguments.measured,
-        arguments.wet_case.as_deref(),
-    )?;
-    let dry = gauge::data(
-        &arguments.dry,
-        &arguments.measured,
-        arguments.dry_case.as_deref(),
-    )?;
+    let [wet_file, dry_file] =
+        [&arguments.wet, &arguments.dry].map(|file| file.as_deref().unwrap_or(Path::new("")));
+    let wet = gauge::data(wet_file, &arguments.measured, arguments.wet_case.as_deref())?;
+    let dry = gauge::data(dry_file, &arguments.measured, arguments.dry_case.as_deref())?;
     for data in [&wet, &dry] {
         print_assumed(data, &arguments.measured);
     }
@@ -40,11 +35,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         wet: &wet_model,
         free: &arguments.dry_free,
         own: &arguments.own,
-        accuracy: arguments.accuracy,
+        accuracy: arguments.accuracy.0,
     };
     let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
     let mut all = gauge::json(&gauged);
-    all["options"] = arguments.words().into();
+    all["options"] = hertzchain::options::recorded(arguments);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());
     match arguments.json {

@@ -6,8 +6,8 @@ mod summary;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print;
-use hertzchain::arguments::measure::Measure as Arguments;
 use hertzchain::measure;
+use hertzchain::options::MeasureOptions as Arguments;
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Measurement, Note, Options, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
@@ -26,7 +26,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     tell(&measured);
-    note_low_pass(&measured, &options, arguments.picking.low_pass);
+    note_low_pass(
+        &measured,
+        &options,
+        arguments.picking.low_pass.map(|corner| corner.0),
+    );
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,

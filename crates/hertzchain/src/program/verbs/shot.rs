@@ -3,12 +3,12 @@
 mod report;
 mod traces;
 
-use crate::arguments::Shot as Arguments;
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::notes::with_notes;
 use crate::print;
 use crate::words::lines;
+use hertzchain::options::ShotOptions as Arguments;
 use hertzchain::table::named;
 use hertzchain::{input, json};
 use hertzchain_sim::{Expected, Plan, shoot_checked, shoot_estimated};

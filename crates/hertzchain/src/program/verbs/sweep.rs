@@ -4,13 +4,12 @@ mod fits;
 pub(crate) mod shard;
 pub(crate) mod told;
 
-use crate::arguments::{self, Sweep as Arguments};
 use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::Style;
 use crate::print;
-use hertzchain::arguments::How as Asked;
-use hertzchain::given::check_speeds;
+use hertzchain::options::check_speeds;
+use hertzchain::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
 use hertzchain::{input, json, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_sim::{
@@ -27,7 +26,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_speeds("--speeds", &arguments.speeds, experiment.units())?;
     let plan = adjusted(&experiment, &arguments.how)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.threads.unwrap_or(0);
+    let threads = arguments.threads.map_or(0, |threads| threads.0);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let bar = bar(speeds.len() as u64);
@@ -79,9 +78,9 @@ fn options(arguments: &Arguments, plan: &Plan) -> Result<BatchOptions, Failure> 
         pick: plan.pick,
         rebound: arguments.rebound,
         checked: arguments.how.check,
-        error_control: match arguments.judges {
-            arguments::Judges::Each => ErrorControl::PerShot,
-            arguments::Judges::Pilots => ErrorControl::Calibrated,
+        error_control: match arguments.error_control {
+            options::ErrorControl::PerShot => ErrorControl::PerShot,
+            options::ErrorControl::Calibrated => ErrorControl::Calibrated,
         },
         set: input::instruction_set()?,
     })

@@ -1,9 +1,9 @@
 //! `hertzchain theory`: what theory says of a chain's waves.
 
-use crate::arguments::Check;
 use crate::failure::{self, Failure};
 use crate::words::lines;
 use crate::{format, print};
+use hertzchain::options::CheckOptions as Check;
 use hertzchain::{input, json};
 use hertzchain_sim::describe_theory;
 

@@ -3,9 +3,9 @@
 use crate::format::{self, digits};
 use crate::print::heading;
 use crate::words::{chi_square_text, doubt, estimate, lines, misfit, percent, rough};
-use hertzchain::arguments::infer::Fit as Arguments;
 use hertzchain::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 use hertzchain::inference::{references, widened};
+use hertzchain::options::FitOptions as Arguments;
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
 };

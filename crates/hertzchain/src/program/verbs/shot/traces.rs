@@ -1,10 +1,10 @@
 //! Traces, figures and the moving picture of a shot.
 
-use crate::arguments::Shot as Arguments;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::pictures;
 use crate::print;
+use hertzchain::options::ShotOptions as Arguments;
 use hertzchain::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};

@@ -1,12 +1,14 @@
-//! Numbers of the command line, whose units must suit the experiment's.
+//! Speeds and times whose units must suit the experiment's.
 
+use super::values::Text;
 use crate::failure::Failure;
 use hertzchain_experiment::Units;
 use hertzchain_experiment::units::{Dimension, parse_quantity};
 use hertzchain_sim::{StudyError, parse_speed, parse_time};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A speed or time as given, before it is known whether the experiment has
-/// units.
+/// A speed or time as given, before it is known whether the experiment has units.
 #[derive(Clone, Debug)]
 pub struct Given {
     text: String,
@@ -17,7 +19,10 @@ pub struct Given {
 }
 
 impl Given {
-    /// A speed; a plain number is in m/s, or dimensionless.
+    /// Returns a speed; a plain number is in m/s, or dimensionless.
+    ///
+    /// # Errors
+    /// Text that is no positive speed.
     pub fn speed(text: &str) -> Result<Self, StudyError> {
         Ok(Self {
             text: text.trim().to_owned(),
@@ -27,7 +32,10 @@ impl Given {
         })
     }
 
-    /// A time; a plain number only suits a dimensionless experiment.
+    /// Returns a time; a plain number only suits a dimensionless experiment.
+    ///
+    /// # Errors
+    /// Text that is no positive time.
     pub fn time(text: &str) -> Result<Self, String> {
         Ok(Self {
             text: text.trim().to_owned(),
@@ -38,18 +46,18 @@ impl Given {
     }
 
     /// The value in SI, or dimensionless.
-    pub const fn value(&self) -> f64 {
+    pub(crate) const fn value(&self) -> f64 {
         self.value
     }
 
     /// As it was written.
-    pub fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// Refuses a unit in a dimensionless experiment, and a time without one
-    /// in SI: between 2 s and 2 ms lies a factor of 1000.
-    pub fn check(&self, option: &str, units: Units) -> Result<(), Failure> {
+    /// Rejects a unit in a dimensionless experiment, and a time without one in SI: between 2 s and
+    /// 2 ms lies a factor of 1000.
+    pub(crate) fn check(&self, option: &str, units: Units) -> Result<(), Failure> {
         match (units, self.has_unit, self.asks_unit) {
             (Units::Dimensionless, true, _) => Err(dimensionless(option, &self.text)),
             (Units::Si, false, Some(example)) => Err(Failure::User(format!(
@@ -61,7 +69,35 @@ impl Given {
     }
 }
 
-/// Refuses units in a list of speeds for a dimensionless experiment.
+impl Serialize for Given {
+    fn serialize<S: Serializer>(&self, into: S) -> Result<S::Ok, S::Error> {
+        into.serialize_str(&self.text)
+    }
+}
+
+fn text<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Text>, D::Error> {
+    Option::deserialize(source)
+}
+
+pub(super) fn some_speed<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Given>, D::Error> {
+    let given = text(source)?.map(|text| Given::speed(&text.to_string()));
+    given.transpose().map_err(D::Error::custom)
+}
+
+/// A JSON number is in SI, or dimensionless as the experiment.
+pub(super) fn some_time<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Given>, D::Error> {
+    let Some(text) = text(source)? else {
+        return Ok(None);
+    };
+    let given = Given::time(&text.to_string()).map_err(D::Error::custom)?;
+    let asks_unit = given.asks_unit.filter(|_| matches!(text, Text::Words(_)));
+    Ok(Some(Given { asks_unit, ..given }))
+}
+
+/// Rejects units in a list of speeds for a dimensionless experiment.
+///
+/// # Errors
+/// The option and the speed with a unit.
 pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Failure> {
     let mut parts = speeds.split([',', ':']);
     match (units, parts.find(|part| has_unit(part))) {
@@ -71,8 +107,7 @@ pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Fail
 }
 
 /// Whether a number has a unit.
-#[must_use]
-pub fn has_unit(text: &str) -> bool {
+pub(crate) fn has_unit(text: &str) -> bool {
     parse_quantity(text).is_ok_and(|quantity| quantity.dimension != Dimension::NONE)
 }
 

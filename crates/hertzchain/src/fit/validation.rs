@@ -1,6 +1,7 @@
-//! Options that a fit could not heed are refused before anything is computed.
+//! Validation of a fit's options before anything is computed.
 
-use super::{Arguments, CHAIN, partial, words};
+use super::checkpoint::check_options;
+use super::{Arguments, CHAIN};
 use crate::failure::Failure;
 
 /// Of a fit of a table.
@@ -46,16 +47,14 @@ pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn of_any(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(out) = arguments.out.as_deref().filter(|_| arguments.resume) else {
-        return words::left(arguments);
-    };
-    let nothing = !partial::begun(out) && !out.join(CHAIN).exists();
-    let why = format!(
-        "goes on with what a run that was broken off left, and {} holds nothing of one: leave it out",
-        out.display()
-    );
-    refuse("--resume", nothing, &why)?;
-    words::left(arguments)
+    if let Some(out) = arguments.out.as_deref().filter(|_| arguments.resume) {
+        let why = format!(
+            "continues a posterior that was interrupted, and {} holds nothing of one: leave it out",
+            out.display()
+        );
+        refuse("--resume", !out.join(CHAIN).exists(), &why)?;
+    }
+    check_options(arguments)
 }
 
 fn refuse(option: &str, given: bool, why: &str) -> Result<(), Failure> {

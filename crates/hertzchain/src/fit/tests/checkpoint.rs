@@ -1,8 +1,8 @@
 use super::*;
-use crate::arguments::parsed;
+use crate::options::parsed;
 
 fn arguments(out: &Path, more: &[&str]) -> Arguments {
-    let begin = ["data.csv", "--free=eta"].map(str::to_owned);
+    let begin = ["data.csv", "--free=eta", "--method=posterior"].map(str::to_owned);
     let more = more.iter().map(|word| (*word).to_owned());
     let out = format!("--out={}", out.display());
     let words: Vec<String> = begin.into_iter().chain(more).chain([out]).collect();
@@ -12,17 +12,17 @@ fn arguments(out: &Path, more: &[&str]) -> Arguments {
 #[test]
 fn a_run_goes_on_with_its_own_options_alone() {
     let out = std::env::temp_dir().join(format!("hertzchain-options-{}", std::process::id()));
-    left(&arguments(&out, &["--seed=3", "--steps=100"])).unwrap();
-    left(&arguments(&out, &["--seed=3", "--steps=900", "--resume"])).unwrap();
+    check_options(&arguments(&out, &["--seed=3", "--steps=100"])).unwrap();
+    check_options(&arguments(&out, &["--seed=3", "--steps=900", "--resume"])).unwrap();
     let other = arguments(&out, &["--seed=4", "--robust", "--steps=100", "--resume"]);
-    let Err(Failure::User(why)) = left(&other) else {
+    let Err(Failure::User(why)) = check_options(&other) else {
         unreachable!("a run went on with another's options")
     };
-    let told = ["then --seed=3", "now", "--seed=4", "--robust"];
-    assert!(told.iter().all(|word| why.contains(word)), "{why}");
-    assert!(!why.contains("--steps"), "{why}");
+    let expected = ["seed was 3, now 4", "robust was false, now true"];
+    assert!(expected.iter().all(|word| why.contains(word)), "{why}");
+    assert!(!why.contains("steps"), "{why}");
     // Anew, anything goes.
-    left(&arguments(&out, &["--seed=4"])).unwrap();
+    check_options(&arguments(&out, &["--seed=4"])).unwrap();
     finished(&out);
     assert!(!out.join(OPTIONS).exists());
     let _ = fs::remove_dir_all(out);

@@ -1,0 +1,360 @@
+//! Values of options: from text with or without a unit, or from a JSON number in SI.
+
+use clap::ValueEnum;
+use hertzchain_experiment::units::parse_in;
+use hertzchain_infer::FEWEST_SHOTS;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
+/// A JSON value that stands for an option's text.
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub(super) enum Text {
+    Whole(i64),
+    Number(f64),
+    Words(String),
+}
+
+impl Display for Text {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(number) => write!(f, "{number}"),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Words(text) => write!(f, "{text}"),
+        }
+    }
+}
+
+fn from_text<'de, D: Deserializer<'de>, T: FromStr<Err = String>>(
+    source: D,
+) -> Result<T, D::Error> {
+    let text = Text::deserialize(source)?;
+    text.to_string().parse().map_err(D::Error::custom)
+}
+
+/// Declares a number that is read from text, for the command line and JSON alike.
+macro_rules! numbers {
+    ($($(#[$doc:meta])* $name:ident($inner:ty): $expected:expr, $read:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
+        pub struct $name(pub $inner);
+
+        impl FromStr for $name {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                let read: fn(&str) -> Option<$inner> = $read;
+                read(text.trim()).map(Self).ok_or_else(|| format!("expected {}", $expected))
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+                from_text(source)
+            }
+        }
+    )*};
+}
+
+/// A finite number in SI.
+fn number(text: &str, unit: &str) -> Option<f64> {
+    parse_in(text, unit).ok().filter(|value| value.is_finite())
+}
+
+fn hertz(text: &str) -> Option<f64> {
+    number(&text.replace("S/s", "Hz"), "Hz").filter(|rate| *rate == 0.0 || rate.is_normal())
+}
+
+fn whole(text: &str, most: usize) -> Option<usize> {
+    text.parse().ok().filter(|count| (1..=most).contains(count))
+}
+
+numbers! {
+    /// A relative accuracy of times of flight.
+    Accuracy(f64): "a number between 1e-13 and 1e-2, such as 1e-6",
+        |text| text.parse().ok().filter(|number| (1e-13..=1e-2).contains(number));
+    /// A number of threads.
+    Threads(usize): "a whole number from 1 to 1024", |text| whole(text, 1024);
+    /// A whole number from 1 on.
+    Count(usize): "a whole number from 1 on", |text| whole(text, usize::MAX);
+    /// A whole number from 1 to 1000.
+    Few(usize): "a whole number from 1 to 1000", |text| whole(text, 1000);
+    /// A speed in m/s that is not negative.
+    Speed(f64): "a speed or 0, such as 0.7mm/s, or 7e-4 for m/s",
+        |text| number(text, "m/s").filter(|speed| *speed >= 0.0);
+    /// A positive time in s.
+    Time(f64): "a positive time, such as 0.5us, or 5e-7 for s",
+        |text| number(text, "s").filter(|time| *time > 0.0);
+    /// A positive frequency or sampling rate in Hz.
+    Frequency(f64): "a rate such as 1MHz, 500kS/s or 1e6", |text| hertz(text).filter(|rate| *rate > 0.0);
+    /// A frequency in Hz, or 0 for none.
+    Corner(f64): "a frequency such as 180kHz or 0.5Hz, or 0 for none",
+        |text| hertz(text).filter(|rate| *rate >= 0.0);
+    /// A voltage in V.
+    Voltage(f64): "volts such as 0.2 or -0.2", |text| number(text, "V");
+    /// A share between 0 and 1.
+    Share(f64): "a number between 0 and 1",
+        |text| text.parse().ok().filter(|share| *share > 0.0 && *share < 1.0);
+    /// A positive number.
+    Positive(f64): "a positive number, such as 0.01",
+        |text| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    /// A unit of time in s.
+    TimeUnit(f64): "s, ms, us or ns", |text| match text {
+        "s" => Some(1.0),
+        "ms" => Some(1e-3),
+        "us" | "µs" => Some(1e-6),
+        "ns" => Some(1e-9),
+        _ => None,
+    };
+}
+
+/// The number of shots from whose scatter standard errors come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorShots {
+    /// Errors are known.
+    Known,
+    /// Errors are estimated from this many shots.
+    Of(u32),
+}
+
+impl FromStr for ErrorShots {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "known" => Ok(Self::Known),
+            text => text.parse().ok().filter(|count| *count >= FEWEST_SHOTS).map(Self::Of).ok_or_else(|| {
+                format!(
+                    "expected a whole number from {FEWEST_SHOTS}, or known: the scatter of fewer shots gives no \
+                     error of a row; take one over many rows"
+                )
+            }),
+        }
+    }
+}
+
+/// A preload force that could be tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preload {
+    /// No preload.
+    Nothing,
+    /// A force in N.
+    Of(f64),
+}
+
+impl FromStr for Preload {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let force = || {
+            number(text, "N")
+                .filter(|force| *force >= 0.0)
+                .map(Self::Of)
+        };
+        match text.trim() {
+            "none" => Ok(Self::Nothing),
+            _ => force().ok_or_else(|| {
+                "expected a force that is not negative, such as 0.24N, or none".to_owned()
+            }),
+        }
+    }
+}
+
+/// A number of the model and the text of its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// Name.
+    pub name: String,
+    /// Text after the sign.
+    pub text: String,
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text
+            .split_once('=')
+            .filter(|(name, _)| !name.trim().is_empty());
+        let (name, text) = parts.ok_or("expected NAME=VALUE, such as eta=3.2e4")?;
+        Ok(Self {
+            name: name.trim().to_owned(),
+            text: text.trim().to_owned(),
+        })
+    }
+}
+
+impl Display for Assignment {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.name, self.text)
+    }
+}
+
+/// Another model of the same data, and what is free in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Against {
+    /// File or preset.
+    pub model: String,
+    /// What is free in it.
+    pub free: Vec<String>,
+}
+
+impl FromStr for Against {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('=');
+        let (model, free) = parts.ok_or("expected MODEL=NAMES, such as hertz-viscoelastic=eta")?;
+        let free = free.split(',').map(|name| name.trim().to_owned()).collect();
+        Ok(Self {
+            model: model.trim().to_owned(),
+            free,
+        })
+    }
+}
+
+/// The cost of a way to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The way.
+    pub of: WayKind,
+    /// Its cost, in the unit of the others.
+    pub value: f64,
+}
+
+/// Ways to measure, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WayKind {
+    /// Incident times alone
+    Incident,
+    /// Reflected times too
+    Reflected,
+    /// And the ratio of reflected to incident peaks
+    Ratio,
+    /// A sensor in another bead
+    Sensor,
+    /// A push on bead 1
+    Preload,
+}
+
+impl FromStr for Cost {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "expected WAY=NUMBER with a positive number, such as sensor=10; ways are incident, reflected, \
+                        ratio, sensor, preload";
+        let (of, value) = text.split_once('=').ok_or(expected)?;
+        let of = WayKind::from_str(of.trim(), false).map_err(|_| expected)?;
+        let value: Positive = value.parse().map_err(|_| expected)?;
+        Ok(Self { of, value: value.0 })
+    }
+}
+
+impl Display for ErrorShots {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Known => write!(f, "known"),
+            Self::Of(shots) => write!(f, "{shots}"),
+        }
+    }
+}
+
+impl Display for Preload {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => write!(f, "none"),
+            Self::Of(force_n) => write!(f, "{force_n}"),
+        }
+    }
+}
+
+impl Display for Against {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.model, self.free.join(","))
+    }
+}
+
+impl Display for Cost {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let way = self.of.to_possible_value();
+        write!(
+            f,
+            "{}={}",
+            way.as_ref().map_or("", |way| way.get_name()),
+            self.value
+        )
+    }
+}
+
+/// Serde for values that are text in JSON, too.
+macro_rules! texts {
+    ($($name:ident)*) => {$(
+        impl Serialize for $name {
+            fn serialize<S: Serializer>(&self, into: S) -> Result<S::Ok, S::Error> {
+                into.collect_str(self)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+                from_text(source)
+            }
+        }
+    )*};
+}
+
+texts!(ErrorShots Preload Against);
+
+/// Serde of `NAME=VALUE` lists as an object `{"NAME": value}`; `[a, b]` joins two values by the sign
+/// that the option has between them.
+pub(super) mod pairs {
+    use super::*;
+
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Entry {
+        One(Text),
+        Two([Text; 2]),
+    }
+
+    pub(in super::super) fn serialize<T: Display, S: Serializer>(
+        pairs: &[T],
+        into: S,
+    ) -> Result<S::Ok, S::Error> {
+        let texts = pairs.iter().map(ToString::to_string);
+        let texts: Vec<String> = texts.collect();
+        into.collect_map(texts.iter().filter_map(|text| text.split_once('=')))
+    }
+
+    pub(in super::super) fn deserialize<'de, D: Deserializer<'de>, T: FromStr<Err = String>>(
+        source: D,
+    ) -> Result<Vec<T>, D::Error> {
+        joined(source, ":")
+    }
+
+    fn joined<'de, D: Deserializer<'de>, T: FromStr<Err = String>>(
+        source: D,
+        sign: &str,
+    ) -> Result<Vec<T>, D::Error> {
+        let entries = BTreeMap::<String, Entry>::deserialize(source)?.into_iter();
+        let pair = |(name, entry)| match entry {
+            Entry::One(one) => format!("{name}={one}").parse(),
+            Entry::Two([first, second]) => format!("{name}={first}{sign}{second}").parse(),
+        };
+        entries
+            .map(pair)
+            .collect::<Result<_, String>>()
+            .map_err(D::Error::custom)
+    }
+
+    /// Of priors: mean and standard deviation.
+    pub(in super::super) fn priors<'de, D: Deserializer<'de>>(
+        source: D,
+    ) -> Result<Vec<Assignment>, D::Error> {
+        joined(source, "+-")
+    }
+}
