@@ -45,6 +45,14 @@ impl From<SamplingError> for Failure {
     }
 }
 
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.report(false).trim_end())
+    }
+}
+
+impl std::error::Error for Failure {}
+
 impl Failure {
     /// What kept a shot from being computed, at the place in the experiment
     /// that has to do with it; what the command line asks for has no place.

@@ -70,7 +70,7 @@ fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more(
     assert_eq!(found["follows_data"], true);
     let (text, found) = ranked("1e4");
     assert!(
-        text.starts_with("Beware: the model does not follow the data"),
+        text.starts_with("warning: the model does not follow the data"),
         "{text}"
     );
     assert_eq!(found["follows_data"], false);

@@ -61,7 +61,7 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     };
     let text = told(&format!("{out}/sweep.csv"));
     let first = text.lines().next().unwrap();
-    assert!(first.starts_with("Beware: of the dry curve"), "{text}");
+    assert!(first.starts_with("warning: of the dry curve"), "{text}");
     assert!(
         first.contains("the model does not follow the data"),
         "{text}"
@@ -70,10 +70,7 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     assert!(second.contains("Look whether --dry names"), "{text}");
     // Under the verdict, where a long table ends, it is said again.
     let last = text.lines().last().unwrap();
-    assert!(
-        last.starts_with("Beware: what the first lines say"),
-        "{text}"
-    );
+    assert!(last.starts_with("warning: see the first lines"), "{text}");
     let text = told(&curve(&folder, "dry"));
-    assert!(!text.contains("Beware"), "{text}");
+    assert!(!text.contains("warning"), "{text}");
 }

@@ -1,5 +1,7 @@
 //! From files of volts to times of flight, in one command.
 
+use hertzchain::inference;
+use hertzchain::options::{CurveOptions, MeasureOptions};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -486,4 +488,25 @@ fn the_amplifiers_low_pass_has_the_names_that_fit_gives_it() {
     assert!(words.contains("--low-pass or --rig"), "{words}");
     let words = refused(&["--low-pass", "50kHz", "--filter", "bessel4"]);
     assert!(words.contains("--low-pass 0 leaves times"), "{words}");
+}
+
+#[test]
+fn a_measured_curve_is_fitted_in_memory_as_from_its_file() {
+    let folder = folder("in-memory");
+    shots(&folder);
+    let list = folder.join("list.txt");
+    let options = MeasureOptions {
+        shots: Some(list.clone()),
+        ..MeasureOptions::default()
+    };
+    let measured = hertzchain::measure(&[folder.clone()], &options).unwrap();
+    let curve = measured.curve("dry").unwrap();
+    let output = measure(&folder, &[".", "--shots", "list.txt", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(0));
+    let options = CurveOptions {
+        case: Some("dry".to_owned()),
+        ..CurveOptions::default()
+    };
+    let stored = inference::data(&folder.join("out/speeds.csv"), &options).unwrap();
+    assert_eq!(curve.rows, stored.rows);
 }

@@ -5,18 +5,22 @@ mod results;
 pub use results::{json, write_json};
 
 use crate::failure::Failure;
-use crate::input;
+use crate::options::CurveOptions;
 use crate::options::Filter;
 use crate::options::Input;
 use crate::options::{
     Corner, MeasureOptions as Arguments, MethodName, PickOptions as Picking, RowsAre, Way,
 };
+use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
+use hertzchain_infer::Data;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::signal::{
     Bandwidth, Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
 };
-use hertzchain_measure::{Cut, Grouping, Level, Measurement, Options, Shot, ShotList};
+use hertzchain_measure::{
+    Curves, Cut, Grouping, Level, Measurement, Options, Shot, ShotList, speeds_csv,
+};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,6 +78,52 @@ fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         ))),
         false => Ok(found),
     }
+}
+
+/// Times of flight of recordings: every shot, and curves against speed.
+pub struct MeasureResult {
+    /// Shots with their times of flight, and what was rejected.
+    pub shots: Measurement,
+    /// Means at each speed, power laws and ratios.
+    pub curves: Curves,
+}
+
+impl MeasureResult {
+    /// Returns the curve of a case as a fit takes it; `""` is the case of shots without one.
+    ///
+    /// # Errors
+    /// A case that was not measured, or whose curve can't be fitted.
+    pub fn curve(&self, case: &str) -> Result<Data, Failure> {
+        // The same numbers as in speeds.csv, bit for bit.
+        let case = Some(case.to_owned()).filter(|case| !case.is_empty());
+        inference::parsed(
+            "measured",
+            &speeds_csv(&self.curves),
+            &CurveOptions::default(),
+            case,
+        )
+    }
+}
+
+/// Measures times of flight on recordings.
+///
+/// ```no_run
+/// use hertzchain::prelude::*;
+///
+/// let measured = measure(&["shots".into()], &MeasureOptions::default())?;
+/// let found = fit(&measured.curve("dry")?, &preset("dry")?, &FitOptions::free(["eta", "B"]))?;
+/// println!("{} ± {}", found.inferred.fit.point[0], found.inferred.standard_error(0));
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// Files and options that can't be used.
+pub fn measure(records: &[PathBuf], options: &Arguments) -> Result<MeasureResult, Failure> {
+    let files = files(records, options.shots.as_deref())?;
+    let shots = hertzchain_measure::measure(&files, &self::options(options)?, &());
+    suits(&shots)?;
+    let curves = Curves::of(&shots.shots, &grouping(options));
+    Ok(MeasureResult { shots, curves })
 }
 
 /// How recordings are read and measured.

@@ -30,29 +30,27 @@ pub(crate) fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
     }
 }
 
-/// How far data are from a fit.
-pub(crate) fn chi_square_text(goodness: &Goodness) -> String {
-    goodness.chi_square.map_or(String::new(), chi_square_of)
+/// χ² over degrees of freedom with its p-value, as `χ²/ν = 50.9/48, p = 0.36`.
+pub(crate) fn chi_square_text(found: ChiSquare) -> String {
+    let (value, freedom) = (digits(found.value, 4), found.freedom);
+    format!("χ²/ν = {value}/{freedom}, {}", p_value(found.probability))
 }
 
-/// A chi-square and what chance makes of it.
-pub(crate) fn chi_square_of(found: ChiSquare) -> String {
-    format!(
-        "Chi-square {} with {} degrees of freedom: as much or more in {} of repetitions\n",
-        digits(found.value, 4),
-        found.freedom,
-        percent(found.probability)
-    )
+/// A p-value, as `p = 0.36`.
+pub(crate) fn p_value(probability: f64) -> String {
+    // No error is so exactly normal that smaller probabilities would mean anything.
+    match probability < 1e-11 {
+        true => "p < 1e-11".to_owned(),
+        false => format!("p = {}", digits(probability, 2)),
+    }
 }
 
-/// That a model does not follow the data, if chance can't be why.
+/// That a model is rejected by the data, as a warning.
 pub(crate) fn misfit(goodness: &Goodness) -> Option<String> {
-    let times = goodness.birge_ratio.filter(|_| goodness.is_rejected())?;
+    let ratio = goodness.birge_ratio.filter(|_| goodness.is_rejected())?;
     Some(format!(
-        "the model does not follow the data, which lie {} of their standard errors from it on average \
-         (root of chi-square over degrees of freedom). Its values are those of a wrong model, or the data's errors are \
-         too small, and its standard errors mean nothing",
-        digits(times, 3)
+        "the model does not follow the data: √(χ²/ν) = {}; its values and standard errors are not valid",
+        digits(ratio, 3)
     ))
 }
 
@@ -66,9 +64,8 @@ pub(crate) fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<Str
     let (at, share) = jacobian.least_agreeing()?;
     let name = parameters.get(at).filter(|_| share > ROUGH)?.name.as_str();
     Some(format!(
-        "derivatives by {name} differ by {} between two step sizes, as where curves jump: standard errors by the \
-         covariance, and what is said to be determined, may be wrong. Take intervals that need no derivatives \
-         (--method profile), or smoother curves (a smaller --accuracy)",
+        "derivatives by {name} differ by {} between two step sizes: standard errors by the covariance may be wrong \
+         (--method profile needs no derivatives; a smaller --accuracy gives smoother curves)",
         percent(share)
     ))
 }
@@ -89,11 +86,11 @@ pub(crate) fn doubt(ending: &Ending) -> Option<String> {
     match ending {
         Ending::Minimum | Ending::Floor { .. } | Ending::Open { .. } => None,
         Ending::Stuck { expected_fall } => Some(format!(
-            "the fit is stuck where chi-square/2 should still fall by {expected_fall:.1e}: curves may jump by their own \
-             errors (ask for more by --accuracy), or start elsewhere (--start, --starts)"
+            "the fit stopped where χ²/2 should still fall by {expected_fall:.1e} (a smaller --accuracy, or --start, \
+             --starts)"
         )),
         Ending::Iterations { expected_fall } => Some(format!(
-            "the fit ran out of iterations where chi-square/2 should still fall by {expected_fall:.1e}: start nearer"
+            "the fit ran out of iterations where χ²/2 should still fall by {expected_fall:.1e} (--start)"
         )),
         other if other.converged() => None,
         Ending::ModelFails(error) => Some(format!("the fit ended where the model fails: {error}")),

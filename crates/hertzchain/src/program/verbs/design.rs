@@ -95,8 +95,8 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
 
 /// Before all else: a ranking by a model that the data so far do not follow.
 fn unfit(designed: &Designed) -> String {
-    misfit(&designed.goodness).map_or(String::new(), |told| {
-        format!("Beware: {told}; nor is what it ranks worth more.\n\n")
+    misfit(&designed.goodness).map_or(String::new(), |misfit| {
+        format!("warning: {misfit}; nor is its ranking.\n\n")
     })
 }
 
@@ -114,7 +114,7 @@ fn beware(problem: &CurveProblem, designed: &Designed) -> String {
     let hopeless = designed.hopeless(problem).into_iter();
     let hopeless = hopeless.map(|told| format!("  {told}.\n"));
     format!(
-        "Beware: the data so far leave combinations of the parameters open.\n{}{}{}",
+        "warning: the data so far leave combinations of the parameters open.\n{}{}{}",
         open.collect::<String>(),
         hopeless.collect::<String>(),
         advice.collect::<String>()

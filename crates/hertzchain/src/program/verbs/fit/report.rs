@@ -2,7 +2,7 @@
 
 use crate::format::{self, digits};
 use crate::print::heading;
-use crate::words::{chi_square_text, doubt, estimate, lines, misfit, percent, rough};
+use crate::words::{chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough};
 use hertzchain::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
 use hertzchain::inference::{references, widened};
 use hertzchain::options::FitOptions as Arguments;
@@ -42,7 +42,7 @@ pub(super) fn text(fitted: &Fitted, arguments: &Arguments) -> String {
     text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
     text += &beware(&fitted.inferred);
     let pairs = fitted.several_pairs();
-    text += &pairs.map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    text += &pairs.map_or(String::new(), |told| format!("warning: {told}.\n"));
     text + &unit(fitted)
 }
 
@@ -50,7 +50,7 @@ pub(super) fn text(fitted: &Fitted, arguments: &Arguments) -> String {
 fn unit(fitted: &Fitted) -> String {
     fitted.unit_of_speed.map_or(String::new(), |unit| {
         format!(
-            "Beware: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
+            "warning: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
              times of flight at speeds that many times slower\n",
             fitted.problem.data().file
         )
@@ -91,10 +91,10 @@ fn derivatives(fitted: &Inferred) -> String {
 /// What is doubtful about the minimum.
 pub(super) fn beware(fitted: &Inferred) -> String {
     let doubt = doubt(&fitted.fit.ending);
-    let mut text = doubt.map_or(String::new(), |doubt| format!("Beware: {doubt}\n"));
+    let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
     let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
-    text += &rough.map_or(String::new(), |told| format!("Beware: {told}.\n"));
-    text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("Beware: {told}.\n"));
+    text += &rough.map_or(String::new(), |told| format!("warning: {told}.\n"));
+    text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("warning: {told}.\n"));
     if let Err(why) = &fitted.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
@@ -122,15 +122,14 @@ fn other_minima(fitted: &Inferred) -> String {
             )
         });
         format!(
-            "  {} (chi-square higher by {}, {count} starts)\n",
+            "  {} (χ² higher by {}, {count} starts)\n",
             values.collect::<Vec<_>>().join(", ").trim_end(),
             digits(2.0 * (start.cost - fitted.fit.cost), 2)
         )
     };
     let lines: String = minima.iter().map(line).collect();
     format!(
-        "Beware: other starts came to other values that fit as well. Errors and intervals hold for the one minimum above, \
-         and the data do not say that it is the right one (other data, a prior or bounds may):\n{lines}"
+        "warning: other starts came to other minima that fit as well; errors and intervals hold for the one above:\n{lines}"
     )
 }
 
@@ -189,47 +188,38 @@ fn correlations(fitted: &Inferred) -> String {
     }
 }
 
-/// Chi-square, runs and the worst residual.
+/// χ², runs test and largest residual.
 fn goodness(goodness: &Goodness) -> String {
-    if goodness.chi_square.is_none() {
-        return "As many numbers as parameters: nothing is left to judge the model by\n".to_owned();
-    }
-    let mut text = chi_square_text(goodness);
-    text += &goodness.runs.map_or(String::new(), runs_text);
-    if let Some(found) = &goodness.largest {
-        text += &format!(
-            "Largest residual: {} σ ({})\n",
-            digits(found.sigmas, 2),
-            found.label
-        );
-    }
-    text
+    let Some(chi_square) = goodness.chi_square else {
+        return "ν = 0: as many numbers as parameters\n".to_owned();
+    };
+    let runs = goodness.runs.map(runs_text);
+    let largest = goodness.largest.as_ref();
+    let largest = largest.map(|of| {
+        format!(
+            "largest residual: {} σ ({})",
+            digits(of.sigmas, 2),
+            of.label
+        )
+    });
+    let all = std::iter::once(chi_square_text(chi_square))
+        .chain(runs)
+        .chain(largest);
+    all.collect::<Vec<_>>().join("; ") + "\n"
 }
 
-/// Runs of equal sign, by the tail on whose side they are: too many are as odd as too few.
+/// The runs test, by the tail on whose side the number of runs of equal sign is.
 fn runs_text(runs: Runs) -> String {
-    let (how, share) = match (runs.count as f64) <= runs.expected {
-        true => ("as few or fewer", runs.probability_fewer),
-        false => ("as many or more", runs.probability_more),
+    let probability = match (runs.count as f64) <= runs.expected {
+        true => runs.probability_fewer,
+        false => runs.probability_more,
     };
-    let odd = match (share < ODD, (runs.count as f64) <= runs.expected) {
-        (false, _) => "",
-        (true, true) => "; neighbouring residuals go together, as where the curve's shape is wrong",
-        (true, false) => {
-            "; residuals change sign oddly often, as where neighbouring data are not independent"
-        }
-    };
+    let (count, expected) = (runs.count, digits(runs.expected, 3));
     format!(
-        "{} runs of equal sign, {} expected: {how} in {} of repetitions{odd}\n",
-        runs.count,
-        digits(runs.expected, 3),
-        percent(share)
+        "runs test: {} ({count} runs, {expected} expected)",
+        p_value(probability)
     )
 }
-
-/// Share of repetitions in one tail below which the number of runs is odd: five percent of
-/// both tails.
-const ODD: f64 = 0.025;
 
 /// The model's own error against the data's.
 fn accuracy(fitted: &Fitted) -> String {
@@ -377,7 +367,7 @@ fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
 fn rivals(rivals: &Rivals) -> String {
     let lost = rivals.lost.iter().map(|lost| {
         format!(
-            "{} is far from the data: chi-square {} where it ended ({})\n",
+            "{} is far from the data: χ² = {} where it ended ({})\n",
             lost.name,
             digits(lost.chi_square, 4),
             lost.why
@@ -396,7 +386,7 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
             criteria.parameters.to_string(),
             digits(rival.fit.chi_square(), 5),
             (criteria.chi_square).map_or("–".to_owned(), |found| found.freedom.to_string()),
-            (criteria.chi_square).map_or("–".to_owned(), |found| percent(found.probability)),
+            (criteria.chi_square).map_or("–".to_owned(), |found| digits(found.probability, 2)),
             digits(comparison.aicc_above_best[at], 4),
             digits(criteria.bic, 6),
             (rival.foretells.as_ref()).map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
@@ -406,8 +396,8 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
     let head = [
         "model",
         "free",
-        "chi-square",
-        "degrees of freedom",
+        "χ²",
+        "ν",
         "p",
         "AICc above best",
         "BIC",

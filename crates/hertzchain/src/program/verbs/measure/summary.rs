@@ -2,6 +2,7 @@
 
 use crate::format::{self, with_error};
 use crate::print::heading;
+use crate::words::chi_square_text;
 use hertzchain_measure::signal::{Estimate, FitError, PowerLaw, Summary};
 use hertzchain_measure::{Case, Curves, Measurement, Shot, SpeedRow};
 
@@ -206,12 +207,7 @@ fn judgement(case: &Case, law: &PowerLaw) -> String {
             _ => String::new(),
         };
     };
-    let squares = format!(
-        ", chi-square {} of {}, probability {}",
-        format::digits(judged.value, 3),
-        judged.freedom,
-        format::digits(judged.probability, 2)
-    );
+    let squares = format!(", {}", chi_square_text(*judged));
     let supported = case.supports(law);
     if supported.is_ok_and(|supported| supported != Some(false)) {
         return squares;
