@@ -1,4 +1,4 @@
-//! How well a fit describes its data.
+//! Goodness of fit: chi-square, runs of equal sign, the largest residual.
 
 use crate::identify::directions_at;
 use crate::{Fit, Problem};
@@ -8,8 +8,7 @@ use std::ops::Range;
 /// How well a fit describes its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goodness {
-    /// Chi-square of data and priors together; `None` if there are no more of
-    /// them than parameters.
+    /// Chi-square of data and priors together; `None` if there are no more of them than parameters.
     pub chi_square: Option<ChiSquare>,
     /// √(χ²/degrees of freedom): what all σ would have to be multiplied by.
     pub birge_ratio: Option<f64>,
@@ -30,43 +29,67 @@ pub struct Largest {
     pub sigmas: f64,
 }
 
+/// p below which data reject a model: of a thousand fits of right models one is rejected.
+pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
+
+/// Chi-square of standardised residuals and the fitted number of parameters.
+pub(crate) fn chi_square_of(
+    residuals: impl Iterator<Item = f64>,
+    fitted: usize,
+) -> Option<ChiSquare> {
+    let rows: Vec<Estimate> = residuals
+        .map(|value| Estimate { value, sigma: 1.0 })
+        .collect();
+    chi_square(&rows, &vec![0.0; rows.len()], fitted)
+}
+
 impl Goodness {
     /// Of a fit of a problem.
     #[must_use]
     pub fn new(problem: &dyn Problem, fit: &Fit) -> Self {
-        Self::beside(0, problem, fit)
+        Self::with_nuisances(0, problem, fit)
     }
 
-    /// Of a fit in whose residuals so many more numbers were at their best, such as
-    /// an offset of each record. As many degrees of freedom are left as data and priors have
-    /// numbers more than the combinations of parameters that they determine.
+    /// Of a fit in whose residuals so many nuisance parameters were at their best. As many degrees
+    /// of freedom are left as data and priors have numbers more than the combinations of parameters
+    /// that they determine.
     #[must_use]
-    pub fn beside(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
+    pub fn with_nuisances(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
         let priors = problem.parameters().iter().zip(&fit.point);
         let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
-        let rows: Vec<Estimate> = (fit.residuals.iter().copied().chain(priors))
-            .map(|value| Estimate { value, sigma: 1.0 })
-            .collect();
-        let fitted = nuisances + fit.rank;
-        let chi_square = chi_square(&rows, &vec![0.0; rows.len()], fitted);
-        let ratio = |found: ChiSquare| (found.value / found.freedom as f64).sqrt();
+        let rows = fit.residuals.iter().copied().chain(priors);
+        let chi_square = chi_square_of(rows, nuisances + fit.rank);
         Self {
-            birge_ratio: chi_square.map(ratio),
+            birge_ratio: chi_square.map(|found| (found.value / found.freedom as f64).sqrt()),
             chi_square,
             // As many numbers as parameters are met, but for rounding: its signs mean nothing.
             runs: chi_square.and_then(|_| runs(&fit.residuals)),
             largest: largest_residual(problem, fit, 0..fit.residuals.len()),
         }
     }
+
+    /// Whether the data reject the model (p < 0.001).
+    #[must_use]
+    pub fn is_rejected(&self) -> bool {
+        self.chi_square
+            .is_some_and(|found| found.probability < LEAST_BY_CHANCE)
+    }
 }
 
-/// The measured number, of those with these residuals, that has the largest distance from what
-/// the model makes of all others.
+/// Difference of squared distances below which either of two numbers that share errors may be the
+/// one that is off: odds of less than seven.
+const EITHER: f64 = 4.0;
+
+/// Share of a number's own information below which no other checks it.
+const UNCHECKED: f64 = 1e-6;
+
+/// The measured number, of those with these residuals, that has the largest distance from what the
+/// model makes of all others.
 ///
-/// Residuals of numbers that share errors are combinations of them. So each number y is left
-/// out in turn: with u = ∂r/∂y and H the projector on what the fitted combinations can
-/// change, uᵀ r/√(uᵀ (1 − H) u) is its distance from what is left, in standard errors
-/// [Baarda1968]. Numbers that others do not check have none.
+/// Residuals of numbers that share errors are combinations of them. So each number y is left out in
+/// turn: with u = ∂r/∂y and H the projector on what the fitted combinations can change,
+/// uᵀ r/√(uᵀ (1 − H) u) is its distance from what is left, in standard errors [Baarda1968]. Numbers
+/// that others do not check have none.
 #[must_use]
 pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> Option<Largest> {
     let responses = problem.responses(&fit.point).ok()?;
@@ -85,71 +108,49 @@ pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> O
         (free > UNCHECKED * whole).then(|| (at, along(&fit.residuals) / free.sqrt()))
     };
     let all: Vec<(usize, f64)> = of.filter_map(distance).collect();
-    let largest = all.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    let (residual, sigmas) = *largest?;
+    let (residual, sigmas) = *all.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     let shares = |other: usize| {
         responses.as_ref().is_some_and(|all| {
             let mut rows = all[residual].iter().map(|(row, _)| row);
             rows.any(|row| all[other].iter().any(|(own, _)| own == row))
         })
     };
-    let as_far = |(other, size): &&(usize, f64)| {
+    let is_as_large = |(other, size): &&(usize, f64)| {
         *other != residual && sigmas.powi(2) - size.powi(2) < EITHER && shares(*other)
     };
-    let others = all.iter().filter(as_far);
+    let others = all.iter().filter(is_as_large);
     let others = others.map(|(other, _)| format!(" or {}", problem.residual_label(*other)));
+    let label = problem.residual_label(residual) + &others.collect::<String>();
     Some(Largest {
         residual,
-        label: problem.residual_label(residual) + &others.collect::<String>(),
+        label,
         sigmas,
     })
 }
 
-/// Difference of squared distances below which either of two numbers that share errors may be
-/// the one that is off: odds of less than seven.
-const EITHER: f64 = 4.0;
-
-/// Share of a number's own information below which no other checks it.
-const UNCHECKED: f64 = 1e-6;
-
-impl Goodness {
-    /// Whether chance can't be why the data are so far from the model.
-    #[must_use]
-    pub fn is_rejected(&self) -> bool {
-        let chi_square = self.chi_square;
-        chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
-    }
-}
-
-/// Probability of a chi-square by chance below which it is not by chance: of a thousand
-/// fits of right models one is called wrong.
-pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
-
-/// Runs of equal sign in a row of residuals: too few mean that the curve's
-/// shape is wrong, though each point may be near it.
+/// Runs of equal sign in a row of residuals: too few mean that the curve's shape is wrong, though
+/// each point may be near it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Runs {
     /// Number of runs.
     pub count: usize,
     /// Number expected of chance.
     pub expected: f64,
-    /// How often chance alone gives as few or fewer.
+    /// Probability of as few or fewer.
     pub probability_fewer: f64,
-    /// How often chance alone gives as many or more.
+    /// Probability of as many or more.
     pub probability_more: f64,
 }
 
-/// Runs test of Wald and Wolfowitz [WaldWolfowitz1940], exact: of all orders of
-/// these signs, which share has as few runs, or as many. Zeros are left out.
-/// `None` if all signs are equal.
+/// Runs test of Wald and Wolfowitz [WaldWolfowitz1940], exact: the share of all orders of these
+/// signs that have as few runs, or as many. Zeros are left out. `None` if all signs are equal.
 ///
-/// Residuals of a fit are not quite independent: with few points to a parameter
-/// the probabilities are rough.
+/// Residuals of a fit are not quite independent: with few points to a parameter the probabilities
+/// are rough.
 #[must_use]
 pub fn runs(residuals: &[f64]) -> Option<Runs> {
-    let signs: Vec<bool> = (residuals.iter().filter(|r| **r != 0.0))
-        .map(|r| *r > 0.0)
-        .collect();
+    let signs = residuals.iter().filter(|r| **r != 0.0).map(|r| *r > 0.0);
+    let signs: Vec<bool> = signs.collect();
     let above = signs.iter().filter(|s| **s).count();
     let below = signs.len() - above;
     if above == 0 || below == 0 {
@@ -170,14 +171,13 @@ pub fn runs(residuals: &[f64]) -> Option<Runs> {
 /// Share of the orders of two kinds of signs that have so many runs.
 fn run_probability(runs: usize, above: usize, below: usize) -> f64 {
     let ways = |a: usize, b: usize| {
-        (ln_binomial(above - 1, a) + ln_binomial(below - 1, b) - ln_binomial(above + below, above))
-            .exp()
+        let (a, b) = (ln_binomial(above - 1, a), ln_binomial(below - 1, b));
+        (a + b - ln_binomial(above + below, above)).exp()
     };
     let half = runs / 2;
-    if runs.is_multiple_of(2) {
-        2.0 * ways(half - 1, half - 1)
-    } else {
-        ways(half, half - 1) + ways(half - 1, half)
+    match runs.is_multiple_of(2) {
+        true => 2.0 * ways(half - 1, half - 1),
+        false => ways(half, half - 1) + ways(half - 1, half),
     }
 }
 

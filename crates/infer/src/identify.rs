@@ -4,45 +4,43 @@ use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{Svd, combine, norm, svd};
 use crate::{Binding, Fit, Jacobian, Parameter};
 
-/// Singular values of the Jacobian of the data, each parameter in units of its
-/// size, and what they mean: its scale, or its value at the best fit where that is
-/// larger, as it is after a start far too low. Priors do not enter: it is the data that are asked.
+/// Singular values of the Jacobian of the data, each parameter in units of its size, which is its
+/// scale, or its value at the best fit where that is larger. Priors do not enter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identifiability {
-    /// Largest first: a combination as long as one size changes all residuals
-    /// together by so many σ.
+    /// Largest first: a combination as long as one size changes all residuals together by so many σ.
     pub singular_values: Vec<f64>,
-    /// Singular values up to here cannot be told from 0 by the derivatives.
+    /// Singular values up to here are zero within the error of the derivatives.
     pub floor: f64,
     /// Unit directions, in units of the sizes, one for each singular value.
     pub directions: Vec<Vec<f64>>,
-    /// Combinations that the data do not determine, worst first.
-    pub confused: Vec<Confusion>,
+    /// Directions that the data do not determine, worst first.
+    pub unidentifiable: Vec<UnidentifiableDirection>,
     /// The parameters' sizes, in whose units the directions are.
     pub sizes: Vec<f64>,
 }
 
-/// A combination of parameters that the data cannot tell from none.
+/// A combination of parameters that hardly changes the data.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Confusion {
-    /// Change of each parameter, in its unit, in proportion to each other: the
-    /// largest is one percent of its value.
+pub struct UnidentifiableDirection {
+    /// Change of each parameter, in its unit: the largest is one percent of its value.
     pub change: Vec<f64>,
     /// Change of each residual of the data thereby, in σ.
     pub effect: Vec<f64>,
-    /// Standard error of the combination, in units of the sizes; infinite if
-    /// the derivatives cannot tell its effect from none at all.
+    /// Standard error of the combination, in units of the sizes; infinite if its effect is zero
+    /// within the error of the derivatives.
     pub standard_error: f64,
     /// All this in a sentence.
     pub words: String,
 }
 
-/// Standard error, in units of sizes, from which a combination counts as
-/// undetermined: its size is then not even known to a factor of about two, and a
-/// linear analysis means nothing any more.
-pub const UNDETERMINED: f64 = 1.0;
+/// Standard error, in units of sizes, from which a combination counts as undetermined: its size is
+/// then not even known to a factor of about two, and a linear analysis means nothing any more.
+const UNDETERMINED: f64 = 1.0;
 /// Parts of a combination below this share of the largest are not named.
 const NAMED: f64 = 0.02;
+/// Component of a unit direction that moves a parameter.
+pub(crate) const MOVED: f64 = 1e-4;
 
 impl Identifiability {
     /// At a fit's optimum. `label` names a residual, as in
@@ -50,25 +48,24 @@ impl Identifiability {
     #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit, label: impl Fn(usize) -> String) -> Self {
         let parameters = &sized(parameters, &fit.point);
-        let scaled = Scaled::of(parameters, &fit.jacobian);
-        let (found, floor) = scaled.taken_apart();
+        let (found, floor) = Scaled::of(parameters, &fit.jacobian).decomposed();
         let pairs = found.values.iter().zip(&found.right).rev();
-        let confused = pairs
-            .filter(|(value, _)| is_weak(**value, floor))
+        let weak = pairs.filter(|(value, _)| is_weak(**value, floor));
+        let unidentifiable = weak
             .map(|(value, direction)| {
                 let error = if *value <= floor {
                     f64::INFINITY
                 } else {
                     value.recip()
                 };
-                confusion(parameters, fit, (direction, error), &label)
+                unidentifiable(parameters, fit, (direction, error), &label)
             })
             .collect();
         Self {
             singular_values: found.values,
             floor,
             directions: found.right,
-            confused,
+            unidentifiable,
             sizes: parameters.iter().map(|p| p.scale).collect(),
         }
     }
@@ -76,12 +73,11 @@ impl Identifiability {
     /// How many combinations the data determine.
     #[must_use]
     pub fn determined(&self) -> usize {
-        self.singular_values.len() - self.confused.len()
+        self.singular_values.len() - self.unidentifiable.len()
     }
 
-    /// Whether a parameter's value means nothing: a combination that the data leave
-    /// open moves it, and within a standard error (what priors tell counted in) it
-    /// may be off by its whole size.
+    /// Whether a parameter is not identifiable: an unidentifiable direction moves it, and its
+    /// standard error (priors counted in) is as large as its size.
     #[must_use]
     pub fn leaves_open(&self, parameter: usize, sd: f64) -> bool {
         let weak = self.singular_values.iter().zip(&self.directions);
@@ -118,14 +114,11 @@ pub(crate) fn directions(
         scaled.columns[held.parameter].fill(0.0);
         scaled.errors[held.parameter] = 0.0;
     }
-    let (found, floor) = scaled.taken_apart();
+    let (found, floor) = scaled.decomposed();
     let known = found.values.iter().zip(found.left);
     let known = known.filter(|(value, _)| !is_weak(**value, floor));
     known.map(|(_, left)| left).collect()
 }
-
-/// Component of a unit direction that moves a parameter.
-pub(crate) const MOVED: f64 = 1e-4;
 
 /// Whether a singular value leaves its combination open.
 pub(crate) fn is_weak(value: f64, floor: f64) -> bool {
@@ -154,11 +147,11 @@ pub(crate) struct Determined {
 
 impl Scaled {
     pub(crate) fn of(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
-        Self::doubting(parameters, jacobian, EXTRAPOLATED)
+        Self::with_doubt(parameters, jacobian, EXTRAPOLATED)
     }
 
     /// The same, columns wrong by so large a share of the disagreement of both step sizes.
-    pub(crate) fn doubting(parameters: &[Parameter], jacobian: &Jacobian, share: f64) -> Self {
+    pub(crate) fn with_doubt(parameters: &[Parameter], jacobian: &Jacobian, share: f64) -> Self {
         let column = |(column, of): (&Vec<f64>, &Parameter)| -> Vec<f64> {
             let data = column.iter().take(jacobian.data_rows);
             data.map(|x| x * of.scale).collect()
@@ -206,12 +199,12 @@ impl Scaled {
     }
 
     /// Singular values, and up to where they cannot be told from 0.
-    pub(crate) fn taken_apart(&self) -> (Svd, f64) {
+    pub(crate) fn decomposed(&self) -> (Svd, f64) {
         (svd(&self.columns), norm(&self.errors))
     }
 
     pub(crate) fn determined(&self) -> Determined {
-        let (found, floor) = self.taken_apart();
+        let (found, floor) = self.decomposed();
         let known = |value: f64| match value <= floor {
             true => f64::INFINITY,
             false => value.recip(),
@@ -233,22 +226,33 @@ impl Scaled {
     }
 }
 
-fn confusion(
+fn unidentifiable(
     parameters: &[Parameter],
     fit: &Fit,
     (direction, standard_error): (&[f64], f64),
     label: &impl Fn(usize) -> String,
-) -> Confusion {
-    let in_units = direction.iter().zip(parameters).map(|(d, p)| d * p.scale);
-    let in_units: Vec<f64> = in_units.collect();
-    let change = of_one_percent(parameters, fit, &in_units);
+) -> UnidentifiableDirection {
+    let change = of_one_percent(parameters, fit, direction);
     let mut effect = combine(&fit.jacobian.columns, &change);
     effect.truncate(fit.jacobian.data_rows);
-    Confusion {
-        words: words(parameters, fit, &change, (&effect, standard_error), label),
+    let numbered = effect.iter().map(|x| x.abs()).enumerate();
+    let (row, most) = numbered
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or((0, 0.0));
+    let known = match standard_error.is_finite() {
+        true => format!("so it is known to {:.0} % only", 100.0 * standard_error),
+        false => "zero within the error of the derivatives".to_owned(),
+    };
+    let words = format!(
+        "{} changes no measured number by more than {most:.1e} of its standard deviation ({}), {known}",
+        changes(parameters, fit, &change),
+        label(row)
+    );
+    UnidentifiableDirection {
         change,
         effect,
         standard_error,
+        words,
     }
 }
 
@@ -260,21 +264,20 @@ fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
     }
 }
 
-/// A direction, in units of sizes, as changes of parameters: the largest is one percent of
-/// its value.
+/// A direction, in units of sizes, as changes of parameters in words.
 pub(crate) fn in_words(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> String {
-    let in_units: Vec<f64> = direction
+    changes(sized, fit, &of_one_percent(sized, fit, direction))
+}
+
+/// A direction, in units of sizes, as changes of parameters in their units: the largest is one
+/// percent upward of its value.
+fn of_one_percent(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> Vec<f64> {
+    let change: Vec<f64> = direction
         .iter()
         .zip(sized)
         .map(|(d, p)| d * p.scale)
         .collect();
-    changes(sized, fit, &of_one_percent(sized, fit, &in_units))
-}
-
-/// The same change of parameters in their units, so large that the largest is one percent
-/// upward of its value.
-fn of_one_percent(parameters: &[Parameter], fit: &Fit, change: &[f64]) -> Vec<f64> {
-    let share = |k: usize| change[k] / whole(parameters, fit, k);
+    let share = |k: usize| change[k] / whole(sized, fit, k);
     let largest = (0..change.len()).max_by(|i, j| share(*i).abs().total_cmp(&share(*j).abs()));
     let size = largest.map_or(0.0, |k| 0.01 / share(k));
     change.iter().map(|x| x * size).collect()
@@ -291,27 +294,4 @@ fn changes(parameters: &[Parameter], fit: &Fit, change: &[f64]) -> String {
         format!("{} {way} {:.2} %", parameters[*k].name, percent(*k).abs())
     };
     order.iter().map(part).collect::<Vec<_>>().join(" with ")
-}
-
-fn words(
-    parameters: &[Parameter],
-    fit: &Fit,
-    change: &[f64],
-    (effect, standard_error): (&[f64], f64),
-    label: &impl Fn(usize) -> String,
-) -> String {
-    let numbered = effect.iter().copied().enumerate();
-    let most = numbered.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    let (row, most) = most.unwrap_or((0, 0.0));
-    let known = if standard_error.is_finite() {
-        format!("so it is known to {:.0} % only", 100.0 * standard_error)
-    } else {
-        "as far as the derivatives tell, nothing at all".to_owned()
-    };
-    format!(
-        "{} changes no measured number by more than {:.1e} of its standard deviation ({}), {known}",
-        changes(parameters, fit, change),
-        most.abs(),
-        label(row)
-    )
 }

@@ -114,7 +114,7 @@ impl CurveProblem {
     /// are judged by the derivatives that they would add at a fit's optimum. Those
     /// whose curves cannot be computed are left out.
     #[must_use]
-    pub fn would_separate(&self, fit: &Fit) -> Advice {
+    pub fn suggested_measurements(&self, fit: &Fit) -> Advice {
         let sized = sized(self.parameters(), &fit.point);
         let own = Scaled::of(&sized, &fit.jacobian);
         let prospect = |name: &str, found: Determined| Prospect {
@@ -255,7 +255,7 @@ impl CurveProblem {
         let parameters: Vec<Parameter> = sized.map(flat).collect();
         let problem = Self::part(model.for_slopes(), data).with_parameters(parameters);
         let jacobian = jacobian_at(&problem, fit)?;
-        Ok(Scaled::doubting(problem.parameters(), &jacobian, JUMPING))
+        Ok(Scaled::with_doubt(problem.parameters(), &jacobian, JUMPING))
     }
 
     fn instead(&self) -> String {

@@ -6,9 +6,9 @@ use crate::data::{Data, DataRow, Freedom, Observable};
 use crate::free::Form;
 use crate::least_squares::{JUMPING, jacobian_at};
 use crate::linear::norm;
-use crate::{Candidate, Fit, ModelError};
+use crate::{Candidate, Fit, InferError, ModelError};
+use hertzchain_experiment::Experiment;
 use hertzchain_experiment::reading::PreloadReading;
-use hertzchain_experiment::{Experiment, Mistakes, PathError};
 use hertzchain_measure::signal::Estimate;
 
 /// What a way to measure asks of the rig, beyond another speed.
@@ -115,37 +115,6 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Why a way to measure is no candidate.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WayError {
-    /// A chain that can't be.
-    #[error(transparent)]
-    Chain(#[from] PathError),
-    /// A chain that can't be in this reading.
-    #[error(transparent)]
-    Reading(#[from] Mistakes),
-    /// A bead that can't hold the sensor.
-    #[error("a sensor in bead {bead}: expected one from 1 to {}, before the last of the chain", .beads - 1)]
-    Sensor {
-        /// The bead.
-        bead: usize,
-        /// Beads of the chain.
-        beads: usize,
-    },
-    /// Numbers of one speed say nothing of another.
-    #[error("{0} has one value for each speed of the data: that tells nothing of other speeds")]
-    EachSpeed(String),
-    /// The model at the fit.
-    #[error("{name}: {error}")]
-    Model {
-        /// The way.
-        name: String,
-        /// What is in the way of a shot.
-        error: ModelError,
-    },
-}
-
 /// What could be done otherwise, beside shooting at other speeds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choices {
@@ -186,7 +155,7 @@ impl Choices {
 ///
 /// # Errors
 /// A chain that does not bear it, or a bead that there is not.
-pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, WayError> {
+pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, InferError> {
     use Observable::{Incident, Reflected, ReturningOverPassing};
     let way = |kind: Kind, name: &str, experiment: &Experiment, observables: &[Observable]| Way {
         kind,
@@ -209,7 +178,10 @@ pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, WayE
     let (now, beads) = (experiment.sensor_bead(), experiment.beads());
     for bead in choices.sensor_beads(beads) {
         if choices.sensor_beads.is_some() && !(1..beads).contains(&bead) {
-            return Err(WayError::Sensor { bead, beads });
+            return Err(InferError::Input(format!(
+                "a sensor in bead {bead}: expected one from 1 to {}, before the last of the chain",
+                beads - 1
+            )));
         }
         if bead != now && (1..beads).contains(&bead) {
             let moved = experiment.set(&[("sensors.bead", bead as f64)])?;
@@ -238,21 +210,24 @@ impl CurveProblem {
     /// optimum by central differences, all speeds of a way in one ensemble.
     ///
     /// # Errors
-    /// See [`WayError`].
+    /// See [`InferError`].
     pub fn candidates(
         &self,
         fit: &Fit,
         ways: &[Way],
         speeds_m_s: &[f64],
         errors: &ExpectedErrors,
-    ) -> Result<Vec<Candidate>, WayError> {
+    ) -> Result<Vec<Candidate>, InferError> {
         let numbers = self.model().numbers();
         let each = numbers
             .as_slice()
             .iter()
             .find(|n| n.form() == Form::EachSpeed);
         if let Some(number) = each {
-            return Err(WayError::EachSpeed(number.name().to_owned()));
+            return Err(InferError::Input(format!(
+                "{} has one value for each speed of the data, which says nothing of other speeds",
+                number.name()
+            )));
         }
         // Where the push is free, the fit's own stands in the place of any other.
         let is_free = |way: &&Way| way.kind != Kind::Preload || !numbers.is_free(PUSH);
@@ -261,10 +236,7 @@ impl CurveProblem {
             let model = Model::new(&way.experiment, numbers.clone())?;
             let model = model.with_accuracy(self.model().accuracy);
             let found = of_way(model, fit, way, speeds_m_s, errors);
-            all.extend(found.map_err(|error| WayError::Model {
-                name: way.name.clone(),
-                error,
-            })?);
+            all.extend(found.map_err(|error| InferError::from(error).about(&way.name))?);
         }
         Ok(all)
     }

@@ -15,9 +15,9 @@ mod whiten;
 
 pub use advice::{Advice, Prospect};
 pub use band::FittedCurve;
-pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, WayError, ways};
+pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways};
 pub use joint::{Joint, Part, Supply};
 pub(crate) use model::Shooting;
 pub use model::{Model, Predicted, Speeds};
-pub use problem::{CurveError, CurveProblem};
-pub use surrogate::{Surrogate, SurrogateError};
+pub use problem::CurveProblem;
+pub use surrogate::Surrogate;

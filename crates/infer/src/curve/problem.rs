@@ -6,7 +6,7 @@ use super::stencil::Stencil;
 use super::whiten::{Errors, whiten};
 use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Problem, Residuals, Response};
-use crate::{Parameter, ParameterError};
+use crate::{InferError, Parameter};
 use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Relative distance of the speeds around each row's, where there are too
@@ -28,56 +28,29 @@ pub struct CurveProblem {
     labels: Vec<String>,
 }
 
-/// Why data can't be fitted with a model.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CurveError {
-    /// Fewer numbers than unknowns.
-    #[error(
-        "{file} has {values} measured values for {parameters} free parameters ({names}): {advice}"
-    )]
-    TooFew {
-        /// Where the data come from.
-        file: String,
-        /// Measured values.
-        values: usize,
-        /// Free parameters.
-        parameters: usize,
-        /// Their names.
-        names: String,
-        /// What to free or to add instead.
-        advice: String,
-    },
-    /// No parameter.
-    #[error("no parameter is free: name some, such as eta,B")]
-    NothingFree,
-    /// A parameter that is not sound.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-}
-
 impl CurveProblem {
     /// A model against data. `parameters` are the model's own, perhaps with other
     /// starts, bounds and priors.
     ///
     /// # Errors
-    /// See [`CurveError`].
-    pub fn new(model: Model, data: Data, parameters: Vec<Parameter>) -> Result<Self, CurveError> {
+    /// No parameter, one that cannot be free, or fewer numbers than unknowns.
+    pub fn new(model: Model, data: Data, parameters: Vec<Parameter>) -> Result<Self, InferError> {
         if parameters.is_empty() {
-            return Err(CurveError::NothingFree);
+            return InferError::input("no parameter is free: name some, such as eta,B");
         }
         parameters.iter().try_for_each(Parameter::check)?;
         let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
         if data.value_count() < parameters.len() {
-            return Err(CurveError::TooFew {
-                values: data.value_count(),
-                file: data.file,
-                parameters: parameters.len(),
-                names: names.join(", "),
-                advice: three_for_two(&model).unwrap_or_else(|| {
-                    "free fewer, or add speeds or reflected times of flight".to_owned()
-                }),
+            let advice = three_for_two(&model).unwrap_or_else(|| {
+                "free fewer, or add speeds or reflected times of flight".to_owned()
             });
+            return InferError::input(format!(
+                "{} has {} measured values for {} free parameters ({}): {advice}",
+                data.file,
+                data.value_count(),
+                parameters.len(),
+                names.join(", ")
+            ));
         }
         Ok(Self::unchecked(model, data, parameters))
     }
@@ -142,8 +115,8 @@ impl CurveProblem {
     /// those of a simulated repetition.
     ///
     /// # Errors
-    /// See [`CurveError`].
-    pub fn with_data(&self, data: Data) -> Result<Self, CurveError> {
+    /// No parameter, one that cannot be free, or fewer numbers than unknowns.
+    pub fn with_data(&self, data: Data) -> Result<Self, InferError> {
         Self::new(self.model.clone(), data, self.parameters.clone())
     }
 
@@ -276,7 +249,7 @@ impl CurveProblem {
             };
             misses.push(value.value - predicted);
             let moved = slope * predicted * relative;
-            errors.push(value.sigma, measured.freedom(of), moved);
+            errors.push(value.sigma, measured.freedom.values[of.index()], moved);
         }
         Ok((misses, errors.widened()))
     }

@@ -9,8 +9,8 @@
 mod name;
 mod start;
 
-use crate::Parameter;
-use hertzchain_experiment::{Experiment, PathError, Reference};
+use crate::{InferError, Parameter};
+use hertzchain_experiment::{Experiment, Reference};
 pub use name::SHORT_NAMES;
 use name::Target;
 use std::collections::HashSet;
@@ -25,76 +25,6 @@ pub enum Form {
     PowerLaw,
     /// As the data tell: one parameter a speed.
     EachSpeed,
-}
-
-/// Why a number can't be free.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FreeError {
-    /// The path leads nowhere, or to several numbers.
-    #[error("{name}: {error}")]
-    Path {
-        /// As asked.
-        name: String,
-        /// Why.
-        error: PathError,
-    },
-    /// A short name that several numbers have.
-    #[error("{name} can be any of: {}", .candidates.join(", "))]
-    Ambiguous {
-        /// As asked.
-        name: String,
-        /// Names that are clear.
-        candidates: Vec<String>,
-    },
-    /// A short name that no number of this experiment has.
-    #[error("{name}: this experiment has no {what}")]
-    Missing {
-        /// As asked.
-        name: String,
-        /// What the name stands for.
-        what: String,
-    },
-    /// After the colon stands something else.
-    #[error("{name}: `{form}` is no way to depend on speed; expected `power` or `each`")]
-    Form {
-        /// As asked.
-        name: String,
-        /// What stands there.
-        form: String,
-    },
-    /// A number that has to be whole.
-    #[error("{name} counts something and can't vary continuously")]
-    Count {
-        /// As asked.
-        name: String,
-    },
-    /// Friction: no time of flight depends on it.
-    #[error(
-        "{name} can't be fitted: the wave knows no friction, which acts between shots alone and decides how beads come \
-         to lie. No data that a fit takes can tell it; what it leaves behind are loads (preload, near_end.force, or \
-         --own of `gauge`)"
-    )]
-    Friction {
-        /// As asked.
-        name: String,
-    },
-    /// One number, twice free.
-    #[error("{name} and {other} are the same number")]
-    Twice {
-        /// As asked.
-        name: String,
-        /// As asked before.
-        other: String,
-    },
-    /// Nothing tells where a fit should start.
-    #[error(
-        "{name} is not given in the experiment and has no usual value; give one by --start {name}=VALUE"
-    )]
-    NoStart {
-        /// As asked.
-        name: String,
-    },
 }
 
 /// A number of an experiment that a fit may change.
@@ -116,24 +46,27 @@ impl FreeNumber {
     /// `start` is where a fit begins if the experiment gives no value.
     ///
     /// # Errors
-    /// See [`FreeError`].
+    /// No such number, several of this name, one that cannot vary, or none to start from.
     pub fn find(
         experiment: &Experiment,
         asked: &str,
         start: Option<f64>,
-    ) -> Result<Self, FreeError> {
+    ) -> Result<Self, InferError> {
         let (name, form) = match asked.trim().split_once(':') {
             None => (asked.trim(), Form::Constant),
             Some((name, "power")) => (name, Form::PowerLaw),
             Some((name, "each")) => (name, Form::EachSpeed),
             Some((name, form)) => {
-                let (name, form) = (name.to_owned(), form.to_owned());
-                return Err(FreeError::Form { name, form });
+                return InferError::input(format!(
+                    "{name}: `{form}` is no way to depend on speed; expected `power` or `each`"
+                ));
             }
         };
         let found = name::find(experiment, name)?;
-        let no_start = || FreeError::NoStart {
-            name: name.to_owned(),
+        let no_start = || {
+            InferError::Input(format!(
+                "{name} is not given in the experiment and has no usual value; give one by --start {name}=VALUE"
+            ))
         };
         let start = start::of(experiment, &found, start).ok_or_else(no_start)?;
         // A law of speed in the file stays one, unless each speed is asked for.
@@ -182,8 +115,8 @@ impl FreeNumber {
                 vec![one(&format!("{}.prefactor", self.name), value), exponent]
             }
             Form::EachSpeed => {
-                let at = |(speed, told): (&f64, String)| {
-                    let name = format!("{}@{told}", self.name);
+                let at = |(speed, digits): (&f64, String)| {
+                    let name = format!("{}@{digits}", self.name);
                     one(&name, value * speed.powf(exponent))
                 };
                 speeds_m_s.iter().zip(apart(speeds_m_s)).map(at).collect()
@@ -279,14 +212,12 @@ impl FreeNumbers {
     ///
     /// # Errors
     /// A number that is free twice.
-    pub fn new(numbers: Vec<FreeNumber>) -> Result<Self, FreeError> {
+    pub fn new(numbers: Vec<FreeNumber>) -> Result<Self, InferError> {
         for (at, number) in numbers.iter().enumerate() {
             let same = |other: &&FreeNumber| other.target == number.target;
             if let Some(other) = numbers[..at].iter().find(same) {
-                return Err(FreeError::Twice {
-                    name: number.name.clone(),
-                    other: other.name.clone(),
-                });
+                let (name, other) = (&number.name, &other.name);
+                return InferError::input(format!("{name} and {other} are the same number"));
             }
         }
         Ok(Self(numbers))

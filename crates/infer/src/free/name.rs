@@ -1,6 +1,7 @@
 //! From a name to a place in the experiment.
 
-use super::{FreeError, Settings};
+use super::Settings;
+use crate::InferError;
 use hertzchain_experiment::{Experiment, Place};
 
 /// Short names: what each stands for, and the end of its path.
@@ -91,7 +92,7 @@ pub(super) struct Found {
 }
 
 /// The number of a short name, a path or an end of one.
-pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeError> {
+pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, InferError> {
     if name == WALL_GAIN {
         return Ok(Found {
             target: Target::WallGain,
@@ -115,10 +116,9 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeErr
     match short {
         Some((short, what, end)) => of_short(experiment, name, owner, (short, what, end)),
         None => {
-            let place = experiment.place(name).map_err(|error| FreeError::Path {
-                name: name.to_owned(),
-                error,
-            })?;
+            let place = experiment
+                .place(name)
+                .map_err(|error| InferError::from(error).about(name))?;
             of_place(name, place)
         }
     }
@@ -127,15 +127,18 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, FreeErr
 /// Friction between beads and track.
 const FRICTION: &str = "track.friction";
 
-fn of_place(name: &str, place: Place) -> Result<Found, FreeError> {
+fn of_place(name: &str, place: Place) -> Result<Found, InferError> {
     if place.path == FRICTION {
-        let name = name.to_owned();
-        return Err(FreeError::Friction { name });
+        return InferError::input(format!(
+            "{name} can't be fitted: the wave knows no friction, which acts between shots alone and decides how beads come \
+             to lie. No data that a fit takes can tell it; what it leaves behind are loads (preload, near_end.force, or \
+             --own of `gauge`)"
+        ));
     }
     match place.is_count {
-        true => Err(FreeError::Count {
-            name: name.to_owned(),
-        }),
+        true => InferError::input(format!(
+            "{name} counts something and can't vary continuously"
+        )),
         false => Ok(Found {
             given: place.value.map(|value| (value, 0.0)),
             unit: plain(place.unit),
@@ -155,7 +158,7 @@ fn of_short(
     name: &str,
     owner: Option<&str>,
     (short, what, end): (&str, &str, &str),
-) -> Result<Found, FreeError> {
+) -> Result<Found, InferError> {
     let places = experiment.places();
     let ends = [format!(".{end}"), format!(".{end}.prefactor")];
     let own = |place: &&Place| {
@@ -182,12 +185,11 @@ fn of_short(
     let place = match (&given[..], &fitting[..]) {
         ([only], _) | ([], [only]) => *only,
         ([], []) => {
-            let (name, what) = (name.to_owned(), what.to_owned());
-            return Err(FreeError::Missing { name, what });
+            return InferError::input(format!("{name}: this experiment has no {what}"));
         }
         ([], several) | (several, _) => {
             let clear = |place: &&Place| clear_name(&place.path, short);
-            return Err(FreeError::Ambiguous {
+            return Err(InferError::Ambiguous {
                 name: name.to_owned(),
                 candidates: several.iter().map(clear).collect(),
             });

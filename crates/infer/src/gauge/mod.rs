@@ -1,74 +1,26 @@
-//! The oil gauge: what a liquid makes of the contacts, and which liquid it is.
+//! The oil gauge: K and A of wet contacts at each speed, and which of the known oils gives them.
 //!
-//! The dry curve tells the dry contacts, those in front of the sensor bead among
-//! them; with these known, the wet curve tells the stiffness K and the relaxation
-//! time A of the wet ones, speed by speed.
+//! The dry curve determines the dry contacts, those in front of the sensor bead among them; with
+//! these known, the wet curve determines the stiffness K and the relaxation time A of the wet ones,
+//! speed by speed.
 
-mod contacts;
-mod dry;
-mod form;
-mod laws;
-mod neighbours;
 mod oils;
+mod rows;
 mod scan;
-mod solutions;
-mod told;
-mod verdict;
 
-pub use contacts::{Branch, Combination, Contact, Pair, WetRow, is_told};
-pub use form::{AtSpeed, LAWS, PowerForm};
-pub use laws::{GaugeLaws, SharedLaw};
-pub use oils::{Description, Law, Oil, OilError, known_oils, oils};
+pub use oils::{Description, Law, Oil, known_oils, oils};
+pub use rows::{Branch, Combination, Contact, Pair, WetRow, is_determined};
 pub use scan::Scan;
-use verdict::LEAST_PROBABILITY;
-pub use verdict::{Match, NEVER, OwnNumber, Verdict};
 
-use crate::curve::{CurveError, CurveProblem, Model};
+use crate::curve::{CurveProblem, Joint, Model, Part, Supply};
 use crate::data::{Data, Observable};
-use crate::free::{FreeError, FreeNumber, FreeNumbers};
-use crate::{Covariance, Fit, FitError, Fitting, Goodness, ModelError, Parameter, Problem, fit};
-use hertzchain_experiment::{Experiment, Mistakes};
-
-/// Why a liquid can't be gauged.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum GaugeError {
-    /// A number that can't be free.
-    #[error(transparent)]
-    Free(#[from] FreeError),
-    /// A model that is none.
-    #[error(transparent)]
-    Model(#[from] Mistakes),
-    /// Data that do not suit the model.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// The dry curve can't be fitted.
-    #[error("the dry curve: {0}")]
-    Dry(FitError),
-    /// The wet curve can't be computed at all.
-    #[error("the wet curve: {0}")]
-    Wet(FitError),
-    /// Fewer numbers than both laws have.
-    #[error(
-        "the wet curve has {values} measured values for {asked} numbers of both power laws (and the chain's own): \
-         add speeds or reflected times of flight"
-    )]
-    FewForLaws {
-        /// Measured values.
-        values: usize,
-        /// Free numbers.
-        asked: usize,
-    },
-    /// The wet model has no wet contacts.
-    #[error(
-        "{0} has no wet contacts: expected a section of [[contacts]] with `wet = true` in the \
-         model of the wet chain"
-    )]
-    NoWetContacts(String),
-    /// The model at the best fit.
-    #[error(transparent)]
-    At(#[from] ModelError),
-}
+use crate::free::{FreeNumber, FreeNumbers};
+use crate::goodness::chi_square_of;
+use crate::{
+    Covariance, Fit, Fitting, Goodness, InferError, Parameter, Problem, fit, largest_residual,
+};
+use hertzchain_experiment::Experiment;
+use hertzchain_measure::signal::{ChiSquare, FitError, PowerLaw, power_law};
 
 /// The models of both chains and what is free in the dry contacts of both.
 pub struct Chains<'a> {
@@ -78,9 +30,8 @@ pub struct Chains<'a> {
     pub wet: &'a Experiment,
     /// Free numbers of the dry contacts, by names that both experiments know.
     pub free: &'a [String],
-    /// Numbers that each chain has for itself, known to both experiments by the
-    /// same names: the load of a tapped row, which friction holds and no model
-    /// foretells.
+    /// Nuisance parameters that each chain has for itself, known to both experiments by the same
+    /// names: the load of a tapped row, which friction holds and no model predicts.
     pub own: &'a [String],
     /// Relative accuracy of times of flight.
     pub accuracy: f64,
@@ -96,25 +47,15 @@ pub struct Gauge {
     wet: Model,
     /// K and A of the dry contacts as the models have them.
     dry_contact: [f64; 2],
-    /// How many numbers each chain has for itself: the last of the dry model's,
-    /// and of the wet model's those before K and A.
+    /// Number of nuisance parameters of each chain: the last of the dry model's numbers, and those
+    /// before K and A of the wet model's.
     own: usize,
     data: Data,
-    /// Reduced radius of wet contacts in m.
     radius_m: f64,
 }
 
 /// The load that friction holds in a tapped row.
 const PUSH: &str = "near_end.force";
-
-/// Of a dry curve that its model does not give.
-const NOT_THE_DRY_CHAIN: &str = "The dry curve does not follow its model, so the wet one is judged by a \
-     chain that is not the measured one. Look whether --dry names the curve of the dry chain, and not a \
-     wet one's, and whether the models are of this rig.";
-
-/// Of a row that was tapped.
-const HELD_LOADS: &str = "A row that was tapped or shot before holds loads that are not its file's, since \
-     friction froze them, and its split returns depend on each of them.";
 
 /// Numbers of a wet contact, the last of the wet model's: K and A.
 const CONTACT: usize = 2;
@@ -123,30 +64,45 @@ impl Gauge {
     /// Fits the dry curve.
     ///
     /// # Errors
-    /// See [`GaugeError`].
-    pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, GaugeError> {
-        let numbers = |experiment: &Experiment, more: &[&str]| {
+    /// A number that can't be free, a wet model without wet contacts, or what is in the way of the
+    /// dry fit.
+    pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, InferError> {
+        let model = |experiment: &Experiment, more: &[&str]| -> Result<Model, InferError> {
             let names = chains.free.iter().chain(chains.own).map(String::as_str);
-            let found = names
-                .chain(more.iter().copied())
-                .map(|name| FreeNumber::find(experiment, name, None));
-            FreeNumbers::new(found.collect::<Result<_, _>>()?)
+            let numbers = names.chain(more.iter().copied());
+            let numbers = numbers.map(|name| FreeNumber::find(experiment, name, None));
+            let numbers = FreeNumbers::new(numbers.collect::<Result<_, _>>()?)?;
+            Ok(Model::new(experiment, numbers)?.with_accuracy(chains.accuracy))
         };
-        let radius_m = dry::wet_radius_m(chains.wet)
-            .ok_or_else(|| GaugeError::NoWetContacts(chains.wet.name().to_owned()))?;
-        let model = Model::new(chains.dry, numbers(chains.dry, &[])?)?;
-        let dry = dry::problem(model.with_accuracy(chains.accuracy), dry)?;
-        let dry_fit = fit(&dry, &Fitting::default()).map_err(GaugeError::Dry)?;
-        let parameters = Problem::parameters(&dry);
-        let dry_covariance = Covariance::new(parameters, &dry_fit);
-        let wet_model = Model::new(chains.wet, numbers(chains.wet, &["wet.K", "wet.A"])?)?;
+        let Some(radius_m) = wet_radius_m(chains.wet) else {
+            return InferError::input(format!(
+                "{} has no wet contacts: expected a section of [[contacts]] with `wet = true` in the \
+                 model of the wet chain",
+                chains.wet.name()
+            ));
+        };
+        let dry_model = model(chains.dry, &[])?;
+        let parameters = dry_model.numbers().parameters(&dry.speeds_m_s());
+        let dry = CurveProblem::new(dry_model, dry, parameters)?;
+        let dry_fit =
+            fit(&dry, &Fitting::default()).map_err(|error| error.about("the dry curve"))?;
+        // Where the dry model has no one K or A, that of the wet contacts.
+        let value = |name: &str| -> Result<f64, InferError> {
+            let dry = FreeNumber::find(chains.dry, &format!("dry.{name}"), None);
+            let wet = |_| FreeNumber::find(chains.wet, &format!("wet.{name}"), None);
+            Ok(dry
+                .or_else(wet)?
+                .parameters(&[])
+                .first()
+                .map_or(f64::NAN, |p| p.start))
+        };
         Ok(Self {
             own: chains.own.len(),
-            dry_contact: dry::contact(chains)?,
-            dry_covariance,
+            dry_contact: [value("K")?, value("A")?],
+            dry_covariance: Covariance::new(dry.parameters(), &dry_fit),
             dry_fit,
             dry,
-            wet: wet_model.with_accuracy(chains.accuracy),
+            wet: model(chains.wet, &["wet.K", "wet.A"])?,
             data: wet,
             radius_m,
         })
@@ -162,66 +118,6 @@ impl Gauge {
     #[must_use]
     pub fn dry_goodness(&self) -> Goodness {
         Goodness::new(&self.dry, &self.dry_fit)
-    }
-
-    /// What speaks against believing the verdict, and what to do: a dry curve that is
-    /// not its model's, or a pushed row of nothing known whose load is taken from the
-    /// file, or judged by its returns too.
-    #[must_use]
-    pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
-        let dry = self.dry_goodness().chi_square;
-        let dry_misses = dry.is_some_and(|found| found.probability < LEAST_PROBABILITY);
-        let unknown = verdict.allowed().next().is_none();
-        let of_dry = dry_misses.then(|| NOT_THE_DRY_CHAIN.to_owned());
-        let of_loads = self.loads_doubted(dry_misses, unknown);
-        let doubts: Vec<String> = of_dry.into_iter().chain(of_loads).collect();
-        (!doubts.is_empty()).then(|| doubts.join(" "))
-    }
-
-    /// That loads may be others than the models', and what to do of what is not done yet.
-    fn loads_doubted(&self, dry_misses: bool, unknown: bool) -> Option<String> {
-        let pushed = self.wet.experiment().get(PUSH).is_ok();
-        let returns = self.data.has(Observable::Reflected);
-        let all = format!("--own {PUSH} --use incident");
-        let remedy = match (pushed, self.own) {
-            (false, _) if dry_misses => format!(
-                "If this one was, take a model with a push (such as --preset paper --dry-preset paper) \
-                 and let each chain have its own load ({all})."
-            ),
-            (true, 0) if unknown || dry_misses => format!(
-                "Let each chain have its own load, with incident times alone ({all}), or lay it with \
-                 less friction."
-            ),
-            (true, _) if returns && (unknown || dry_misses) => {
-                "One load for each chain, as here, does for incident times alone: leave the reflected \
-                 ones out (--use incident), or lay it with less friction."
-                    .to_owned()
-            }
-            _ => return None,
-        };
-        Some(format!("{HELD_LOADS} {remedy}"))
-    }
-
-    /// How many of the dry fit's parameters hold for both chains: the first.
-    fn common(&self) -> usize {
-        let numbers = self.dry.model().numbers().as_slice();
-        let common = numbers.iter().take(numbers.len() - self.own);
-        let speeds = self.dry.data().rows.len();
-        common.map(|number| number.parameter_count(speeds)).sum()
-    }
-
-    /// The wet chain's own numbers over these speeds in m/s, as its model has them.
-    #[must_use]
-    pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
-        let numbers = self.wet.numbers().as_slice();
-        let end = numbers.len() - CONTACT;
-        let own = numbers[end - self.own..end].iter();
-        let own = own.flat_map(|number| number.parameters(speeds_m_s));
-        own.map(|parameter| Parameter {
-            name: format!("{} (wet)", parameter.name),
-            ..parameter
-        })
-        .collect()
     }
 
     /// Reduced radius of the wet contacts in m.
@@ -241,4 +137,340 @@ impl Gauge {
     pub fn wet(&self) -> &Data {
         &self.data
     }
+
+    /// The wet chain's nuisance parameters over these speeds in m/s, as its model has them.
+    #[must_use]
+    pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
+        let numbers = self.wet.numbers().as_slice();
+        let end = numbers.len() - CONTACT;
+        let own = numbers[end - self.own..end].iter();
+        let own = own.flat_map(|number| number.parameters(speeds_m_s));
+        own.map(|p| Parameter {
+            name: format!("{} (wet)", p.name),
+            ..p
+        })
+        .collect()
+    }
+
+    /// How many of the dry fit's parameters hold for both chains: the first.
+    fn common(&self) -> usize {
+        let numbers = self.dry.model().numbers().as_slice();
+        let common = numbers.iter().take(numbers.len() - self.own);
+        let speeds = self.dry.data().rows.len();
+        common.map(|number| number.parameter_count(speeds)).sum()
+    }
+
+    /// What to add to data that do not separate K from A.
+    #[must_use]
+    pub fn to_add(&self) -> Option<&'static str> {
+        let has_both = self
+            .data
+            .rows
+            .iter()
+            .any(|row| row.observables().count() > 1);
+        (!has_both && !self.data.has(Observable::Reflected)).then_some(
+            "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
+             the returning to the passing peak (--use incident,returning-ratio)",
+        )
+    }
+
+    /// Warnings on the verdict: a dry curve that its model does not describe, or a pushed row of no
+    /// known oil whose load is taken from the file, or compared by its reflected times too.
+    #[must_use]
+    pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
+        let chi_square = self.dry_goodness().chi_square;
+        let rejected = chi_square.filter(|found| found.probability < LEAST_PROBABILITY);
+        let is_unknown = verdict.allowed().next().is_none();
+        let mut doubts: Vec<String> = Vec::new();
+        doubts.extend(rejected.map(|found| {
+            format!(
+                "The dry curve does not follow its model (p = {:.1e}): check that --dry names the curve of the dry chain \
+                 and that the models are of this rig.",
+                found.probability
+            )
+        }));
+        let is_pushed = self.wet.experiment().get(PUSH).is_ok();
+        let has_reflected = self.data.has(Observable::Reflected);
+        let remedy = match (is_pushed, self.own) {
+            (false, _) if rejected.is_some() => Some(
+                "If this row was, take a model with a push (such as --preset paper --dry-preset paper) \
+                 and a load for each chain (--own near_end.force --use incident).",
+            ),
+            (true, 0) if is_unknown || rejected.is_some() => Some(
+                "Fit a load for each chain, to incident times alone (--own near_end.force --use incident).",
+            ),
+            (true, 1..) if has_reflected && (is_unknown || rejected.is_some()) => Some(
+                "One load for each chain describes incident times alone: leave the reflected ones out \
+                 (--use incident).",
+            ),
+            _ => None,
+        };
+        let loads = "A row that was tapped or shot before holds loads by friction, on which reflected times depend.";
+        doubts.extend(remedy.map(|remedy| format!("{loads} {remedy}")));
+        (!doubts.is_empty()).then(|| doubts.join(" "))
+    }
+}
+
+/// Reduced radius in m of the wet contact whose K is fitted; `None` without any.
+fn wet_radius_m(experiment: &Experiment) -> Option<f64> {
+    let section = experiment.sections().iter().find(|section| section.wet)?;
+    let stiffness = FreeNumber::find(experiment, "wet.K", None).ok();
+    let reference = stiffness
+        .as_ref()
+        .and_then(|number| number.reference()?.contact);
+    let (chain, _) = experiment.chain(None).ok()?;
+    Some(chain.pair(reference.unwrap_or(section.from))?.radius_m)
+}
+
+/// The wet data compared with what an oil would give.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Match {
+    /// The oil.
+    pub oil: String,
+    /// Chi-square of the wet data against the oil's curve, the dry contacts at their best for both
+    /// curves together.
+    pub chi_square: ChiSquare,
+    /// Root mean square distance of measured from predicted, in standard errors.
+    pub distance: f64,
+    /// The largest of the wet residuals: what it belongs to, and its size in standard errors.
+    pub largest: (String, f64),
+    /// The wet chain's nuisance parameters at this oil's best.
+    pub own: Vec<NuisanceParameter>,
+}
+
+/// A fitted nuisance parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NuisanceParameter {
+    /// Which.
+    pub parameter: Parameter,
+    /// Its value, in its unit.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// Below this probability an oil is rejected.
+const LEAST_PROBABILITY: f64 = 0.01;
+
+/// Probabilities below are not reported to their digits: no error is so exactly normal.
+pub const NEVER: f64 = 1e-9;
+
+impl Match {
+    /// Whether the data allow the oil (p ≥ 0.01).
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        self.chi_square.probability >= LEAST_PROBABILITY
+    }
+}
+
+/// Which of the known oils the data allow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// All oils, nearest first.
+    pub matches: Vec<Match>,
+    /// Oils that could not be computed, and why.
+    pub failed: Vec<(String, String)>,
+}
+
+impl Verdict {
+    /// Oils that the data allow.
+    pub fn allowed(&self) -> impl Iterator<Item = &Match> {
+        self.matches.iter().filter(|found| found.fits())
+    }
+
+    /// The verdict in a sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let names: Vec<&str> = self.allowed().map(|found| found.oil.as_str()).collect();
+        match (&names[..], self.matches.first()) {
+            ([only], _) => format!("It is {only}: no other known oil gives these times."),
+            ([], None) => "None of the known oils could be computed.".to_owned(),
+            ([], Some(nearest)) => format!(
+                "None of these: the nearest, {}, is off by {:.1} standard errors in the mean ({}).",
+                nearest.oil,
+                nearest.distance,
+                match nearest.chi_square.probability {
+                    p if p < NEVER => format!("p < {NEVER:.0e}"),
+                    p => format!("p = {p:.0e}"),
+                }
+            ),
+            (names, _) => format!("The data do not distinguish {}.", names.join(" and ")),
+        }
+    }
+}
+
+impl Gauge {
+    /// Compares the wet data with each oil.
+    ///
+    /// An oil's curve is computed with its K and A at every speed. The dry contacts' numbers are
+    /// fitted to both curves at once, so that their uncertainty counts; so are nuisance parameters.
+    ///
+    /// # Errors
+    /// Names that the wet model does not know; an oil that fails is in the verdict.
+    pub fn verdict(&self, oils: &[Oil]) -> Result<Verdict, InferError> {
+        let experiment = self.wet.experiment();
+        let own = self.wet.numbers().as_slice();
+        let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
+        for name in ["wet.K:each", "wet.A:each"] {
+            numbers.push(FreeNumber::find(experiment, name, None)?);
+        }
+        let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
+        let wet = CurveProblem::part(model.with_accuracy(self.wet.accuracy), self.data.clone());
+        let (mut matches, mut failed) = (Vec::new(), Vec::new());
+        for oil in oils {
+            match self.compare(oil, &wet) {
+                Ok(found) => matches.push(found),
+                Err(why) => failed.push((oil.name.clone(), why.to_string())),
+            }
+        }
+        matches.sort_by(|a: &Match, b| a.chi_square.value.total_cmp(&b.chi_square.value));
+        Ok(Verdict { matches, failed })
+    }
+
+    fn compare(&self, oil: &Oil, wet: &CurveProblem) -> Result<Match, InferError> {
+        let count = self.dry_fit.point.len();
+        let speeds = self.data.speeds_m_s();
+        let contacts = speeds
+            .iter()
+            .map(|speed| oil.contact(self.radius_m, *speed));
+        let (stiffness, relaxation): (Vec<f64>, Vec<f64>) = contacts.unzip();
+        let own = self.wet_own(&speeds);
+        let of_wet = (0..self.common())
+            .chain(count..count + own.len())
+            .map(Supply::Free);
+        let contacts = stiffness.into_iter().chain(relaxation).map(Supply::Fixed);
+        let supplies = of_wet.chain(contacts).collect();
+        let wet_part = Part {
+            problem: wet.clone(),
+            supplies,
+        };
+        let supplies = (0..count).map(Supply::Free).collect();
+        let dry_part = Part {
+            problem: self.dry.clone(),
+            supplies,
+        };
+        let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
+        let dry = pairs.map(|(parameter, value)| Parameter {
+            start: *value,
+            ..parameter.clone()
+        });
+        let joint = Joint::new(dry.chain(own.clone()).collect(), vec![dry_part, wet_part]);
+        // Two or three numbers that start at their dry values, to a hundredth of what would change a
+        // verdict.
+        let how = Fitting {
+            tolerance: 0.01,
+            iterations: 20,
+            ..Fitting::default()
+        };
+        let fitted = fit(&joint, &how)?;
+        let first = self.dry.residual_count();
+        let residuals = &fitted.residuals[first..];
+        let sd = Covariance::new(joint.parameters(), &fitted).sd;
+        let Some(largest) = largest_residual(&joint, &fitted, first..fitted.residuals.len()) else {
+            return InferError::input("no wet number is checked by others");
+        };
+        if residuals.len() <= own.len() {
+            return InferError::input(format!(
+                "{} measured values for {} nuisance parameters leave no degree of freedom: expected more speeds",
+                residuals.len(),
+                own.len()
+            ));
+        }
+        let Some(chi_square) = chi_square_of(residuals.iter().copied(), own.len()) else {
+            return InferError::input("its distance is not finite");
+        };
+        let own = own
+            .into_iter()
+            .enumerate()
+            .map(|(at, parameter)| NuisanceParameter {
+                parameter,
+                value: fitted.point[count + at],
+                standard_error: sd[count + at],
+            });
+        Ok(Match {
+            oil: oil.name.clone(),
+            distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
+            chi_square,
+            largest: (wet.residual_label(largest.residual - first), largest.sigmas),
+            own: own.collect(),
+        })
+    }
+}
+
+/// A power law of speed through values that share a part of their errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharedLaw {
+    /// The law, with standard errors from the rows' own.
+    pub law: PowerLaw,
+    /// Standard error of ln prefactor with what the rows share.
+    pub ln_prefactor_sd: f64,
+    /// Standard error of the exponent with what the rows share.
+    pub exponent_sd: f64,
+    /// Chi-square of the rows' own errors over degrees of freedom: well above 1, the values follow
+    /// no power law.
+    pub reduced_chi_square: f64,
+}
+
+/// Power laws of K and of A against speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaugeLaws {
+    /// K in N/m^{3/2}.
+    pub stiffness: SharedLaw,
+    /// A in s.
+    pub relaxation: SharedLaw,
+}
+
+impl GaugeLaws {
+    /// Through all rows whose K and A are known.
+    ///
+    /// # Errors
+    /// Fewer than three such rows.
+    pub fn through(rows: &[WetRow]) -> Result<Self, FitError> {
+        let known = rows.iter().filter_map(|row| {
+            let contact = row
+                .contact
+                .as_ref()
+                .ok()
+                .filter(|contact| contact.is_known())?;
+            Some((row.speed_m_s, &contact.first))
+        });
+        let known: Vec<(f64, &Pair)> = known.collect();
+        Ok(Self {
+            stiffness: law(&known, 0)?,
+            relaxation: law(&known, 1)?,
+        })
+    }
+}
+
+fn law(known: &[(f64, &Pair)], of: usize) -> Result<SharedLaw, FitError> {
+    if known.len() < 3 {
+        return Err(FitError::TooFew);
+    }
+    let speeds: Vec<f64> = known.iter().map(|(speed, _)| *speed).collect();
+    let relative: Vec<f64> = known.iter().map(|(_, c)| c.own[of][of].sqrt()).collect();
+    let through = |shift: &dyn Fn(&Pair) -> f64| {
+        let values = known
+            .iter()
+            .map(|(_, pair)| (pair.ln[of] + shift(pair)).exp());
+        let values: Vec<f64> = values.collect();
+        let sigmas: Vec<f64> = values.iter().zip(&relative).map(|(v, r)| v * r).collect();
+        power_law(&speeds, &values, Some(&sigmas))
+    };
+    let own = through(&|_| 0.0)?;
+    let shifts = known.iter().map(|(_, c)| c.shared.len()).min().unwrap_or(0);
+    let ln_prefactor = own.prefactor_error / own.prefactor;
+    let mut variances = [ln_prefactor.powi(2), own.exponent_error.powi(2)];
+    for number in 0..shifts {
+        let moved = through(&|pair| pair.shared[number][of])?;
+        variances[0] += (moved.prefactor / own.prefactor).ln().powi(2);
+        variances[1] += (moved.exponent - own.exponent).powi(2);
+    }
+    let misses = own.residuals.iter().zip(&relative);
+    let chi_square: f64 = misses.map(|(miss, sigma)| (miss / sigma).powi(2)).sum();
+    Ok(SharedLaw {
+        ln_prefactor_sd: variances[0].sqrt(),
+        exponent_sd: variances[1].sqrt(),
+        reduced_chi_square: chi_square / (known.len() as f64 - 2.0),
+        law: own,
+    })
 }

@@ -1,5 +1,6 @@
 //! Known oils: what each makes of a contact.
 
+use crate::InferError;
 use crate::data::with_plain_ends;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use hertzchain_chain::{Material, Pair};
@@ -54,18 +55,6 @@ pub struct Oil {
     pub source: String,
 }
 
-/// Why a table of oils can't be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{file}, line {line}: {what}")]
-pub struct OilError {
-    /// File.
-    pub file: String,
-    /// Line, from 1.
-    pub line: u64,
-    /// What is wrong, and what was expected.
-    pub what: String,
-}
-
 impl Oil {
     /// K in N/m^{3/2} and A in s of a contact of spheres with this reduced radius
     /// R* in m, at a speed of the striker in m/s.
@@ -104,7 +93,7 @@ impl Oil {
 ///
 /// # Errors
 /// None that a user could cause: the table is part of the program, and tested.
-pub fn known_oils() -> Result<Vec<Oil>, OilError> {
+pub fn known_oils() -> Result<Vec<Oil>, InferError> {
     oils("the program's table of oils", KNOWN)
 }
 
@@ -113,17 +102,13 @@ pub fn known_oils() -> Result<Vec<Oil>, OilError> {
 /// # Errors
 /// A line without a name, with a number that is none, or that gives neither all
 /// of an effective material nor all of a contact.
-pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, OilError> {
+pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
     let text = with_plain_ends(text);
     let mut reader = ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(Trim::All)
         .from_reader(text.as_bytes());
-    let wrong = |line: u64, what: String| OilError {
-        file: file.to_owned(),
-        line,
-        what,
-    };
+    let wrong = |line: u64, what: String| InferError::Input(format!("{file}, line {line}: {what}"));
     let titles = reader
         .headers()
         .map_err(|error| wrong(1, error.to_string()))?;

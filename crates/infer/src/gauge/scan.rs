@@ -5,8 +5,8 @@
 //! to end, in finer steps where they change sign, jump, or come near.
 
 use super::Gauge;
-use super::contacts::Free;
-use crate::curve::Speeds;
+use super::rows::Free;
+use crate::curve::{Predicted, Speeds};
 use crate::data::Observable;
 use crate::problem::Problem;
 
@@ -44,7 +44,7 @@ impl Place {
 
 impl Gauge {
     /// Points K, A from which every pair of a row is near, best first, those too far from its
-    /// numbers left out, and how far the line was followed; `None` for rows without any time, whose K no A tells.
+    /// numbers left out, and how far the line was followed; `None` for rows without any time, where K is not determined by A.
     pub(super) fn scan(&self, row: usize) -> Option<(Vec<[f64; 2]>, Scan)> {
         let first = self.data.rows[row].observables().next()?;
         if !first.is_time() {
@@ -128,8 +128,7 @@ impl Gauge {
         let point = |pair: &[f64; 2]| [&begin[..], &pair.map(f64::exp)[..]].concat();
         let points: Vec<Vec<f64>> = pairs.iter().map(point).collect();
         let curves = self.wet.curves(&points, &Speeds::of_rows(&speed));
-        let miss =
-            |curve: &crate::Predicted| Some((curve[of.index()]? / measured.value(of)?.value).ln());
+        let miss = |curve: &Predicted| Some((curve[of.index()]? / measured.value(of)?.value).ln());
         let curves = curves.into_iter();
         curves.map(|curve| miss(curve.ok()?.first()?)).collect()
     }
@@ -140,7 +139,7 @@ struct Root {
     x: f64,
     miss: Option<f64>,
     slope: f64,
-    lost: bool,
+    failed: bool,
 }
 
 impl Root {
@@ -149,18 +148,18 @@ impl Root {
             x,
             miss: None,
             slope: SLOPE,
-            lost: false,
+            failed: false,
         }
     }
 
     fn is_done(&self, near: f64) -> bool {
-        self.lost || self.miss.is_some_and(|miss| miss.abs() <= near)
+        self.failed || self.miss.is_some_and(|miss| miss.abs() <= near)
     }
 
     /// Takes what was found where it stands, and moves on if that is not near.
     fn seen(&mut self, found: Option<f64>, near: f64) {
         let Some(miss) = found.filter(|miss| miss.is_finite()) else {
-            self.lost = true;
+            self.failed = true;
             self.miss = None;
             return;
         };
@@ -180,7 +179,7 @@ impl Root {
 
     /// The step from where its miss was found.
     fn step(&self) -> Option<f64> {
-        Some((-self.miss? / self.slope).clamp(-FARTHEST, FARTHEST))
+        Some((-self.miss? / self.slope).clamp(-LARGEST_STEP, LARGEST_STEP))
     }
 }
 
@@ -254,10 +253,10 @@ fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
         .map(|at| &line[at])
         .collect();
     all.sort_by(|a, b| a.chi_square().total_cmp(&b.chi_square()));
-    let far = |place: &Place| place.chi_square() > HOPELESS;
+    let far = |place: &Place| place.chi_square() > TOO_FAR;
     let mut apart: Vec<&Place> = Vec::new();
     for place in all {
-        // The best stays, to be told how far it is.
+        // The best stays, to be reported with its distance.
         if !apart.is_empty() && far(place) {
             break;
         }
@@ -307,15 +306,15 @@ const JUMP: f64 = 4.0;
 /// Chi-square on the line from which no pair is near: the finest step changes a row's other
 /// numbers by a few standard errors, and errors of the dry contacts' numbers by as many; a jump
 /// from one side of a number to the other is no pair.
-const HOPELESS: f64 = 400.0;
+const TOO_FAR: f64 = 400.0;
 
 /// d ln(time of flight)/d ln K of waves in a row of beads that hardly damps: −2/5.
 const SLOPE: f64 = -0.4;
 const STEEPEST: f64 = -4.0;
 const FLATTEST: f64 = -0.04;
 
-/// The farthest step of ln K at once.
-const FARTHEST: f64 = 1.0;
+/// The largest step of ln K at once.
+const LARGEST_STEP: f64 = 1.0;
 
 /// Most secants.
 const SECANTS: usize = 12;

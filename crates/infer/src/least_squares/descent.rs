@@ -1,44 +1,43 @@
-//! One way down to a minimum, as questions and answers.
+//! Levenberg–Marquardt descents that ask for residuals, so that many share one call of the model.
 
-use super::merit::{Linear, Merit, Valued};
-use super::slopes::{Slopes, Stencil, slopes};
-use crate::linear::{Svd, dot, norm, svd};
-use crate::{ModelError, Parameter, Residuals};
+use super::merit::{Linear, Merit, Neighbours, Slopes, Valued, slopes};
+use crate::linear::{Svd, combine, dot, norm, svd};
+use crate::{ModelError, Parameter, Problem, Residuals};
+use std::fmt;
 
-/// A Levenberg–Marquardt descent [More1978] that asks for residuals instead of
-/// computing them, so that many descents share one call of the model.
+/// A Levenberg–Marquardt descent [More1978].
 ///
-/// Columns are scaled to unit length; a step solves (JᵀJ + λ) s = −g by singular
-/// values, once for all λ tried. Parameters at a bound that the gradient pushes
-/// outward are held; steps beyond a bound end at it.
+/// Columns are scaled to unit length; a step solves (JᵀJ + λ) s = −g by singular values, once for
+/// all λ tried. Parameters at a bound that the gradient pushes outward are held; steps beyond a
+/// bound end at it.
 pub(crate) struct Descent<'a> {
     merit: Merit<'a>,
     free: Vec<usize>,
     limits: Limits,
-    point: Vec<f64>,
-    at: Option<Valued>,
+    pub point: Vec<f64>,
+    /// Residuals there; `None` if the model failed at the first point.
+    pub at: Option<Valued>,
     /// Steps of differences, one for each parameter of the problem.
-    steps: Vec<f64>,
+    pub steps: Vec<f64>,
     damping: f64,
     stage: Stage,
-    iterations: usize,
+    pub iterations: usize,
     /// Iterations in a row that hardly gained anything.
     idle: usize,
-    /// Where it started, and whether it must see there that every parameter counts.
     start: Vec<f64>,
-    wary: bool,
-    /// Whether the last step went as the linear model said: then fewer are tried.
-    sure: bool,
-    /// Neighbours of the point, and the steps to them.
-    beside: Option<Beside>,
+    /// Whether every parameter must change some residual at the start.
+    checks_start: bool,
+    /// Whether the last step went as the linear model predicts: then fewer are tried.
+    is_linear: bool,
+    /// Residuals at the neighbours of the point, two for each free parameter, and their steps.
+    pub around: Option<(Vec<f64>, Vec<Result<Residuals, ModelError>>)>,
 }
 
-/// When a descent ends.
+/// When a descent ends: expected fall of the cost at which the minimum counts as reached, and most
+/// iterations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
-    /// Expected fall of the cost at which the minimum counts as reached.
     pub tolerance: f64,
-    /// Most iterations.
     pub iterations: usize,
 }
 
@@ -48,8 +47,8 @@ pub(crate) struct Limits {
 pub enum Ending {
     /// The cost would fall by less than the tolerance.
     Minimum,
-    /// No step lowers the cost any more, though `expected_fall`, small against
-    /// one, was left: the model is no smoother than that.
+    /// No step lowers the cost any more, though a small fall was expected: the model is no
+    /// smoother than that.
     Floor {
         /// Expected fall of χ²/2.
         expected_fall: f64,
@@ -59,10 +58,9 @@ pub enum Ending {
         /// Expected fall of χ²/2.
         expected_fall: f64,
     },
-    /// The minimum of all that the data determine; along combinations that they leave
-    /// open there is no one minimum.
+    /// The minimum in all identifiable directions; along the others there is no one minimum.
     Open {
-        /// Expected fall of χ²/2 along those that they determine.
+        /// Expected fall of χ²/2 along the identifiable directions.
         expected_fall: f64,
     },
     /// The iterations allowed ran out.
@@ -70,10 +68,9 @@ pub enum Ending {
         /// Expected fall of χ²/2.
         expected_fall: f64,
     },
-    /// The model has no residuals here or beside here.
+    /// The model has no residuals here or at the neighbours.
     ModelFails(ModelError),
-    /// A parameter, by its place, that changes no residual at the start, or is on
-    /// its way to nowhere.
+    /// A parameter, by its place, that changes no residual at the start, or diverges.
     ChangesNothing(usize),
 }
 
@@ -85,8 +82,8 @@ impl Ending {
     }
 }
 
-impl std::fmt::Display for Ending {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Minimum => write!(f, "converged"),
             Self::Floor { expected_fall } => write!(
@@ -96,7 +93,7 @@ impl std::fmt::Display for Ending {
             ),
             Self::Open { .. } => write!(
                 f,
-                "converged in what the data determine; along the combinations that they leave open there is no one minimum"
+                "converged in the identifiable directions; along the unidentifiable ones there is no one minimum"
             ),
             Self::Stuck { expected_fall } => write!(
                 f,
@@ -116,12 +113,12 @@ impl std::fmt::Display for Ending {
     }
 }
 
+/// What a descent asks residuals for.
 enum Stage {
-    /// Residuals at the first point and its neighbours.
-    Start(Vec<Stencil>),
-    /// Residuals at the neighbours of a point.
-    Slopes(Vec<Stencil>),
-    /// Residuals at the ends of steps with several λ.
+    /// The first point and its neighbours.
+    Start(Vec<Neighbours>),
+    Slopes(Vec<Neighbours>),
+    /// The ends of steps with several λ.
     Trials(Box<Trials>),
     Done(Ending),
 }
@@ -139,28 +136,28 @@ struct Trials {
 
 /// First step of differences, in units of a parameter's scale.
 const FIRST_STEP: f64 = 1e-3;
-/// Later steps aim at this change of the residuals' length: large against the
-/// model's own noise, small against the curvature over one standard error.
+/// Later steps aim at this change of the residuals' length: large against the model's own noise,
+/// small against the curvature over one standard error.
 const AIM: f64 = 0.3;
 /// Where steps stay, in units of a parameter's scale.
 const STEPS: [f64; 2] = [1e-6, 1e-2];
-/// Singular values below this share of the largest have no part in the
-/// expected fall: differences do not resolve them.
+/// Singular values below this share of the largest have no part in the expected fall: differences
+/// do not resolve them.
 const RESOLVED: f64 = 1e-5;
 const LARGEST_DAMPING: f64 = 1e10;
 const LEAST_DAMPING: f64 = 1e-12;
 /// A fall of χ²/2 that no conclusion depends on.
 pub(super) const SMALL_FALL: f64 = 1e-3;
-/// Change of all residuals together, in σ, by a parameter's whole size, below which
-/// it counts for nothing.
+/// Change of all residuals together, in σ, by a parameter's whole size, below which it counts for
+/// nothing.
 pub(super) const NOTICED: f64 = 0.01;
-/// Distance from the start, in units of the scale, from which it is nowhere.
-const NOWHERE: f64 = 1e3;
-/// An expected fall that is hardly more than a model's noise: where a step does not
-/// gain at least a tenth of it, none will. It is 0.0014 standard errors.
+/// Distance from the start, in units of the scale, from which a parameter diverges.
+const DIVERGED: f64 = 1e3;
+/// An expected fall that is hardly more than a model's noise: where a step does not gain at least a
+/// tenth of it, none will. It is 0.0014 standard errors.
 const QUIET_FALL: f64 = 1e-6;
-/// Iterations that gain less than a thousandth of what was expected, after
-/// which the model's noise is taken to be reached.
+/// Iterations that gain less than a thousandth of what was expected, after which the model's noise
+/// is taken to be reached.
 const IDLE: usize = 3;
 
 impl<'a> Descent<'a> {
@@ -168,36 +165,35 @@ impl<'a> Descent<'a> {
     pub(crate) fn new(merit: Merit<'a>, point: Vec<f64>, free: Vec<usize>, limits: Limits) -> Self {
         let parameters = merit.problem.parameters();
         let steps: Vec<f64> = parameters.iter().map(|p| FIRST_STEP * p.scale).collect();
-        let mut descent = Self {
+        Self {
             merit,
             free,
             limits,
             start: point.clone(),
             point,
             at: None,
-            steps,
+            steps: Vec::new(),
             damping: 1e-3,
             stage: Stage::Done(Ending::Minimum),
             iterations: 0,
             idle: 0,
-            wary: false,
-            sure: false,
-            beside: None,
-        };
-        descent.stage = Stage::Start(descent.stencils());
-        descent
+            checks_start: false,
+            is_linear: false,
+            around: None,
+        }
+        .with_steps(&steps)
     }
 
     /// The same with steps of differences that are known to suit.
     pub(crate) fn with_steps(mut self, steps: &[f64]) -> Self {
         self.steps = steps.to_vec();
-        self.stage = Stage::Start(self.stencils());
+        self.stage = Stage::Start(self.neighbours());
         self
     }
 
     /// The same, ended at once if a parameter changes nothing where it starts.
-    pub(crate) fn wary(mut self) -> Self {
-        self.wary = true;
+    pub(crate) fn checking_start(mut self) -> Self {
+        self.checks_start = true;
         self
     }
 
@@ -205,87 +201,77 @@ impl<'a> Descent<'a> {
         self.merit.problem.parameters()
     }
 
-    fn stencils(&self) -> Vec<Stencil> {
-        let stencil = |k: &usize| {
-            let k = *k;
-            Stencil::new(k, &self.parameters()[k], self.point[k], self.steps[k])
-        };
-        self.free.iter().map(stencil).collect()
+    fn neighbours(&self) -> Vec<Neighbours> {
+        let pair =
+            |k: &usize| Neighbours::new(*k, &self.parameters()[*k], self.point[*k], self.steps[*k]);
+        self.free.iter().map(pair).collect()
     }
 
     /// Points whose residuals are wanted next; none when the descent has ended.
-    pub(crate) fn ask(&self) -> Vec<Vec<f64>> {
-        let neighbours = |stencils: &[Stencil]| {
-            let points = stencils.iter().flat_map(|s| s.points(&self.point));
-            points.collect::<Vec<_>>()
+    fn wanted(&self) -> Vec<Vec<f64>> {
+        let around = |pairs: &[Neighbours]| -> Vec<Vec<f64>> {
+            pairs
+                .iter()
+                .flat_map(|pair| pair.points(&self.point))
+                .collect()
         };
         match &self.stage {
-            Stage::Start(stencils) => {
-                let mut points = vec![self.point.clone()];
-                points.extend(neighbours(stencils));
-                points
-            }
-            Stage::Slopes(stencils) => neighbours(stencils),
+            Stage::Start(pairs) => [vec![self.point.clone()], around(pairs)].concat(),
+            Stage::Slopes(pairs) => around(pairs),
             Stage::Trials(trials) => trials.points.clone(),
             Stage::Done(_) => Vec::new(),
         }
     }
 
     /// Takes the residuals at the points asked for.
-    pub(crate) fn tell(&mut self, found: &[Result<Residuals, ModelError>]) {
+    fn take(&mut self, found: &[Result<Residuals, ModelError>]) {
         let stage = std::mem::replace(&mut self.stage, Stage::Done(Ending::Minimum));
-        self.stage = match stage {
-            Stage::Start(stencils) => self.started(&stencils, found),
-            Stage::Slopes(stencils) => self.aim(&stencils, found),
-            Stage::Trials(trials) => self.tried(trials, found),
-            Stage::Done(ending) => Stage::Done(ending),
+        let next = match stage {
+            Stage::Start(pairs) => match found.split_first() {
+                Some((first, rest)) => self.merit.value(&self.point, first).and_then(|at| {
+                    self.at = Some(at);
+                    self.prepare(&pairs, rest)
+                }),
+                None => Err(ModelError::default()),
+            },
+            Stage::Slopes(pairs) => self.prepare(&pairs, found),
+            Stage::Trials(trials) => Ok(self.accept(trials, found)),
+            done => Ok(done),
         };
-    }
-
-    fn started(&mut self, stencils: &[Stencil], found: &[Result<Residuals, ModelError>]) -> Stage {
-        let Some((first, rest)) = found.split_first() else {
-            return Stage::Done(Ending::ModelFails(ModelError::default()));
-        };
-        match self.merit.value(&self.point, first) {
-            Ok(at) => self.at = Some(at),
-            Err(error) => return Stage::Done(Ending::ModelFails(error)),
-        }
-        self.aim(stencils, rest)
+        self.stage = next.unwrap_or_else(|error| Stage::Done(Ending::ModelFails(error)));
     }
 
     /// From slopes to the next trials, or to the end.
-    fn aim(&mut self, stencils: &[Stencil], found: &[Result<Residuals, ModelError>]) -> Stage {
-        let Some(at) = &self.at else {
-            return Stage::Done(Ending::ModelFails(ModelError::default()));
-        };
-        let slopes = match slopes(&self.merit, (&self.point, at), stencils, found) {
-            Ok(slopes) => slopes,
-            Err(error) => return Stage::Done(Ending::ModelFails(error)),
-        };
+    fn prepare(
+        &mut self,
+        pairs: &[Neighbours],
+        found: &[Result<Residuals, ModelError>],
+    ) -> Result<Stage, ModelError> {
+        let at = self.at.as_ref().ok_or_else(ModelError::default)?;
+        let slopes = slopes(&self.merit, (&self.point, at), pairs, found)?;
         if let Some(parameter) = self.without_effect(&slopes) {
-            return Stage::Done(Ending::ChangesNothing(parameter));
+            return Ok(Stage::Done(Ending::ChangesNothing(parameter)));
         }
         let linear = self.merit.linear(at, &slopes);
         // The first steps are not yet suited to the residuals.
-        let suited = self.iterations > 0;
-        self.beside = suited.then(|| Beside {
-            steps: self.steps.clone(),
-            found: found.to_vec(),
-        });
-        self.choose_steps(&linear);
-        let trials = self.trials(linear);
-        if trials.expected_fall < self.limits.tolerance {
-            return Stage::Done(Ending::Minimum);
+        self.around = (self.iterations > 0).then(|| (self.steps.clone(), found.to_vec()));
+        for (k, column) in self.free.iter().zip(&linear.columns) {
+            let scale = self.merit.problem.parameters()[*k].scale;
+            self.steps[*k] = (AIM / norm(column)).clamp(STEPS[0] * scale, STEPS[1] * scale);
         }
+        let trials = self.trials(linear);
         let expected_fall = trials.expected_fall;
+        if expected_fall < self.limits.tolerance {
+            return Ok(Stage::Done(Ending::Minimum));
+        }
         if self.iterations >= self.limits.iterations {
-            return Stage::Done(Ending::Iterations { expected_fall });
+            return Ok(Stage::Done(Ending::Iterations { expected_fall }));
         }
         if self.idle >= IDLE {
-            return Stage::Done(resting(expected_fall, self.misfit()));
+            return Ok(self.at_rest(expected_fall));
         }
         self.iterations += 1;
-        Stage::Trials(Box::new(trials))
+        Ok(Stage::Trials(Box::new(trials)))
     }
 
     /// A parameter by whose whole size no residual changes, at the start or far from it.
@@ -293,40 +279,33 @@ impl<'a> Descent<'a> {
         let data = self.merit.problem.residual_count();
         let without = |(k, column): (&usize, &Vec<f64>)| {
             let (value, scale) = (self.point[*k], self.parameters()[*k].scale);
-            let nowhere = (value - self.start[*k]).abs() > NOWHERE * scale;
-            let looked_at = nowhere || self.wary && self.iterations == 0;
+            let diverged = (value - self.start[*k]).abs() > DIVERGED * scale;
+            let is_checked = diverged || self.checks_start && self.iterations == 0;
             let effect = norm(&column[..data]) * value.abs().max(scale);
-            (looked_at && effect < NOTICED).then_some(*k)
+            (is_checked && effect < NOTICED).then_some(*k)
         };
         self.free.iter().zip(&slopes.columns).find_map(without)
     }
 
-    fn choose_steps(&mut self, linear: &Linear) {
-        let parameters = self.parameters();
-        for (k, column) in self.free.iter().zip(&linear.columns) {
-            let scale = parameters[*k].scale;
-            let aimed = AIM / norm(column);
-            self.steps[*k] = aimed.clamp(STEPS[0] * scale, STEPS[1] * scale);
-        }
-    }
-
     fn trials(&self, linear: Linear) -> Trials {
-        let held = |place: usize| {
-            let (k, slope) = (self.free[place], linear.gradient[place]);
+        let is_held = |place: &usize| {
+            let (k, slope) = (self.free[*place], linear.gradient[*place]);
             let parameter = &self.parameters()[k];
             (self.point[k] <= parameter.lower && slope > 0.0)
                 || (self.point[k] >= parameter.upper && slope < 0.0)
         };
-        let loose: Vec<usize> = (0..self.free.len()).filter(|p| !held(*p)).collect();
-        let length = |place: &usize| norm(&linear.columns[*place]);
-        let unit = |length: f64| if length > 0.0 { length } else { 1.0 };
-        let scales: Vec<f64> = loose.iter().map(|p| unit(length(p))).collect();
-        let scaled: Vec<Vec<f64>> = (loose.iter().zip(&scales))
-            .map(|(place, scale)| linear.columns[*place].iter().map(|x| x / scale).collect())
+        let loose: Vec<usize> = (0..self.free.len())
+            .filter(|place| !is_held(place))
             .collect();
+        let lengths = loose.iter().map(|place| norm(&linear.columns[*place]));
+        let scales: Vec<f64> = lengths
+            .map(|length| if length > 0.0 { length } else { 1.0 })
+            .collect();
+        let scaled = loose.iter().zip(&scales);
+        let scaled = scaled.map(|(p, d)| linear.columns[*p].iter().map(|x| x / d).collect());
         let mut trials = Trials {
+            svd: svd(&scaled.collect::<Vec<_>>()),
             linear,
-            svd: svd(&scaled),
             loose,
             scales,
             expected_fall: 0.0,
@@ -340,129 +319,95 @@ impl<'a> Descent<'a> {
 
     /// Ends of steps for dampings around a middle one.
     fn spread(&self, trials: &mut Trials, damping: f64) {
-        let factors: &[f64] = match self.sure {
+        let factors: &[f64] = match self.is_linear {
             true => &[0.1, 100.0],
             false => &[0.1, 1.0, 10.0, 100.0],
         };
         trials.dampings = factors.iter().map(|factor| factor * damping).collect();
-        trials.points = (trials.dampings.iter())
-            .map(|damping| self.clipped(trials, &trials.step(*damping)))
-            .collect();
+        let end = |damping: &f64| {
+            let mut point = self.point.clone();
+            for (place, step) in trials.loose.iter().zip(trials.step(*damping)) {
+                let k = self.free[*place];
+                let parameter = &self.parameters()[k];
+                point[k] = (point[k] + step).clamp(parameter.lower, parameter.upper);
+            }
+            point
+        };
+        trials.points = trials.dampings.iter().map(end).collect();
     }
 
-    fn clipped(&self, trials: &Trials, step: &[f64]) -> Vec<f64> {
-        let mut point = self.point.clone();
-        for (place, step) in trials.loose.iter().zip(step) {
-            let k = self.free[*place];
-            let parameter = &self.parameters()[k];
-            point[k] = (point[k] + step).clamp(parameter.lower, parameter.upper);
-        }
-        point
-    }
-
-    fn tried(&mut self, mut trials: Box<Trials>, found: &[Result<Residuals, ModelError>]) -> Stage {
+    /// Moves to the best trial, or tries shorter steps, or ends.
+    fn accept(
+        &mut self,
+        mut trials: Box<Trials>,
+        found: &[Result<Residuals, ModelError>],
+    ) -> Stage {
         let valued = trials.points.iter().zip(found).enumerate();
         let best = valued
             .filter_map(|(i, (point, found))| Some((i, self.merit.value(point, found).ok()?)))
             .min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-        let before = self.at.as_ref().map_or(f64::INFINITY, |at| at.cost);
+        let (before, fall) = (self.cost(), trials.expected_fall);
+        let most = trials.dampings.last().copied().unwrap_or(LARGEST_DAMPING);
         match best {
             Some((i, valued)) if valued.cost < before => {
                 let gained = before - valued.cost;
-                let idle = gained < 1e-3 * trials.expected_fall.min(1.0);
-                self.idle = if idle { self.idle + 1 } else { 0 };
-                if trials.expected_fall < QUIET_FALL && gained < 0.1 * trials.expected_fall {
+                self.idle = if gained < 1e-3 * fall.min(1.0) {
+                    self.idle + 1
+                } else {
+                    0
+                };
+                if fall < QUIET_FALL && gained < 0.1 * fall {
                     self.idle = IDLE;
                 }
-                self.sure = gained > 0.5 * trials.expected_fall;
+                self.is_linear = gained > 0.5 * fall;
                 self.damping = (0.3 * trials.dampings[i]).max(LEAST_DAMPING);
                 self.point.clone_from(&trials.points[i]);
-                self.beside = None;
+                self.around = None;
                 self.at = Some(valued);
-                Stage::Slopes(self.stencils())
+                Stage::Slopes(self.neighbours())
             }
-            _ if trials.expected_fall < QUIET_FALL => {
-                Stage::Done(resting(trials.expected_fall, self.misfit()))
-            }
-            _ if trials.most() < LARGEST_DAMPING => {
-                self.damping = 1e3 * trials.most();
-                self.sure = false;
+            _ if fall >= QUIET_FALL && most < LARGEST_DAMPING => {
+                self.damping = 1e3 * most;
+                self.is_linear = false;
                 self.spread(&mut trials, self.damping);
                 Stage::Trials(trials)
             }
-            _ => Stage::Done(resting(trials.expected_fall, self.misfit())),
+            _ => self.at_rest(fall),
         }
     }
 
-    /// Chi-square over degrees of freedom.
-    fn misfit(&self) -> f64 {
+    /// A rest where the cost should fall by so much: far from the data, chi-square is large and
+    /// changes by its own share where no conclusion does.
+    fn at_rest(&self, expected_fall: f64) -> Stage {
         let rows = self.at.as_ref().map_or(&[][..], |at| &at.rows);
         let freedom = rows.len().saturating_sub(self.free.len()).max(1);
-        dot(rows, rows) / freedom as f64
+        let reduced_chi_square = dot(rows, rows) / freedom as f64;
+        Stage::Done(
+            match expected_fall < SMALL_FALL * reduced_chi_square.max(1.0) {
+                true => Ending::Floor { expected_fall },
+                false => Ending::Stuck { expected_fall },
+            },
+        )
     }
 
-    /// Where the descent stands, and why it ended.
-    pub(crate) fn finish(self) -> Reached {
-        let ending = match self.stage {
-            Stage::Done(ending) => ending,
-            _ => Ending::ModelFails(ModelError("the descent was left early".into())),
-        };
-        Reached {
-            point: self.point,
-            at: self.at,
-            steps: self.steps,
-            beside: self.beside,
-            iterations: self.iterations,
-            ending,
-        }
-    }
-}
-
-/// A rest where the cost should fall by so much: far from the data, chi-square is large and
-/// changes by its own share where no conclusion does.
-fn resting(expected_fall: f64, misfit: f64) -> Ending {
-    if expected_fall < SMALL_FALL * misfit.max(1.0) {
-        Ending::Floor { expected_fall }
-    } else {
-        Ending::Stuck { expected_fall }
-    }
-}
-
-/// Where a descent came to.
-#[derive(Clone, Debug)]
-pub(crate) struct Reached {
-    pub point: Vec<f64>,
-    /// Residuals there; `None` if the model failed at the first point.
-    pub at: Option<Valued>,
-    pub steps: Vec<f64>,
-    /// What is known of its neighbours.
-    pub beside: Option<Beside>,
-    pub iterations: usize,
-    pub ending: Ending,
-}
-
-/// Residuals at the neighbours of a point, two for each free parameter.
-#[derive(Clone, Debug)]
-pub(crate) struct Beside {
-    pub steps: Vec<f64>,
-    pub found: Vec<Result<Residuals, ModelError>>,
-}
-
-impl Reached {
     pub(crate) fn cost(&self) -> f64 {
         self.at.as_ref().map_or(f64::INFINITY, |at| at.cost)
+    }
+
+    /// Why it ended.
+    pub(crate) fn ending(&self) -> Ending {
+        match &self.stage {
+            Stage::Done(ending) => ending.clone(),
+            _ => Ending::ModelFails(ModelError("the descent was left early".into())),
+        }
     }
 }
 
 impl Trials {
-    /// The largest damping.
-    fn most(&self) -> f64 {
-        self.dampings.last().copied().unwrap_or(LARGEST_DAMPING)
-    }
-
     /// Components of the scaled gradient along the right singular vectors.
     fn along(&self) -> Vec<f64> {
-        let gradient: Vec<f64> = (self.loose.iter().zip(&self.scales))
+        let pairs = self.loose.iter().zip(&self.scales);
+        let gradient: Vec<f64> = pairs
             .map(|(place, scale)| self.linear.gradient[*place] / scale)
             .collect();
         self.svd.right.iter().map(|v| dot(v, &gradient)).collect()
@@ -472,22 +417,49 @@ impl Trials {
     fn fall(&self) -> f64 {
         let least = RESOLVED * self.svd.values.first().copied().unwrap_or(0.0);
         let parts = self.along().into_iter().zip(&self.svd.values);
-        parts
-            .filter(|(_, value)| **value > least)
+        let resolved = parts.filter(|(_, value)| **value > least);
+        resolved
             .map(|(along, value)| 0.5 * (along / value).powi(2))
             .sum()
     }
 
     /// −(JᵀJ + λ)⁻¹ g, in the parameters' units.
     fn step(&self, damping: f64) -> Vec<f64> {
-        let weights: Vec<f64> = (self.along().iter().zip(&self.svd.values))
+        let pairs = self.along().into_iter().zip(&self.svd.values);
+        let weights: Vec<f64> = pairs
             .map(|(along, value)| -along / (value * value + damping))
             .collect();
-        let scaled = crate::linear::combine(&self.svd.right, &weights);
+        let scaled = combine(&self.svd.right, &weights);
         scaled
             .iter()
             .zip(&self.scales)
             .map(|(s, d)| s / d)
             .collect()
+    }
+}
+
+/// Runs descents side by side to their ends, one call of the model for each round; returns how
+/// often the model was computed.
+pub(crate) fn run(problem: &dyn Problem, descents: &mut [Descent<'_>]) -> usize {
+    let mut evaluations = 0;
+    loop {
+        let wanted: Vec<Vec<Vec<f64>>> = descents.iter().map(Descent::wanted).collect();
+        let counts: Vec<usize> = wanted.iter().map(Vec::len).collect();
+        let points: Vec<Vec<f64>> = wanted.into_iter().flatten().collect();
+        if points.is_empty() {
+            return evaluations;
+        }
+        evaluations += points.len();
+        let mut found = problem.residuals(&points);
+        let missing = || Err(ModelError("the model returned no result here".into()));
+        found.resize_with(points.len(), missing);
+        let mut rest = found.as_slice();
+        for (descent, count) in descents.iter_mut().zip(counts) {
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            if count > 0 {
+                descent.take(own);
+            }
+        }
     }
 }

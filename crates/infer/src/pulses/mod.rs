@@ -9,5 +9,5 @@ mod align;
 mod problem;
 mod record;
 
-pub use problem::{PulseError, PulseProblem, Respond};
-pub use record::{Pulses, RecordError};
+pub use problem::{PulseProblem, Respond};
+pub use record::Pulses;

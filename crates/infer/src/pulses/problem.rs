@@ -4,7 +4,7 @@ use super::align::{Traced, residuals};
 use super::record::Pulses;
 use crate::curve::{Model, Shooting, Speeds};
 use crate::problem::{ModelError, Problem, Residuals};
-use crate::{Parameter, ParameterError};
+use crate::{InferError, Parameter};
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::Amplifier;
 use hertzchain_sim::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
@@ -39,24 +39,6 @@ impl fmt::Debug for Respond {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("Respond")
     }
-}
-
-/// Why records can't be fitted with a model.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PulseError {
-    /// No record.
-    #[error("no record is left to be fitted")]
-    NoRecords,
-    /// No parameter.
-    #[error("no parameter is free: name some, such as eta,B,sensor_gain")]
-    NothingFree,
-    /// A parameter that is not sound.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-    /// The model has no pulse to compare with.
-    #[error("the model where it starts: {0}")]
-    Model(#[from] ModelError),
 }
 
 /// Shots recorded sample by sample against those of a model.
@@ -99,8 +81,8 @@ impl PulseProblem {
     /// pulse there are [left out](Self::left_out).
     ///
     /// # Errors
-    /// See [`PulseError`].
-    pub fn new(model: Model, records: Vec<Pulses>, respond: Respond) -> Result<Self, PulseError> {
+    /// See [`InferError`].
+    pub fn new(model: Model, records: Vec<Pulses>, respond: Respond) -> Result<Self, InferError> {
         let mut speeds_m_s: Vec<f64> = records.iter().map(|r| r.programmed_m_s).collect();
         speeds_m_s.sort_by(f64::total_cmp);
         speeds_m_s.dedup();
@@ -133,10 +115,12 @@ impl PulseProblem {
     ///
     /// # Errors
     /// Parameters that are not sound, or none.
-    pub fn with_parameters(mut self, parameters: Vec<Parameter>) -> Result<Self, PulseError> {
+    pub fn with_parameters(mut self, parameters: Vec<Parameter>) -> Result<Self, InferError> {
         parameters.iter().try_for_each(Parameter::check)?;
         if parameters.is_empty() {
-            return Err(PulseError::NothingFree);
+            return Err(InferError::Input(
+                "no parameter is free: name some, such as eta,B,sensor_gain".into(),
+            ));
         }
         self.parameters = parameters;
         Ok(self)
@@ -219,12 +203,14 @@ impl PulseProblem {
     }
 
     /// Follows each record's first shot to learn how long others need to be.
-    fn lay_out(&mut self) -> Result<(), PulseError> {
+    fn lay_out(&mut self) -> Result<(), InferError> {
         if self.records.is_empty() {
-            return Err(PulseError::NoRecords);
+            return Err(no_records());
         }
         if self.parameters.is_empty() {
-            return Err(PulseError::NothingFree);
+            return Err(InferError::Input(
+                "no parameter is free: name some, such as eta,B,sensor_gain".into(),
+            ));
         }
         let start: Vec<f64> = self.parameters.iter().map(|p| p.start).collect();
         let mut passing = Vec::new();
@@ -236,7 +222,7 @@ impl PulseProblem {
                     self.grids.push(first.grid);
                     passing.push(Some(first));
                 }
-                Err(error) if stopped() => return Err(error.into()),
+                Err(error) if stopped() => return Err(at_start(&error)),
                 Err(error) => {
                     passing.push(None);
                     self.left_out
@@ -253,8 +239,8 @@ impl PulseProblem {
                 self.start_gain(&first);
                 Ok(())
             }
-            (None, Some(error)) => Err(error.into()),
-            (None, None) => Err(PulseError::NoRecords),
+            (None, Some(error)) => Err(at_start(&error)),
+            (None, None) => Err(no_records()),
         }
     }
 
@@ -350,6 +336,14 @@ impl PulseProblem {
         }
         None
     }
+}
+
+fn no_records() -> InferError {
+    InferError::Input("no record is left to be fitted".into())
+}
+
+fn at_start(error: &ModelError) -> InferError {
+    InferError::Model(format!("the model where it starts: {error}"))
 }
 
 /// What a record's first shot tells.

@@ -1,5 +1,6 @@
 //! One shot's samples, ready to be fitted.
 
+use crate::InferError;
 use hertzchain_measure::signal::{
     Channels, Doubt, Estimate, Flight, Measuring, Polarity, SignalError, Upright, measure, upright,
     without_spikes,
@@ -19,36 +20,6 @@ const PER_FLIGHT: f64 = 300.0;
 
 /// Quiet samples that tell a channel's offset and noise.
 const QUIET: usize = 32;
-
-/// Why a record can't be fitted.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RecordError {
-    /// Neither the record nor the table of shots has the striker's speed.
-    #[error("{0}: no speed of the striker: add a line of this record to the table of --shots")]
-    NoSpeed(String),
-    /// Pulses that are not there.
-    #[error("{source_name}: {error}")]
-    NoPulses {
-        /// Which record.
-        source_name: String,
-        /// What is missing.
-        error: SignalError,
-    },
-    /// Pulses that are not whole.
-    #[error("{source_name}: {doubt}")]
-    Doubtful {
-        /// Which record.
-        source_name: String,
-        /// What is wrong.
-        doubt: Doubt,
-    },
-    /// No noise to weigh samples by.
-    #[error(
-        "{0}: fewer than 32 quiet samples before the first pulse, or no noise in them: their scatter is what samples are weighed by"
-    )]
-    NoNoise(String),
-}
 
 /// The samples of one shot around its pulses, as means of neighbours.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,21 +52,25 @@ impl Pulses {
     /// From a record's channels in V.
     ///
     /// # Errors
-    /// See [`RecordError`].
+    /// See [`InferError`].
     pub fn of(
         source: &str,
         (speed_m_s, programmed_m_s): (Option<Estimate>, Option<f64>),
         interval_s: f64,
         volts: &[Vec<f64>],
-    ) -> Result<Self, RecordError> {
-        let speed_m_s = speed_m_s.ok_or_else(|| RecordError::NoSpeed(source.to_owned()))?;
+    ) -> Result<Self, InferError> {
+        let speed_m_s = speed_m_s.ok_or_else(|| InferError::Input(format!("{source}: no speed of the striker: add a line of this record to the table of --shots")))?;
         let flight = flight(source, interval_s, volts)?;
         let incident = flight.incident_s.value / interval_s;
         let passing = flight.picks.passing.time_s / interval_s;
         let from = (passing - BEFORE * incident).max(0.0) as usize;
         let to = (passing + AFTER * incident) as usize;
         let width = ((incident / PER_FLIGHT) as usize).max(1);
-        let no_noise = || RecordError::NoNoise(source.to_owned());
+        let no_noise = || {
+            InferError::Input(format!(
+                "{source}: fewer than 32 quiet samples before the first pulse, or no noise in them: their scatter is what samples are weighed by"
+            ))
+        };
         let mut pulses = Self {
             source: source.to_owned(),
             speed_m_s,
@@ -149,21 +124,15 @@ impl Pulses {
 }
 
 /// Where the pulses are.
-fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, RecordError> {
+fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, InferError> {
     let channels = match volts {
         [sensor, wall, ..] => Channels::Separate { sensor, wall },
         one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
     };
-    let named = |error| RecordError::NoPulses {
-        source_name: source.to_owned(),
-        error,
-    };
+    let named = |error: SignalError| InferError::Input(format!("{source}: {error}"));
     let found = measure(channels, interval_s, &Measuring::default()).map_err(named)?;
     if let Some(doubt) = found.found.doubts.iter().copied().find(Doubt::is_grave) {
-        return Err(RecordError::Doubtful {
-            source_name: source.to_owned(),
-            doubt,
-        });
+        return InferError::input(format!("{source}: {doubt}"));
     }
     found.flight.map_err(named)
 }

@@ -1,27 +1,22 @@
 //! Walkers, step by step.
 
-use super::SamplingError;
-use super::ball::ball;
-use super::density::{admitted, ln_densities};
-use super::moves::{Proposal, propose};
-use crate::chance::{Chance, Purpose};
-use crate::covariance::Covariance;
-use crate::least_squares::check;
-use crate::{Fit, Loss, Problem};
+use crate::least_squares::{Merit, check};
+use crate::random::{Purpose, RandomStream};
+use crate::{Covariance, Fit, InferError, Loss, Parameter, Prior, Problem};
 use serde::{Deserialize, Serialize};
 
-/// How to sample.
+/// Options of [`Chain::start`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     /// Walkers of one ensemble: even, at least twice the parameters and four.
     pub walkers: usize,
-    /// Ensembles that know nothing of each other but run side by side.
+    /// Independent ensembles that run side by side.
     pub ensembles: usize,
     /// Share of moves by differences of walkers; the others stretch.
     pub differential_share: f64,
-    /// Every so many steps are kept.
+    /// Every so many steps are stored.
     pub keep_every: u64,
-    /// Seed of all chance.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
@@ -38,41 +33,36 @@ impl Default for Sampling {
 }
 
 impl Sampling {
-    fn check(&self, parameters: usize) -> Result<(), SamplingError> {
+    fn check(&self, parameters: usize) -> Result<(), InferError> {
         let least = (2 * parameters).max(4);
-        let wrong = |name, value, expected: &str| {
-            let expected = expected.to_owned();
-            Err(SamplingError::Option {
-                name,
-                value,
-                expected,
-            })
-        };
-        if self.walkers < least || !self.walkers.is_multiple_of(2) {
-            let expected = format!("an even number from {least}");
-            return wrong("number of walkers", self.walkers as f64, &expected);
+        let share = self.differential_share;
+        match () {
+            () if self.walkers < least || !self.walkers.is_multiple_of(2) => {
+                InferError::input(format!(
+                    "number of walkers is {}: expected an even number from {least}",
+                    self.walkers
+                ))
+            }
+            () if self.ensembles == 0 => {
+                InferError::input("number of ensembles is 0: expected at least 1")
+            }
+            () if self.keep_every == 0 => {
+                InferError::input("number of steps between stored ones is 0: expected at least 1")
+            }
+            () if !(0.0..=1.0).contains(&share) => InferError::input(format!(
+                "share of difference moves is {share}: expected 0 to 1"
+            )),
+            () => Ok(()),
         }
-        if self.ensembles == 0 {
-            return wrong("number of ensembles", 0.0, "at least 1");
-        }
-        if self.keep_every == 0 {
-            return wrong("number of steps between kept ones", 0.0, "at least 1");
-        }
-        if !(0.0..=1.0).contains(&self.differential_share) {
-            let share = self.differential_share;
-            return wrong("share of difference moves", share, "0 to 1");
-        }
-        Ok(())
     }
 }
 
 /// Chains of an affine-invariant ensemble sampler, so far.
 ///
-/// An ensemble's halves move in turn, each by proposals from the other half, so
-/// that one call of the model serves all walkers of a half [ForemanMackey2013],
-/// of all ensembles. Every half step has a stream of random numbers of its own:
-/// a chain that is saved with `serde`, read back exactly (with `serde_json`: its
-/// feature `float_roundtrip`) and continued has the bits of one that was never
+/// An ensemble's halves move in turn, each by proposals from the other half, so that one call of the
+/// model serves all walkers of a half [ForemanMackey2013], of all ensembles. Every half step has a
+/// stream of random numbers of its own: a chain that is saved with `serde`, read back exactly (with
+/// `serde_json`: its feature `float_roundtrip`) and continued has the bits of one that was never
 /// interrupted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chain {
@@ -86,11 +76,15 @@ pub struct Chain {
     /// Where walkers stand, ensemble by ensemble.
     places: Vec<Vec<f64>>,
     ln_densities: Vec<f64>,
-    /// Kept places: step by step, walker by walker, parameter by parameter.
+    /// Stored places: step by step, walker by walker, parameter by parameter.
     samples: Vec<f64>,
     accepted: u64,
     failed: u64,
 }
+
+/// A chain is not that of a problem whose ln densities differ by more: other instruction sets move
+/// them by 10⁻⁶, other data by units.
+const SAME: f64 = 0.05;
 
 impl Chain {
     /// Walkers around a fit's optimum.
@@ -102,16 +96,16 @@ impl Chain {
         fit: &Fit,
         covariance: &Covariance,
         how: &Sampling,
-    ) -> Result<Self, SamplingError> {
+    ) -> Result<Self, InferError> {
         check(problem)?;
         how.check(problem.parameters().len())?;
-        let (mut places, mut densities) = (Vec::new(), Vec::new());
+        let (mut places, mut ln_densities) = (Vec::new(), Vec::new());
         for ensemble in 0..how.ensembles {
-            let stream = u32::try_from(ensemble).unwrap_or(u32::MAX);
-            let around = (fit, covariance);
-            let (walkers, found) = ball(problem, around, how.walkers, (how.seed, stream))?;
-            places.extend(walkers);
-            densities.extend(found);
+            let ensemble = u32::try_from(ensemble).unwrap_or(u32::MAX);
+            let mut random = RandomStream::new(how.seed, Purpose::Walkers(ensemble));
+            let (own, found) = walkers(problem, (fit, covariance), how.walkers, &mut random)?;
+            places.extend(own);
+            ln_densities.extend(found);
         }
         Ok(Self {
             names: names(problem),
@@ -122,18 +116,18 @@ impl Chain {
             loss: fit.loss,
             steps: 0,
             places,
-            ln_densities: densities,
+            ln_densities,
             samples: Vec::new(),
             accepted: 0,
             failed: 0,
         })
     }
 
-    /// Leads all walkers on by some steps.
+    /// Moves all walkers by some steps.
     ///
     /// # Errors
     /// A chain of other parameters, or one that was damaged on disk.
-    pub fn advance(&mut self, problem: &dyn Problem, steps: u64) -> Result<(), SamplingError> {
+    pub fn advance(&mut self, problem: &dyn Problem, steps: u64) -> Result<(), InferError> {
         self.matches(problem)?;
         for _ in 0..steps {
             self.half_step(problem, 0);
@@ -148,100 +142,85 @@ impl Chain {
 
     fn half_step(&mut self, problem: &dyn Problem, half: usize) {
         let number = 2 * self.steps + half as u64;
-        let mut chance = Chance::new(self.seed, Purpose::HalfStep(number));
-        let movers = self.movers(half);
-        let proposals: Vec<Proposal> = (movers.iter())
-            .map(|(walker, still)| {
-                let others = &self.places[still.clone()];
-                let here = &self.places[*walker];
-                propose(here, others, self.differential_share, &mut chance)
-            })
-            .collect();
+        let mut random = RandomStream::new(self.seed, Purpose::HalfStep(number));
+        let size = self.places.len() / self.ensembles;
+        let mut proposals = Vec::new();
+        for ensemble in 0..self.ensembles {
+            let first = |half: usize| ensemble * size + half * (size / 2);
+            let others = &self.places[first(1 - half)..first(1 - half) + size / 2];
+            for walker in first(half)..first(half) + size / 2 {
+                let here = &self.places[walker];
+                let proposal = propose(here, others, self.differential_share, &mut random);
+                let is_admitted = admitted(problem, &proposal.point);
+                proposals.push((walker, proposal, is_admitted));
+            }
+        }
         // Places beyond a bound need no model.
-        let allowed = |proposal: &&Proposal| admitted(problem, &proposal.point);
-        let points: Vec<Vec<f64>> = (proposals.iter().filter(allowed))
-            .map(|proposal| proposal.point.clone())
+        let inside = proposals.iter().filter(|(_, _, is_admitted)| *is_admitted);
+        let points: Vec<Vec<f64>> = inside
+            .map(|(_, proposal, _)| proposal.point.clone())
             .collect();
         let mut densities = ln_densities(problem, self.loss, &points).into_iter();
-        for ((walker, _), proposal) in movers.into_iter().zip(proposals) {
-            let density = match admitted(problem, &proposal.point) {
-                true => densities.next(),
-                false => None,
-            };
-            self.decide(walker, proposal, density);
+        for (walker, proposal, is_admitted) in proposals {
+            let density = if is_admitted { densities.next() } else { None };
+            let Some(density) = density else { continue };
+            if density == f64::NEG_INFINITY {
+                self.failed += 1;
+            } else if proposal.ln_uniform < density - self.ln_densities[walker] + proposal.ln_factor
+            {
+                self.places[walker] = proposal.point;
+                self.ln_densities[walker] = density;
+                self.accepted += 1;
+            }
         }
     }
 
-    /// Walkers of a half of each ensemble, and the range of those that stand still for them.
-    fn movers(&self, half: usize) -> Vec<(usize, std::ops::Range<usize>)> {
-        let size = self.places.len() / self.ensembles;
-        let of = |ensemble: usize| {
-            let start = |half: usize| ensemble * size + half * (size / 2);
-            let still = start(1 - half)..start(1 - half) + size / 2;
-            (start(half)..start(half) + size / 2).map(move |walker| (walker, still.clone()))
-        };
-        (0..self.ensembles).flat_map(of).collect()
-    }
-
-    /// Moves a walker or leaves it; no density means a place beyond a bound.
-    fn decide(&mut self, walker: usize, proposal: Proposal, density: Option<f64>) {
-        let Some(density) = density else { return };
-        if density == f64::NEG_INFINITY {
-            self.failed += 1;
-            return;
-        }
-        let gain = density - self.ln_densities[walker] + proposal.ln_factor;
-        if proposal.ln_uniform < gain {
-            self.places[walker] = proposal.point;
-            self.ln_densities[walker] = density;
-            self.accepted += 1;
-        }
-    }
-
-    /// Whether the chain is sound and of the problem's parameters.
-    pub(super) fn matches(&self, problem: &dyn Problem) -> Result<(), SamplingError> {
-        self.sound()?;
-        match names(problem) == self.names {
+    /// Checks that the chain is undamaged and of the problem's parameters.
+    fn matches(&self, problem: &dyn Problem) -> Result<(), InferError> {
+        self.check()?;
+        let (own, names) = (&self.names, names(problem));
+        match names == *own {
             true => Ok(()),
-            false => Err(SamplingError::OtherParameters {
-                chain: self.names.clone(),
-                problem: names(problem),
-            }),
+            false => InferError::input(format!(
+                "the chain is of {own:?}, the problem has {names:?}: continue it with the same free parameters, in the same order"
+            )),
         }
     }
 
-    /// Whether a chain from disk is one.
-    pub(super) fn sound(&self) -> Result<(), SamplingError> {
+    /// Checks the numbers of walkers, parameters and samples of a chain that comes from disk.
+    pub(super) fn check(&self) -> Result<(), InferError> {
         let (walkers, parameters) = (self.places.len(), self.names.len());
-        let kept = self.steps.checked_div(self.keep_every).unwrap_or(0) as usize;
-        let whole = self.ensembles > 0
+        let stored = self.steps.checked_div(self.keep_every).unwrap_or(0) as usize;
+        let is_whole = self.ensembles > 0
             && parameters > 0
             && self.keep_every > 0
             && walkers >= 4 * self.ensembles
             && walkers.is_multiple_of(2 * self.ensembles)
             && self.places.iter().all(|place| place.len() == parameters)
             && self.ln_densities.len() == walkers
-            && self.samples.len() == kept * walkers * parameters;
-        if whole {
-            Ok(())
-        } else {
-            Err(SamplingError::Damaged)
+            && self.samples.len() == stored * walkers * parameters;
+        match is_whole {
+            true => Ok(()),
+            false => InferError::input(
+                "the saved chain is damaged: its walkers, parameters and samples do not fit together; start anew",
+            ),
         }
     }
 
-    /// What outliers cost.
-    pub(super) fn loss(&self) -> Loss {
-        self.loss
-    }
-
-    /// Where walkers stand.
-    pub(super) fn places(&self) -> &[Vec<f64>] {
-        &self.places
-    }
-
-    /// ln of the density at each walker's place.
-    pub(super) fn ln_densities(&self) -> &[f64] {
-        &self.ln_densities
+    /// Checks that the walkers' densities are those of this problem: for a chain from disk.
+    ///
+    /// # Errors
+    /// A chain of other parameters, data or another model, or a damaged one.
+    pub fn belongs_to(&self, problem: &dyn Problem) -> Result<(), InferError> {
+        self.matches(problem)?;
+        let found = ln_densities(problem, self.loss, &self.places);
+        let mut pairs = self.ln_densities.iter().zip(found);
+        match pairs.all(|(own, found)| (own - found).abs() <= SAME) {
+            true => Ok(()),
+            false => InferError::input(
+                "the chain was sampled from other data, another model or other priors: continue it with what it was begun with, or start anew",
+            ),
+        }
     }
 
     /// Names of the parameters.
@@ -262,13 +241,13 @@ impl Chain {
         self.places.len()
     }
 
-    /// Steps between kept ones.
+    /// Steps between stored ones.
     #[must_use]
     pub fn keep_every(&self) -> u64 {
         self.keep_every
     }
 
-    /// Share of proposals that were taken.
+    /// Share of proposals that were accepted.
     #[must_use]
     pub fn acceptance(&self) -> f64 {
         self.accepted as f64 / self.proposed()
@@ -284,8 +263,7 @@ impl Chain {
         (self.steps as f64 * self.places.len() as f64).max(1.0)
     }
 
-    /// Kept places of one walker's one parameter, in order. Quantiles are for
-    /// [`posterior`](Self::posterior), which asks first whether they mean anything.
+    /// Stored places of one walker's one parameter, in order.
     pub fn trace(&self, walker: usize, parameter: usize) -> impl Iterator<Item = f64> + '_ {
         let (walkers, parameters) = (self.places.len(), self.names.len());
         let place = walker * parameters + parameter;
@@ -300,4 +278,159 @@ fn names(problem: &dyn Problem) -> Vec<String> {
         .iter()
         .map(|p| p.name.clone())
         .collect()
+}
+
+/// ln of likelihood times priors up to a constant, for points within bounds; −∞ where the model
+/// fails.
+fn ln_densities(problem: &dyn Problem, loss: Loss, points: &[Vec<f64>]) -> Vec<f64> {
+    let merit = Merit::new(problem, loss);
+    let mut found = problem.residuals(points).into_iter();
+    // Log-normal priors are densities over θ itself here.
+    let measure = |point: &[f64]| -> f64 {
+        let pairs = problem.parameters().iter().zip(point);
+        let log_normal = pairs.filter(|(p, _)| matches!(p.prior, Prior::LogNormal { .. }));
+        log_normal.map(|(_, value)| value.ln()).sum()
+    };
+    let density = |point: &Vec<f64>| match found.next().map(|found| merit.value(point, &found)) {
+        Some(Ok(valued)) => -valued.cost - measure(point),
+        _ => f64::NEG_INFINITY,
+    };
+    points.iter().map(density).collect()
+}
+
+fn admitted(problem: &dyn Problem, point: &[f64]) -> bool {
+    let mut parameters = problem.parameters().iter().zip(point);
+    parameters.all(|(parameter, value)| parameter.admits(*value))
+}
+
+/// A proposed place, accepted if `ln_uniform` is below the difference of ln densities plus
+/// `ln_factor`.
+struct Proposal {
+    point: Vec<f64>,
+    ln_factor: f64,
+    ln_uniform: f64,
+}
+
+/// Spread of the length of difference moves, so that they reach everywhere.
+const LENGTHS: f64 = 0.1;
+
+/// A proposal for one walker from those of the other half.
+fn propose(
+    walker: &[f64],
+    others: &[Vec<f64>],
+    differential_share: f64,
+    random: &mut RandomStream,
+) -> Proposal {
+    let (point, ln_factor) = if random.uniform() < differential_share {
+        // Differential evolution [TerBraak2006]: by the difference of two other walkers times about
+        // 2.38/√(2d); as likely there as back.
+        let first = random.below(others.len());
+        let second = (first + 1 + random.below(others.len() - 1)) % others.len();
+        let optimal = 2.38 / (2.0 * walker.len() as f64).sqrt();
+        let length = optimal * (1.0 + LENGTHS * random.normal());
+        let pairs = others[first].iter().zip(&others[second]);
+        let step = pairs.map(|(a, b)| length * (a - b));
+        (walker.iter().zip(step).map(|(x, s)| x + s).collect(), 0.0)
+    } else {
+        // Stretch move [GoodmanWeare2010]: along the line to another walker, by z with density
+        // ∝ 1/√z between ½ and 2; accepted with z^(d−1) times the ratio of densities.
+        let other = &others[random.below(others.len())];
+        let z = 0.5 * (1.0 + random.uniform()).powi(2);
+        let point = walker
+            .iter()
+            .zip(other)
+            .map(|(x, o)| o + z * (x - o))
+            .collect();
+        (point, (walker.len() as f64 - 1.0) * z.ln())
+    };
+    // 1 − u is never 0.
+    let ln_uniform = (1.0 - random.uniform()).ln();
+    Proposal {
+        point,
+        ln_factor,
+        ln_uniform,
+    }
+}
+
+/// Times that a walker without a density is drawn again, nearer to the optimum.
+const TRIALS: usize = 30;
+/// Start of a walker along an unresolved direction, in units of scales.
+const UNRESOLVED: f64 = 0.1;
+
+/// Walkers of one ensemble around the optimum, spread like the covariance within the bounds, and
+/// their ln densities.
+fn walkers(
+    problem: &dyn Problem,
+    (fit, covariance): (&Fit, &Covariance),
+    count: usize,
+    random: &mut RandomStream,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>), InferError> {
+    let parameters = problem.parameters();
+    let draw = |size: f64, random: &mut RandomStream| -> Vec<f64> {
+        let displacement = displacement(parameters, fit, covariance, random);
+        let places = fit.point.iter().zip(displacement).zip(parameters);
+        places
+            .map(|((middle, d), parameter)| inside(middle + size * d, parameter))
+            .collect()
+    };
+    let mut walkers: Vec<Vec<f64>> = (0..count).map(|_| draw(1.0, random)).collect();
+    let mut densities = ln_densities(problem, fit.loss, &walkers);
+    for trial in 1..=TRIALS {
+        let is_outside = |i: &usize| !densities[*i].is_finite() || !admitted(problem, &walkers[*i]);
+        let outside: Vec<usize> = (0..count).filter(is_outside).collect();
+        if outside.is_empty() {
+            return Ok((walkers, densities));
+        }
+        let size = 0.7_f64.powf(trial as f64);
+        let again: Vec<Vec<f64>> = outside.iter().map(|_| draw(size, random)).collect();
+        let found = ln_densities(problem, fit.loss, &again);
+        for ((place, walker), density) in outside.into_iter().zip(again).zip(found) {
+            (walkers[place], densities[place]) = (walker, density);
+        }
+    }
+    InferError::input(
+        "walkers find no place around the optimum where the model can be computed: the fit may be at the edge of what the model bears; set bounds that keep away from it",
+    )
+}
+
+fn displacement(
+    parameters: &[Parameter],
+    fit: &Fit,
+    covariance: &Covariance,
+    random: &mut RandomStream,
+) -> Vec<f64> {
+    let mut displacement = covariance.displacement(|| random.normal());
+    for direction in &covariance.unresolved {
+        let parts = direction
+            .iter()
+            .zip(parameters)
+            .map(|(d, p)| (d / p.scale).abs());
+        let size = UNRESOLVED * random.normal() / parts.fold(f64::MIN_POSITIVE, f64::max);
+        for (sum, part) in displacement.iter_mut().zip(direction) {
+            *sum += size * part;
+        }
+    }
+    for binding in &fit.binding {
+        // The density falls by e over 1/push from the bound; `inside` mirrors.
+        let width = binding
+            .push
+            .recip()
+            .min(parameters[binding.parameter].scale);
+        displacement[binding.parameter] += width * random.normal();
+    }
+    displacement
+}
+
+/// Mirrored at a bound that it passes; halfway between both if that passes the other.
+fn inside(value: f64, parameter: &Parameter) -> f64 {
+    let (lower, upper) = (parameter.lower, parameter.upper);
+    let mirrored = match value {
+        value if value < lower => 2.0 * lower - value,
+        value if value > upper => 2.0 * upper - value,
+        value => value,
+    };
+    match parameter.admits(mirrored) {
+        true => mirrored,
+        false => 0.5 * (lower + upper),
+    }
 }

@@ -1,17 +1,10 @@
-//! Posterior distributions by an ensemble of walkers.
+//! Posterior distributions by an affine-invariant ensemble sampler.
 
-mod autocorrelation;
-mod ball;
 mod chain;
-mod converged;
-mod density;
-mod error;
-mod lead;
-mod moves;
-mod posterior;
+mod diagnosis;
 
-pub use autocorrelation::{Autocorrelation, autocorrelation_time};
 pub use chain::{Chain, Sampling};
-pub use converged::{Diagnosis, Requirements, Shortfall, Unconverged, split_r_hat};
-pub use error::SamplingError;
-pub use posterior::Posterior;
+pub use diagnosis::{
+    Autocorrelation, Diagnosis, Posterior, Requirements, Shortfall, Unconverged,
+    autocorrelation_time, split_r_hat,
+};

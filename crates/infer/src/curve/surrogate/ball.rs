@@ -1,10 +1,10 @@
 //! The room around a fit in units of its own errors.
 
-use super::{SurrogateError, side};
-use crate::chance::{Chance, Purpose};
+use super::{no_room, side};
 use crate::linear::{cholesky, norm};
 use crate::problem::Problem;
-use crate::{Covariance, Fit, Parameter};
+use crate::random::{Purpose, RandomStream};
+use crate::{Covariance, Fit, InferError, Parameter};
 
 /// All points within so many standard errors of a fit in every direction of its
 /// covariance, and within the parameters' bounds.
@@ -29,7 +29,7 @@ impl Ball {
         problem: &dyn Problem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let parameters = problem.parameters().to_vec();
         let (centre, sd) = (fit.point.clone(), covariance.sd.clone());
         for (at, parameter) in parameters.iter().enumerate() {
@@ -42,7 +42,7 @@ impl Ball {
         };
         let correlations: Vec<Vec<f64>> = all.clone().map(row).collect();
         Ok(Self {
-            lower: cholesky(&correlations).ok_or(SurrogateError::NoRoom)?,
+            lower: cholesky(&correlations).ok_or(no_room())?,
             centre,
             sd,
             reach,
@@ -69,12 +69,12 @@ impl Ball {
     /// A point of it, at a distance that `share` makes of an even number from 0 to 1.
     pub(super) fn draw(
         &self,
-        chance: &mut Chance,
+        random: &mut RandomStream,
         share: impl Fn(f64) -> f64,
-    ) -> Result<Vec<f64>, SurrogateError> {
+    ) -> Result<Vec<f64>, InferError> {
         for _ in 0..MOST_DRAWS {
-            let direction: Vec<f64> = self.sd.iter().map(|_| chance.normal()).collect();
-            let distance = self.reach * share(chance.uniform()) / norm(&direction);
+            let direction: Vec<f64> = self.sd.iter().map(|_| random.normal()).collect();
+            let distance = self.reach * share(random.uniform()) / norm(&direction);
             let white: Vec<f64> = direction.iter().map(|x| x * distance).collect();
             let point = self.place(&white);
             let mut pairs = self.parameters.iter().zip(&point);
@@ -82,7 +82,7 @@ impl Ball {
                 return Ok(point);
             }
         }
-        Err(SurrogateError::NoRoom)
+        Err(no_room())
     }
 
     fn place(&self, white: &[f64]) -> Vec<f64> {
@@ -93,9 +93,9 @@ impl Ball {
         self.lower.iter().enumerate().map(place).collect()
     }
 
-    /// Its own stream of chance, whatever the seed of a fit: one problem has one
+    /// Its own stream of random, whatever the seed of a fit: one problem has one
     /// surrogate.
-    pub(super) fn chance() -> Chance {
-        Chance::new(0, Purpose::Surrogate)
+    pub(super) fn random() -> RandomStream {
+        RandomStream::new(0, Purpose::Surrogate)
     }
 }

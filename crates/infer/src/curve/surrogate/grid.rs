@@ -1,9 +1,9 @@
 //! Polynomials through curves at Chebyshev's nodes of a box.
 
-use super::{SurrogateError, side};
+use super::{model_fails, side, too_many};
 use crate::curve::{CurveProblem, Predicted};
 use crate::problem::Problem;
-use crate::{Covariance, Fit};
+use crate::{Covariance, Fit, InferError};
 use std::f64::consts::PI;
 
 /// Nodes a parameter, for one to four parameters: some hundreds of curves in all.
@@ -34,12 +34,12 @@ impl Grid {
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let count = fit.point.len();
         let nodes = *count
             .checked_sub(1)
             .and_then(|at| NODES.get(at))
-            .ok_or(SurrogateError::TooMany(count))?;
+            .ok_or(too_many(count))?;
         let parameters = problem.parameters().iter().enumerate();
         let sides = parameters
             .map(|(at, parameter)| side(parameter, fit.point[at], reach, covariance.sd[at]))
@@ -53,7 +53,7 @@ impl Grid {
             .map(|number| grid.node(number))
             .collect();
         for curve in problem.all_curves(&points) {
-            let curve = curve.map_err(SurrogateError::ModelFails)?;
+            let curve = curve.map_err(model_fails)?;
             let ln = |row: &Predicted| row.map(|value| value.map_or(f64::NAN, f64::ln));
             grid.table.push(curve.iter().map(ln).collect());
         }

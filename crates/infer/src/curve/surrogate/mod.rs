@@ -11,10 +11,10 @@ mod grid;
 mod polynomial;
 
 use super::model::Predicted;
-use super::problem::{CurveError, CurveProblem};
+use super::problem::CurveProblem;
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
-use crate::{Covariance, Fit, Parameter};
+use crate::{Covariance, Fit, InferError, Parameter};
 use grid::Grid;
 use hertzchain_sim::count_done;
 use polynomial::Polynomial;
@@ -35,26 +35,20 @@ const AIM: f64 = 0.5 * Surrogate::ALLOWED;
 /// Of so many speeds one may be computed.
 const ROUGH_ONE_IN: usize = 4;
 
-/// Why there is no surrogate; the model itself still does.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SurrogateError {
-    /// Too many terms.
-    #[error("{0} parameters are too many to interpolate curves, which is done for up to {most}", most = Surrogate::MOST_PARAMETERS)]
-    TooMany(usize),
-    /// A parameter without a width.
-    #[error("{name} has no finite standard error: there is no room to interpolate in")]
-    NoWidth {
-        /// The parameter.
-        name: String,
-    },
-    /// Parameters whose errors are one and the same, or bounds that exclude almost
-    /// everything.
-    #[error("errors of the parameters and their bounds leave no room to interpolate in")]
-    NoRoom,
-    /// A curve that does not exist.
-    #[error("the model fails near the best fit: {0}")]
-    ModelFails(ModelError),
+fn too_many(count: usize) -> InferError {
+    let most = Surrogate::MOST_PARAMETERS;
+    InferError::Input(format!(
+        "{count} parameters are too many to interpolate curves, which is done for up to {most}"
+    ))
+}
+
+fn no_room() -> InferError {
+    let text = "errors of the parameters and their bounds leave no room to interpolate in";
+    InferError::Input(text.to_owned())
+}
+
+fn model_fails(error: ModelError) -> InferError {
+    InferError::Model(format!("the model fails near the best fit: {error}"))
 }
 
 /// A problem whose curves are interpolated near a fit and computed elsewhere.
@@ -99,12 +93,12 @@ impl Surrogate {
     /// squares.
     ///
     /// # Errors
-    /// See [`SurrogateError`].
+    /// See [`InferError`].
     pub fn new(
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let few = fit.point.len() <= grid::MOST_PARAMETERS;
         let gridded = few.then(|| Self::within(REACH, problem, fit, covariance));
         match gridded {
@@ -117,13 +111,13 @@ impl Surrogate {
     /// whose best fits scatter about this one.
     ///
     /// # Errors
-    /// See [`SurrogateError`].
+    /// See [`InferError`].
     pub fn within(
         reach: f64,
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let finer = finer(problem);
         let grid = Grid::within(reach, &finer, fit, covariance)?;
         let trials = grid.trials();
@@ -135,7 +129,7 @@ impl Surrogate {
         };
         let exact = surrogate.problem.all_curves(&trials).into_iter();
         let exact: Result<Vec<_>, _> = exact.collect();
-        let exact = exact.map_err(SurrogateError::ModelFails)?;
+        let exact = exact.map_err(model_fails)?;
         surrogate.error = surrogate.worst(trials.iter().zip(&exact))?;
         Ok(surrogate)
     }
@@ -145,12 +139,12 @@ impl Surrogate {
     /// jumps, are computed, if they are few.
     ///
     /// # Errors
-    /// See [`SurrogateError`].
+    /// See [`InferError`].
     pub fn by_least_squares(
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let finer = finer(problem);
         let few = finer.all_speeds_m_s().len() / ROUGH_ONE_IN;
         let mut study = polynomial::Study::new(REACH, &finer, fit, covariance)?;
@@ -174,7 +168,7 @@ impl Surrogate {
                 break;
             }
         }
-        best.ok_or(SurrogateError::TooMany(fit.point.len()))
+        best.ok_or(too_many(fit.point.len()))
     }
 
     /// Whether it is right where another is not, or with fewer speeds computed.
@@ -201,8 +195,8 @@ impl Surrogate {
     /// The same curves against other measured values at the same speeds.
     ///
     /// # Errors
-    /// See [`CurveError`].
-    pub fn with_data(&self, data: Data) -> Result<Self, CurveError> {
+    /// See [`InferError`].
+    pub fn with_data(&self, data: Data) -> Result<Self, InferError> {
         Ok(Self {
             problem: self.problem.with_data(data)?,
             ..self.clone()
@@ -217,15 +211,12 @@ fn finer(problem: &CurveProblem) -> CurveProblem {
 
 /// The middle of a parameter's range and half its width, so many standard errors
 /// to either side within bounds.
-fn side(
-    parameter: &Parameter,
-    value: f64,
-    reach: f64,
-    sd: f64,
-) -> Result<(f64, f64), SurrogateError> {
+fn side(parameter: &Parameter, value: f64, reach: f64, sd: f64) -> Result<(f64, f64), InferError> {
     if !(sd > 0.0 && sd.is_finite()) {
-        let name = parameter.name.clone();
-        return Err(SurrogateError::NoWidth { name });
+        let name = &parameter.name;
+        return InferError::input(format!(
+            "{name} has no finite standard error: there is no room to interpolate in"
+        ));
     }
     let lower = (value - reach * sd).max(parameter.lower);
     let upper = (value + reach * sd).min(parameter.upper);
@@ -237,14 +228,14 @@ impl Surrogate {
     fn worst<'a>(
         &self,
         trials: impl Iterator<Item = (&'a Vec<f64>, &'a Vec<Predicted>)>,
-    ) -> Result<f64, SurrogateError> {
+    ) -> Result<f64, InferError> {
         let residuals = |curve: &[Predicted]| {
             let found = self.problem.residuals_of(curve);
-            found.map_err(SurrogateError::ModelFails)
+            found.map_err(model_fails)
         };
         let mut worst: f64 = 0.0;
         for (point, exact) in trials {
-            let mut own = self.form.curve(point).ok_or(SurrogateError::NoRoom)?;
+            let mut own = self.form.curve(point).ok_or(no_room())?;
             self.rough.iter().for_each(|at| own[*at] = exact[*at]);
             let (own, exact) = (residuals(&own)?, residuals(exact)?);
             let pairs = own.standardised.iter().zip(&exact.standardised);

@@ -1,11 +1,11 @@
 //! Polynomials of a total degree, by least squares on curves at random.
 
-use super::SurrogateError;
 use super::ball::Ball;
-use crate::chance::Chance;
+use super::{model_fails, too_many};
 use crate::curve::{CurveProblem, Predicted};
 use crate::linear::least_squares;
-use crate::{Covariance, Fit};
+use crate::random::RandomStream;
+use crate::{Covariance, Fit, InferError};
 use rayon::prelude::*;
 
 /// Parameters that it bears: those of which a cubic has no more terms than are
@@ -54,7 +54,7 @@ struct Term {
 /// Polynomials of rising degree on the same curves and more.
 pub(super) struct Study {
     ball: Ball,
-    chance: Chance,
+    random: RandomStream,
     degree: usize,
     points: Vec<Vec<f64>>,
     curves: Vec<Vec<Predicted>>,
@@ -68,21 +68,21 @@ impl Study {
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<Self, SurrogateError> {
+    ) -> Result<Self, InferError> {
         let count = fit.point.len();
         if count > MOST_PARAMETERS {
-            return Err(SurrogateError::TooMany(count));
+            return Err(too_many(count));
         }
         let ball = Ball::new(reach, problem, fit, covariance)?;
-        let mut chance = Ball::chance();
+        let mut random = Ball::random();
         // Evenly: most of them near the rim, where a polynomial is worst.
         let even = |u: f64| u.powf(1.0 / count as f64);
-        let trial = |_| ball.draw(&mut chance, even);
+        let trial = |_| ball.draw(&mut random, even);
         let trials: Vec<Vec<f64>> = (0..TRIALS).map(trial).collect::<Result<_, _>>()?;
         Ok(Self {
             exact: computed(problem, &trials)?,
             ball,
-            chance,
+            random,
             degree: FIRST_DEGREE,
             points: Vec::new(),
             curves: Vec::new(),
@@ -120,7 +120,7 @@ impl Study {
     pub(super) fn next(
         &mut self,
         problem: &CurveProblem,
-    ) -> Result<Option<Polynomial>, SurrogateError> {
+    ) -> Result<Option<Polynomial>, InferError> {
         let terms = terms(self.trials[0].len(), self.degree);
         if terms.len() > MOST_TERMS {
             return Ok(None);
@@ -132,11 +132,11 @@ impl Study {
     }
 
     /// Curves at so many points in all.
-    fn compute(&mut self, problem: &CurveProblem, count: usize) -> Result<(), SurrogateError> {
+    fn compute(&mut self, problem: &CurveProblem, count: usize) -> Result<(), InferError> {
         let more = self.points.len()..count;
         // Somewhat more inside than evenly: there the posterior is.
         let inside = |u: f64| u.sqrt();
-        let draw = |_| self.ball.draw(&mut self.chance, inside);
+        let draw = |_| self.ball.draw(&mut self.random, inside);
         let points: Vec<Vec<f64>> = more.map(draw).collect::<Result<_, _>>()?;
         self.curves.extend(computed(problem, &points)?);
         self.points.extend(points);
@@ -147,10 +147,10 @@ impl Study {
 fn computed(
     problem: &CurveProblem,
     points: &[Vec<f64>],
-) -> Result<Vec<Vec<Predicted>>, SurrogateError> {
+) -> Result<Vec<Vec<Predicted>>, InferError> {
     let curves = problem.all_curves(points).into_iter();
     let all: Result<_, _> = curves.collect();
-    all.map_err(SurrogateError::ModelFails)
+    all.map_err(model_fails)
 }
 
 impl Polynomial {

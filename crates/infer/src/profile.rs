@@ -1,22 +1,183 @@
-//! One parameter, one side, from the optimum outward.
+//! Profile likelihood: uncertainty by re-optimising everything else.
 
-use super::{End, Profiling};
-use crate::covariance::Covariance;
-use crate::{Fit, Problem};
+use crate::least_squares::{Descent, Merit, run};
+use crate::{Covariance, Fit, Fitting, InferError, Problem};
+
+/// How to profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profiling {
+    /// Rises of χ² whose intervals are wanted, ascending: 1 and 3.841459 for
+    /// 68.3 and 95 %.
+    pub levels: Vec<f64>,
+    /// Most values of a parameter on either side of the optimum.
+    pub most_values: usize,
+}
+
+/// Rise of χ² that bounds a 95 % interval of one parameter.
+pub const RISE_OF_95_PERCENT: f64 = 3.841_458_820_694_124;
+
+impl Default for Profiling {
+    fn default() -> Self {
+        Self {
+            levels: vec![1.0, RISE_OF_95_PERCENT],
+            most_values: 60,
+        }
+    }
+}
+
+/// The least χ² as a function of one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Which parameter.
+    pub parameter: usize,
+    /// Its values, ascending, the optimum among them.
+    pub values: Vec<f64>,
+    /// χ² above the optimum at each value, all other parameters re-optimised;
+    /// priors and ln σ are counted in, a robust loss replaces the squares.
+    pub rise: Vec<f64>,
+    /// All parameters at each value.
+    pub points: Vec<Vec<f64>>,
+    /// One interval a level.
+    pub intervals: Vec<Interval>,
+}
+
+/// An interval of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Rise of χ² at its ends.
+    pub level: f64,
+    /// Lower end.
+    pub lower: End,
+    /// Upper end.
+    pub upper: End,
+}
+
+/// An end of an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// χ² has risen to the level here.
+    At(f64),
+    /// χ² does not rise to the level up to this bound of the parameter.
+    Bound(f64),
+    /// χ² did not rise to the level as far as it was followed: the data set no limit.
+    Open(f64),
+    /// Beyond this value the others cannot be re-optimised, though χ² has not
+    /// risen to the level: the model fails there, or is computed too coarsely.
+    ModelFails(f64),
+}
+
+impl End {
+    /// The value if the data determine it.
+    #[must_use]
+    pub fn closed(self) -> Option<f64> {
+        match self {
+            Self::At(value) => Some(value),
+            _ => None,
+        }
+    }
+}
+
+/// Fall of χ² below the optimum's that is more than noise of the model.
+const BETTER: f64 = 0.01;
+
+/// Profiles of those of some parameters that there are, all walks and descents
+/// side by side.
+///
+/// From the optimum outward, each value is held and the others re-optimised from
+/// where the last two values' optima point; the ends are found on √(χ² rise),
+/// which is straight where the problem is linear, to 10⁻³ standard errors.
+///
+/// # Errors
+/// An unconverged fit, a better fit met on the way, unusable levels.
+pub fn profile(
+    problem: &dyn Problem,
+    fit: &Fit,
+    covariance: &Covariance,
+    which: &[usize],
+    how: &Profiling,
+) -> Result<Vec<Profile>, InferError> {
+    let sound = how
+        .levels
+        .iter()
+        .all(|level| *level > 0.0 && level.is_finite());
+    if !sound || how.levels.is_empty() || !how.levels.is_sorted() {
+        let levels = &how.levels;
+        return InferError::input(format!("levels {levels:?} must be positive and ascending"));
+    }
+    if !fit.ending.converged() {
+        let text = "the fit has not converged: a profile needs a minimum to start from";
+        return Err(InferError::NotConverged(text.to_owned()));
+    }
+    let known = which.iter().filter(|k| **k < fit.point.len());
+    let mut walks: Vec<Walk> = known
+        .flat_map(|k| [-1.0, 1.0].map(|side| Walk::new(problem, (fit, covariance), *k, side, how)))
+        .collect();
+    while walk_on(problem, fit, &mut walks)? {}
+    Ok(walks.chunks(2).map(|pair| joined(pair, how)).collect())
+}
+
+/// One round: a value for each walk that is not at its end; whether there was any.
+fn walk_on(problem: &dyn Problem, fit: &Fit, walks: &mut [Walk]) -> Result<bool, InferError> {
+    let merit = Merit::new(problem, fit.loss);
+    let mut going: Vec<(&mut Walk, Vec<f64>)> = (walks.iter_mut())
+        .filter_map(|walk| walk.next().map(|point| (walk, point)))
+        .collect();
+    let limits = Fitting::default().limits();
+    let mut descents: Vec<Descent<'_>> = (going.iter())
+        .map(|(walk, point)| {
+            let others = (0..point.len()).filter(|k| *k != walk.parameter).collect();
+            Descent::new(merit.clone(), point.clone(), others, limits)
+                .with_steps(&fit.jacobian.steps)
+        })
+        .collect();
+    run(problem, &mut descents);
+    for ((walk, _), reached) in going.iter_mut().zip(descents) {
+        let rise = 2.0 * (reached.cost() - fit.cost);
+        if rise < -BETTER {
+            let point = reached.point;
+            return Err(InferError::BetterFit { point, by: -rise });
+        }
+        let found = reached
+            .ending()
+            .converged()
+            .then_some((reached.point, rise));
+        walk.take(found);
+    }
+    Ok(!going.is_empty())
+}
+
+fn joined(pair: &[Walk], how: &Profiling) -> Profile {
+    let (down, up) = (&pair[0], &pair[pair.len() - 1]);
+    let below = down.met.iter().skip(1).rev();
+    let all: Vec<_> = below.chain(&up.met).collect();
+    let levels = how.levels.iter().enumerate();
+    Profile {
+        parameter: up.parameter,
+        values: all.iter().map(|met| met.point[up.parameter]).collect(),
+        rise: all.iter().map(|met| met.rise).collect(),
+        points: all.iter().map(|met| met.point.clone()).collect(),
+        intervals: levels
+            .map(|(i, level)| Interval {
+                level: *level,
+                lower: down.end(i),
+                upper: up.end(i),
+            })
+            .collect(),
+    }
+}
 
 /// A walk that asks for values of its parameter and takes what χ² rises to.
-pub(super) struct Walk {
-    pub parameter: usize,
+struct Walk {
+    parameter: usize,
     /// What was met, by distance from the optimum, which is the first.
-    pub met: Vec<Met>,
+    met: Vec<Met>,
     side: f64,
     levels: Vec<f64>,
     /// Lower and upper bounds of all parameters.
     bounds: Vec<(f64, f64)>,
     /// First step, positive.
     first: f64,
-    /// Farthest distance followed.
-    farthest: f64,
+    limit_distance: f64,
     /// Displacement of all parameters for a unit of this one, from the covariance.
     tangent: Vec<f64>,
     most: usize,
@@ -28,9 +189,9 @@ pub(super) struct Walk {
 
 /// A value that was met.
 #[derive(Clone, Debug)]
-pub(super) struct Met {
-    pub point: Vec<f64>,
-    pub rise: f64,
+struct Met {
+    point: Vec<f64>,
+    rise: f64,
 }
 
 /// Why a walk goes no farther out.
@@ -50,13 +211,13 @@ const GROWTH: f64 = 1.5;
 const BEYOND: f64 = 1.1;
 /// Accuracy of √rise at an end.
 const ACCURACY: f64 = 1e-3;
-/// Farthest distance, in units of the parameter's scale.
-const FARTHEST: f64 = 1e3;
+/// Largest distance followed, in units of the parameter's scale.
+const LARGEST_DISTANCE: f64 = 1e3;
 /// Nearness to a failing value, in units of the distance walked, at which it is a limit.
 const NEAR: f64 = 0.02;
 
 impl Walk {
-    pub(super) fn new(
+    fn new(
         problem: &dyn Problem,
         (fit, covariance): (&Fit, &Covariance),
         parameter: usize,
@@ -78,7 +239,7 @@ impl Walk {
             levels: how.levels.clone(),
             bounds: parameters.iter().map(|p| (p.lower, p.upper)).collect(),
             first: if known { STRIDE * sd } else { 0.01 * scale },
-            farthest: FARTHEST * scale.max(if known { sd } else { 0.0 }),
+            limit_distance: LARGEST_DISTANCE * scale.max(if known { sd } else { 0.0 }),
             tangent: tangent.collect(),
             most: how.most_values.max(4),
             failing: None,
@@ -102,7 +263,7 @@ impl Walk {
     }
 
     /// Where to compute next, the others where the last optima point; `None` at the end.
-    pub(super) fn next(&mut self) -> Option<Vec<f64>> {
+    fn next(&mut self) -> Option<Vec<f64>> {
         let distance = match self.stop {
             None => self.outward(),
             Some(_) => None,
@@ -126,7 +287,7 @@ impl Walk {
             () if height >= goal => Some(Stop::Risen),
             () if distance >= room => Some(Stop::Bound),
             () if self.nears_failure(distance) => Some(Stop::Fails),
-            () if distance >= self.farthest || self.met.len() > self.most => Some(Stop::Far),
+            () if distance >= self.limit_distance || self.met.len() > self.most => Some(Stop::Far),
             () => None,
         };
         if self.stop.is_some() {
@@ -204,7 +365,7 @@ impl Walk {
     }
 
     /// Takes the optimum of the others and the rise of χ², or that there is none.
-    pub(super) fn take(&mut self, found: Option<(Vec<f64>, f64)>) {
+    fn take(&mut self, found: Option<(Vec<f64>, f64)>) {
         match found {
             Some((point, rise)) => {
                 let place = self.heights().take_while(|met| met.0 < self.asked).count();
@@ -216,7 +377,7 @@ impl Walk {
     }
 
     /// The end of a level's interval.
-    pub(super) fn end(&self, level: usize) -> End {
+    fn end(&self, level: usize) -> End {
         let at = |distance: f64| self.optimum() + self.side * distance;
         if let Some((near, far)) = self.bracket(level) {
             let share = (self.levels[level].sqrt() - near.1) / (far.1 - near.1);

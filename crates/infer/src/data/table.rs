@@ -1,0 +1,642 @@
+//! Tables of measured curves: a file's text, or what `measure` returns in memory.
+
+use super::{Data, DataRow, Freedom, Observable};
+use crate::InferError;
+use csv::{ReaderBuilder, Trim};
+use hertzchain_measure::Case;
+use hertzchain_measure::signal::{Estimate, Summary};
+
+/// Standard errors for tables that have no columns of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Defaults {
+    /// Of speeds in m/s; 0 when `None`.
+    pub speed_m_s: Option<f64>,
+    /// Of times of flight in s.
+    pub time_s: Option<f64>,
+    /// Of ratios of peaks.
+    pub ratio: Option<f64>,
+    /// How well errors are known, the table's too.
+    pub scatter: Scatter,
+}
+
+/// Number of shots from whose scatter standard errors come. Such errors are widened by
+/// [`widening`](crate::widening) in fits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scatter {
+    /// As the table says of each row's own errors, in columns as `measure` writes them: `shots`, and
+    /// `tof_incident_s_count` of one quantity, less what they share (`tof_incident_shared_s`);
+    /// `speed_error_shots` of the speed, 0 where it is known. Without them errors are known.
+    #[default]
+    AsTold,
+    /// All errors are known, whatever the table says of shots.
+    Known,
+    /// All errors come from so many shots.
+    Of(u32),
+}
+
+/// What to take from a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// Which case of a table with a column `case`; needed if it has more than one.
+    pub case: Option<String>,
+    /// Which measured numbers.
+    pub observables: Vec<Observable>,
+    /// Standard errors where the table has none.
+    pub defaults: Defaults,
+}
+
+impl Default for Selection {
+    /// Both times of flight.
+    fn default() -> Self {
+        let observables = vec![Observable::Incident, Observable::Reflected];
+        Self {
+            case: None,
+            observables,
+            defaults: Defaults::default(),
+        }
+    }
+}
+
+/// A row of a table: its case and its numbers; texts that are no numbers are errors.
+struct Record {
+    line: u64,
+    case: String,
+    cells: Vec<Result<Option<f64>, String>>,
+}
+
+impl Data {
+    /// Reads a table from text: commas, or semicolons with decimal commas. Cells of observables may
+    /// be empty: that one was not seen.
+    ///
+    /// # Errors
+    /// The first row and column that can't be used.
+    pub fn parse(file: &str, text: &str, selection: &Selection) -> Result<Self, InferError> {
+        let (titles, records) =
+            records(text).map_err(|what| InferError::Input(format!("{file}: {what}")))?;
+        Self::from_records(file, &titles, records, selection)
+    }
+
+    /// The curve of a case that `measure` returned: the same as through the file that it writes.
+    ///
+    /// # Errors
+    /// The first row and column that can't be used.
+    pub fn from_curve(curve: &Case, selection: &Selection) -> Result<Self, InferError> {
+        let mut titles: Vec<String> = Vec::new();
+        let mut records = Vec::new();
+        for (at, row) in curve.rows.iter().enumerate() {
+            let mut cells: Vec<(String, Option<f64>)> = vec![
+                ("speed_m_s".into(), Some(row.speed_m_s.value)),
+                ("speed_error_m_s".into(), Some(row.speed_m_s.sigma)),
+                (
+                    "speed_error_shots".into(),
+                    Some(row.speed_error_shots as f64),
+                ),
+                ("shots".into(), Some(row.shots.0 as f64)),
+                ("tof_incident_shared_s".into(), Some(row.shared_s[0])),
+                ("tof_reflected_shared_s".into(), Some(row.shared_s[1])),
+                (CORRELATIONS[0].into(), row.correlation),
+                (CORRELATIONS[1].into(), row.correlation_at_mean_speed),
+            ];
+            let mut estimate = |name: &str, value: Option<f64>, error: Option<f64>| {
+                cells.push((name.to_owned(), value));
+                cells.push((format!("{name}_error"), error));
+            };
+            let means: [Option<Summary>; 4] = [
+                Some(row.incident_s),
+                row.reflected_s,
+                Some(row.wall_over_passing),
+                row.returning_over_passing,
+            ];
+            for (of, mean) in Observable::ALL.into_iter().zip(&means) {
+                estimate(
+                    of.column(),
+                    mean.map(|mean| mean.mean),
+                    mean.map(|mean| mean.error),
+                );
+            }
+            for (name, value) in AT_MEAN_SPEED.into_iter().zip(row.at_mean_speed_s) {
+                estimate(name, value.map(|of| of.value), value.map(|of| of.sigma));
+            }
+            for (of, mean) in Observable::ALL.into_iter().zip(&means) {
+                let count = mean.map(|mean| mean.count as f64);
+                cells.push((format!("{}_count", of.column()), count));
+            }
+            let (names, values): (Vec<String>, Vec<Option<f64>>) = cells.into_iter().unzip();
+            titles = names;
+            // A file has no cell for what is no number.
+            let cells = values
+                .into_iter()
+                .map(|value| Ok(value.filter(|value| value.is_finite())));
+            let (line, case) = (at as u64 + 2, curve.name.clone());
+            records.push(Record {
+                line,
+                case,
+                cells: cells.collect(),
+            });
+        }
+        titles.push("case".into());
+        Self::from_records("measured curve", &titles, records, selection)
+    }
+
+    fn from_records(
+        file: &str,
+        titles: &[String],
+        records: Vec<Record>,
+        selection: &Selection,
+    ) -> Result<Self, InferError> {
+        let columns = Columns::of(titles, &selection.observables, file)?;
+        let has_cases = titles.iter().any(|title| title == "case");
+        let (case, records) = of_case(file, records, has_cases, selection.case.as_deref())?;
+        let reader = Reader {
+            file,
+            defaults: &selection.defaults,
+            columns,
+        };
+        let rows = records
+            .iter()
+            .filter_map(|record| reader.row(record).transpose());
+        let mut rows: Vec<DataRow> = rows.collect::<Result<_, _>>()?;
+        reader.check_repeated(&rows)?;
+        rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
+        match rows.is_empty() {
+            true => InferError::input(format!(
+                "{file}: no row has any of the numbers that are used (--use)"
+            )),
+            false => Ok(Self {
+                file: file.to_owned(),
+                case,
+                rows,
+            }),
+        }
+    }
+}
+
+/// A text whose lines all end alike: the reader counts a carriage return and a line feed as one
+/// line too few.
+pub(crate) fn with_plain_ends(text: &str) -> String {
+    text.replace("\r\n", "\n").replace('\r', "\n")
+}
+
+fn records(text: &str) -> Result<(Vec<String>, Vec<Record>), String> {
+    let text = with_plain_ends(text);
+    let text = text.trim_start_matches('\u{feff}');
+    if text.trim().is_empty() {
+        return Err("the file is empty".to_owned());
+    }
+    // The line of titles shows what cells are divided by.
+    let is_titles = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
+    let titles = text.lines().find(is_titles).unwrap_or_default();
+    let mut marks = [b';', b'\t'].into_iter();
+    let delimiter = marks
+        .find(|mark| titles.as_bytes().contains(mark))
+        .unwrap_or(b',');
+    let mut reader = ReaderBuilder::new()
+        .delimiter(delimiter)
+        .comment(Some(b'#'))
+        .trim(Trim::All)
+        .from_reader(text.as_bytes());
+    let titles = reader.headers().map_err(|error| error.to_string())?;
+    let titles: Vec<String> = titles.iter().map(str::to_owned).collect();
+    let case = titles.iter().position(|title| title == "case");
+    let number = |text: &str| match (text, delimiter) {
+        ("", _) => Ok(None),
+        (text, b',') => text.parse().map(Some).map_err(|_| text.to_owned()),
+        _ => text
+            .replace(',', ".")
+            .parse()
+            .map(Some)
+            .map_err(|_| text.to_owned()),
+    };
+    let mut all = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| error.to_string())?;
+        all.push(Record {
+            line: record.position().map_or(0, csv::Position::line),
+            case: case
+                .and_then(|at| record.get(at))
+                .unwrap_or_default()
+                .to_owned(),
+            cells: record.iter().map(number).collect(),
+        });
+    }
+    Ok((titles, all))
+}
+
+/// The records of the case asked for, or of all where there is only one.
+fn of_case(
+    file: &str,
+    records: Vec<Record>,
+    has_cases: bool,
+    asked: Option<&str>,
+) -> Result<(String, Vec<Record>), InferError> {
+    let mut cases: Vec<String> = Vec::new();
+    for record in &records {
+        if !cases.contains(&record.case) {
+            cases.push(record.case.clone());
+        }
+    }
+    let wrong = |what: &str| {
+        InferError::input(format!(
+            "{file}: {what}; its cases are {}",
+            cases.join(", ")
+        ))
+    };
+    let chosen = match (asked, &cases[..]) {
+        (None, []) => String::new(),
+        (None, [only]) => only.clone(),
+        (None, _) => return wrong("one case must be chosen by --case"),
+        // Of the model, then: the table has none.
+        (Some(name), _) if !has_cases => return Ok((name.to_owned(), records)),
+        (Some(name), cases) if cases.iter().any(|case| case == name) => name.to_owned(),
+        (Some(name), _) => return wrong(&format!("it has no case `{name}`")),
+    };
+    let records = records
+        .into_iter()
+        .filter(|record| record.case == chosen)
+        .collect();
+    Ok((chosen, records))
+}
+
+/// A column: its place and its title.
+#[derive(Clone, Debug, PartialEq)]
+struct Column {
+    at: usize,
+    title: String,
+}
+
+/// Columns of a measured quantity.
+#[derive(Clone, Debug, PartialEq)]
+struct Measured {
+    value: Column,
+    sigma: Option<Column>,
+    /// Number of shots that it is the mean of.
+    count: Option<Column>,
+    /// The part of its error that all shots share, and that no scatter shows.
+    shared: Option<Column>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Columns {
+    shots: Option<Column>,
+    speed: Measured,
+    observables: [Option<Measured>; 4],
+    correlation: Option<Column>,
+}
+
+/// Times that `measure` takes to the mean speed, shot by shot, do not scatter with their speeds any
+/// more: they are read in place of plain means.
+const AT_MEAN_SPEED: [&str; 2] = [
+    "tof_incident_at_mean_speed_s",
+    "tof_reflected_at_mean_speed_s",
+];
+
+/// Correlations of the errors of both plain means, and of both times at the mean speed.
+const CORRELATIONS: [&str; 2] = ["tof_correlation", "tof_at_mean_speed_correlation"];
+
+impl Columns {
+    /// Columns of the wanted observables, of which a table must have one.
+    fn of(titles: &[String], wanted: &[Observable], file: &str) -> Result<Self, InferError> {
+        let missing = |column: &str, expected: String| {
+            InferError::Input(format!("{file}: no column `{column}`; expected {expected}"))
+        };
+        let speed = measured(titles, "speed_m_s").ok_or_else(|| {
+            let near = other_unit(titles, "speed", "_m_s");
+            missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
+        })?;
+        let speed = Measured {
+            count: find(titles, &["speed_error_shots"]),
+            ..speed
+        };
+        let observables = Observable::ALL.map(|of| {
+            let plain = of.column();
+            let finer = AT_MEAN_SPEED.get(of.index()).and_then(|name| {
+                let shared = format!("{}_shared_s", plain.strip_suffix("_s").unwrap_or(plain));
+                Some(Measured {
+                    count: find(titles, &[&format!("{plain}_count")]),
+                    shared: find(titles, &[&shared]),
+                    ..measured(titles, name)?
+                })
+            });
+            finer
+                .or_else(|| measured(titles, plain))
+                .filter(|_| wanted.contains(&of))
+        });
+        if observables.iter().all(Option::is_none) {
+            let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
+            return Err(missing(&names.join("` or `"), instead(titles, wanted)));
+        }
+        let incident = observables[0].as_ref().map(|of| of.value.title.as_str());
+        let correlation = CORRELATIONS[usize::from(incident == Some(AT_MEAN_SPEED[0]))];
+        Ok(Self {
+            correlation: find(titles, &[correlation]),
+            shots: find(titles, &["shots"]),
+            speed,
+            observables,
+        })
+    }
+}
+
+/// What a table without any wanted observable should have, with a hint at what it has.
+fn instead(titles: &[String], wanted: &[Observable]) -> String {
+    let kinds = [(true, "times in s"), (false, "ratios of peaks")].into_iter();
+    let kinds = kinds.filter(|(times, _)| wanted.iter().any(|of| of.is_time() == *times));
+    let kinds: Vec<&str> = kinds.map(|(_, name)| name).collect();
+    let others = Observable::ALL
+        .into_iter()
+        .filter(|of| !wanted.contains(of));
+    let there = others
+        .map(Observable::column)
+        .find(|column| titles.iter().any(|t| t == column));
+    let hint = there.map_or_else(
+        || other_unit(titles, "tof", "_s"),
+        |column| format!("; `{column}` is there, but --use does not name it"),
+    );
+    format!("{}{hint}", kinds.join(" or "))
+}
+
+/// A hint at a column that looks like the one wanted, but for its unit.
+fn other_unit(titles: &[String], beginning: &str, unit: &str) -> String {
+    let near = |title: &&String| title.starts_with(beginning) && !title.ends_with(unit);
+    titles.iter().find(near).map_or(String::new(), |title| {
+        format!("; `{title}` is not read, since its title does not end with the SI unit")
+    })
+}
+
+fn find(titles: &[String], names: &[&str]) -> Option<Column> {
+    let at = names
+        .iter()
+        .find_map(|name| titles.iter().position(|title| title == name))?;
+    Some(Column {
+        at,
+        title: titles[at].clone(),
+    })
+}
+
+/// The column of a quantity, and that of its error: `x_s_err`, `x_err_s`, or the same with `error`
+/// or `sigma`.
+fn measured(titles: &[String], name: &str) -> Option<Measured> {
+    let stem = |unit: &&str| name.strip_suffix(*unit).filter(|stem| !stem.is_empty());
+    let unit = ["_m_s", "_s"]
+        .into_iter()
+        .find(|unit| stem(unit).is_some())
+        .unwrap_or("");
+    let stem = stem(&unit).unwrap_or(name);
+    let of = |word: &str| [format!("{name}_{word}"), format!("{stem}_{word}{unit}")];
+    let names: Vec<String> = ["error", "err", "sigma"].into_iter().flat_map(of).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Some(Measured {
+        value: find(titles, &[name])?,
+        sigma: find(titles, &names),
+        count: find(titles, &[&format!("{name}_count")]),
+        shared: None,
+    })
+}
+
+/// Faster than any striker: speeds of chains are in m/s.
+const MOST_SPEED_M_S: f64 = 50.0;
+/// Longer than a wave takes through any row on a table.
+const MOST_TIME_S: f64 = 0.1;
+/// Times from here on are rather microseconds than milliseconds.
+const MICROSECONDS_FROM: f64 = 20.0;
+
+/// What is wrong with a speed of a striker in m/s, if anything is.
+#[must_use]
+pub fn wrong_speed(value: f64) -> Option<String> {
+    let is_fast = value > MOST_SPEED_M_S;
+    // Further digits are rounding.
+    let value: f64 = format!("{value:.8e}").parse().unwrap_or(value);
+    if value <= 0.0 || !value.is_finite() {
+        return Some(format!(
+            "{value} is no speed of a striker; expected more than 0 m/s"
+        ));
+    }
+    is_fast.then(|| {
+        format!("{value} m/s is no speed of a striker; it looks like mm/s or cm/s, expected m/s")
+    })
+}
+
+fn wrong_value(of: Observable, value: f64) -> Option<String> {
+    let name = of.name();
+    if value <= 0.0 || !value.is_finite() {
+        return Some(format!("{value} is no {name}; expected a positive number"));
+    }
+    let unit = if value >= MICROSECONDS_FROM {
+        "microseconds"
+    } else {
+        "milliseconds"
+    };
+    (of.is_time() && value > MOST_TIME_S)
+        .then(|| format!("{value} s is no {name}; it looks like {unit}, expected seconds"))
+}
+
+fn wrong_sigma(of: Observable, Estimate { value, sigma }: Estimate) -> Option<String> {
+    if sigma <= 0.0 || !sigma.is_finite() {
+        return Some(format!(
+            "{sigma} is no uncertainty; expected a standard error above 0"
+        ));
+    }
+    let unit = if of.is_time() { " s" } else { "" };
+    (sigma > value).then(|| {
+        format!(
+            "the uncertainty {sigma}{unit} is larger than the value {value}{unit}: another unit?"
+        )
+    })
+}
+
+fn wrong_speed_sigma(Estimate { value, sigma }: Estimate) -> Option<String> {
+    if sigma < 0.0 || !sigma.is_finite() {
+        return Some(format!("{sigma} is no uncertainty; expected 0 m/s or more"));
+    }
+    (sigma >= value).then(|| {
+        format!("the uncertainty {sigma} m/s is not below the speed {value} m/s: another unit?")
+    })
+}
+
+struct Reader<'a> {
+    file: &'a str,
+    defaults: &'a Defaults,
+    columns: Columns,
+}
+
+impl Reader<'_> {
+    fn wrong<T>(&self, line: u64, column: &Column, what: &str) -> Result<T, InferError> {
+        InferError::input(format!(
+            "{}, line {line}, {}: {what}",
+            self.file, column.title
+        ))
+    }
+
+    fn check(&self, wrong: Option<String>, line: u64, column: &Column) -> Result<(), InferError> {
+        wrong.map_or(Ok(()), |what| self.wrong(line, column, &what))
+    }
+
+    /// The number in a cell, if there is one.
+    fn number(&self, record: &Record, column: &Column) -> Result<Option<f64>, InferError> {
+        match record.cells.get(column.at) {
+            None => Ok(None),
+            Some(Ok(number)) => Ok(*number),
+            Some(Err(text)) => self.wrong(record.line, column, &format!("`{text}` is no number")),
+        }
+    }
+
+    fn optional(
+        &self,
+        record: &Record,
+        column: Option<&Column>,
+    ) -> Result<Option<f64>, InferError> {
+        column.map_or(Ok(None), |column| self.number(record, column))
+    }
+
+    /// A row; none where nothing was seen at this speed.
+    fn row(&self, record: &Record) -> Result<Option<DataRow>, InferError> {
+        let line = record.line;
+        let speed_m_s = self.speed(record)?;
+        let (mut values, mut freedom) = ([None; 4], Freedom::KNOWN);
+        freedom.speed = self.freedom(record, &self.columns.speed, speed_m_s.sigma)?;
+        for (of, columns) in Observable::ALL.into_iter().zip(&self.columns.observables) {
+            let Some(columns) = columns else { continue };
+            let value = self.observable(record, of, columns)?;
+            let sigma = value.map_or(f64::NAN, |value| value.sigma);
+            freedom.values[of.index()] = self.freedom(record, columns, sigma)?;
+            values[of.index()] = value;
+        }
+        let correlation = self.optional(record, self.columns.correlation.as_ref())?;
+        if let (Some(value), Some(column)) = (correlation, &self.columns.correlation)
+            && !(value.abs() < 1.0)
+        {
+            let what = format!(
+                "{value} is no correlation of two errors; expected a number between -1 and 1"
+            );
+            return self.wrong(line, column, &what);
+        }
+        let row = DataRow {
+            line,
+            speed_m_s,
+            values,
+            correlation,
+            freedom,
+        };
+        Ok(values.iter().any(Option::is_some).then_some(row))
+    }
+
+    fn speed(&self, record: &Record) -> Result<Estimate, InferError> {
+        let (
+            line,
+            Measured {
+                value: column,
+                sigma,
+                ..
+            },
+        ) = (record.line, &self.columns.speed);
+        let Some(value) = self.number(record, column)? else {
+            return self.wrong(line, column, "no speed; expected one in m/s");
+        };
+        self.check(wrong_speed(value), line, column)?;
+        let known = self.optional(record, sigma.as_ref())?;
+        let sigma_m_s = known.or(self.defaults.speed_m_s).unwrap_or(0.0);
+        let speed = Estimate {
+            value,
+            sigma: sigma_m_s,
+        };
+        self.check(
+            wrong_speed_sigma(speed),
+            line,
+            sigma.as_ref().unwrap_or(column),
+        )?;
+        Ok(speed)
+    }
+
+    fn observable(
+        &self,
+        record: &Record,
+        of: Observable,
+        columns: &Measured,
+    ) -> Result<Option<Estimate>, InferError> {
+        let line = record.line;
+        let Some(value) = self.number(record, &columns.value)? else {
+            return Ok(None);
+        };
+        self.check(wrong_value(of, value), line, &columns.value)?;
+        let known = self.optional(record, columns.sigma.as_ref())?;
+        let (usual, option) = match of.is_time() {
+            true => (self.defaults.time_s, "--tof-error"),
+            false => (self.defaults.ratio, "--ratio-error"),
+        };
+        let place = columns.sigma.as_ref().unwrap_or(&columns.value);
+        let Some(sigma) = known.or(usual) else {
+            let what = format!(
+                "no uncertainty of this {}; expected a standard error in a column `{}_error`, or \
+                 {option} for all rows",
+                of.name(),
+                of.column()
+            );
+            return self.wrong(line, place, &what);
+        };
+        let estimate = Estimate { value, sigma };
+        self.check(wrong_sigma(of, estimate), line, place)?;
+        Ok(Some(estimate))
+    }
+
+    /// Degrees of freedom of the scatter from which a standard error comes; infinite if it is known,
+    /// as one from an option is. Of an error part of which all shots share, and which is known,
+    /// Satterthwaite's: the rest alone scatters.
+    fn freedom(&self, record: &Record, columns: &Measured, sigma: f64) -> Result<f64, InferError> {
+        let own = columns
+            .sigma
+            .as_ref()
+            .and_then(|column| record.cells.get(column.at));
+        let has_own = own.is_some_and(|cell| !matches!(cell, Ok(None)));
+        match self.defaults.scatter {
+            Scatter::Of(shots) => return Ok(f64::from(shots) - 1.0),
+            Scatter::AsTold if has_own => {}
+            _ => return Ok(f64::INFINITY),
+        }
+        let Some(shots) = self.shots(record, columns)? else {
+            return Ok(f64::INFINITY);
+        };
+        let shared = self
+            .optional(record, columns.shared.as_ref())?
+            .unwrap_or(0.0);
+        let scattered = 1.0 - (shared / sigma).powi(2).min(1.0);
+        // One shot has no scatter, nor has none: the error is known from elsewhere.
+        Ok(match shots > 1.0 {
+            true => (shots - 1.0) / scattered.powi(2),
+            false => f64::INFINITY,
+        })
+    }
+
+    /// Number of shots that a mean is of.
+    fn shots(&self, record: &Record, columns: &Measured) -> Result<Option<f64>, InferError> {
+        for column in columns.count.iter().chain(&self.columns.shots) {
+            if let Some(shots) = self.number(record, column)? {
+                if shots < 0.0 || shots.fract() != 0.0 {
+                    let what = format!("{shots} is no number of shots; expected a whole one");
+                    return self.wrong(record.line, column, &what);
+                }
+                return Ok(Some(shots));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Rejects one speed twice: means of shots are not ours to take.
+    fn check_repeated(&self, rows: &[DataRow]) -> Result<(), InferError> {
+        for (at, row) in rows.iter().enumerate() {
+            let speed = row.speed_m_s.value;
+            if let Some(first) = rows[..at].iter().find(|e| e.speed_m_s.value == speed) {
+                let what = format!(
+                    "the speed {speed} m/s stands in line {} too; expected one row a speed, as \
+                     `hertzchain measure` writes them in speeds.csv",
+                    first.line
+                );
+                return self.wrong(row.line, &self.columns.speed.value, &what);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+#[path = "tests/columns.rs"]
+mod tests;
