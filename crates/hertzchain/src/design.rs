@@ -130,11 +130,11 @@ pub fn designed(
     let (names, units) = aims.map(|(at, aim)| called(problem, at, aim)).unzip();
     let label = |at: usize| problem.residual_label(at);
     let identified = Identifiability::new(problem.parameters(), &fit, label);
-    let advice = match identified.confused.is_empty() {
+    let advice = match identified.unidentifiable.is_empty() {
         true => Vec::new(),
-        false => problem.would_separate(&fit).words(),
+        false => problem.suggested_measurements(&fit).words(),
     };
-    let open = identified.confused.into_iter();
+    let open = identified.unidentifiable.into_iter();
     Ok(Designed {
         goodness: Goodness::new(problem, &fit),
         advice,
@@ -165,7 +165,7 @@ impl Designed {
             format!("Nothing that could be measured determines this combination: {words}")
         });
         let mut told: Vec<String> = open.collect();
-        let names = self.design.hopeless.iter();
+        let names = self.design.not_identifiable.iter();
         let names: Vec<&str> = names
             .map(|k| problem.parameters()[*k].name.as_str())
             .collect();

@@ -2,7 +2,7 @@
 
 use crate::options::{SimulationOptions as How, has_unit};
 use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, Warning};
-use hertzchain_infer::SamplingError;
+use hertzchain_infer::InferError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 
@@ -39,8 +39,8 @@ impl From<StudyError> for Failure {
     }
 }
 
-impl From<SamplingError> for Failure {
-    fn from(error: SamplingError) -> Self {
+impl From<InferError> for Failure {
+    fn from(error: InferError) -> Self {
         Self::User(error.to_string())
     }
 }

@@ -7,8 +7,8 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Aim, Candidate, CompareError, Compared, Covariance, Criteria, DesignError, Ending, Fit,
-    FitError, Fitting, Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate,
+    Aim, Candidate, Compared, Covariance, Criteria, Ending, Fit,
+    Fitting, Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate,
     design, fit,
 };
 
@@ -200,7 +200,7 @@ fn models_that_cannot_be_compared_are_named() {
         compare(&[of("line", &first), of("other", second)]).unwrap_err()
     };
     second.loss = Loss::Huber { scale: 1.0 };
-    assert!(matches!(refused(&second), CompareError::Robust { name } if name == "other"));
+    assert!(refused(&second).to_string().starts_with("other was fitted with a robust loss"));
     second.residuals.pop();
     assert!(matches!(
         refused(&second),
@@ -211,7 +211,7 @@ fn models_that_cannot_be_compared_are_named() {
         fit: &first,
         cross_validation: None,
     };
-    assert_eq!(compare(&[alone]), Err(CompareError::Alone));
+    assert!(compare(&[alone]).unwrap_err().to_string().contains("two models"));
 }
 
 #[test]

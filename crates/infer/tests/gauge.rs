@@ -184,7 +184,7 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
     let gauge = gauge(wet(&pump, 3), 3);
     let oil = known_oils().unwrap().remove(2);
     for row in gauge.rows() {
-        let contact = row.told.unwrap();
+        let contact = row.contact.unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         let covariance = contact.first.covariance();
         for (of, exact) in [k, a].into_iter().enumerate() {
@@ -211,7 +211,7 @@ fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
     let oil = known_oils().unwrap().remove(2);
     let mut smaller = 0;
     for row in gauge.rows() {
-        let contact = row.told.unwrap();
+        let contact = row.contact.unwrap();
         let exact = oil.contact(gauge.wet_radius_m(), row.speed_m_s).1.ln();
         let miss = |pair: &Pair| (pair.ln[1] - exact).abs();
         for other in &contact.others {
@@ -240,7 +240,7 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
     let oil = known_oils().unwrap().remove(2);
     let rows = gauge.rows();
     for row in &rows {
-        let contact = row.told.as_ref().unwrap();
+        let contact = row.contact.as_ref().unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         // Within three of the pair's own errors, which the dry numbers' dominate.
         let is_true = |pair: &Pair| {
@@ -252,11 +252,11 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
     }
     let open = rows
         .iter()
-        .filter(|row| !row.told.as_ref().unwrap().is_known());
+        .filter(|row| !row.contact.as_ref().unwrap().is_known());
     assert!(open.count() > 0, "{rows:?}");
     assert!(GaugeLaws::through(&rows).is_err());
     let told = gauge.ambiguous(&rows).unwrap();
-    assert!(told.contains("branch is not known at 0.0759"), "{told}");
+    assert!(told.contains("Branch ambiguous at 0.0759"), "{told}");
 }
 
 /// A ratio of peaks beside both times: a third equation for two numbers.
@@ -276,7 +276,7 @@ fn a_row_that_no_pair_gives_is_told_as_such() {
             value: ratio,
             sigma: 0.005 * ratio,
         });
-        gauge(wet, 9).rows().remove(0).told
+        gauge(wet, 9).rows().remove(0).contact
     };
     let contact = told(1.0).unwrap();
     let (_, a) = known_oils()
@@ -300,7 +300,7 @@ fn incident_times_alone_tell_one_combination_and_what_to_add() {
     let gauge = gauge(wet(&pump, 4).only(&[Observable::Incident]), 4);
     let oil = known_oils().unwrap().remove(2);
     for row in gauge.rows() {
-        let contact = row.told.unwrap();
+        let contact = row.contact.unwrap();
         let combination = contact.combination.unwrap();
         let (k, a) = oil.contact(gauge.wet_radius_m(), row.speed_m_s);
         let exact = k.ln() + combination.exponent * (a / combination.reference_s).ln();

@@ -185,7 +185,7 @@ pub(crate) fn fit_spread<'py>(
         let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
         let spread = Spread::new(problem, problem.fingerprint(), size, &compute).among(workers);
         let found = fitted(problem, &spread, arguments);
-        match spread.lost() {
+        match spread.failure() {
             Some(why) => Err(Failure::User(why.to_owned())),
             None => found,
         }

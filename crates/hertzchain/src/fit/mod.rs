@@ -154,7 +154,7 @@ fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Res
     wanted()?;
     let first = found.map_err(user)?;
     let one = how.starts == 1 && how.loss == Loss::Squares && first.point.len() <= FEW;
-    if !one || !Goodness::beside(nuisances, problem, &first).is_rejected() {
+    if !one || !Goodness::with_nuisances(nuisances, problem, &first).is_rejected() {
         return Ok(first);
     }
     let starts = UNASKED;
@@ -340,11 +340,11 @@ fn told(
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
-    let open = !inferred.identifiability.confused.is_empty() && fit.ending.converged();
+    let open = !inferred.identifiability.unidentifiable.is_empty() && fit.ending.converged();
     let rejected = inferred.goodness.is_rejected();
     Ok(Fitted {
         unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
-        advice: open.then(|| problem.would_separate(fit)),
+        advice: open.then(|| problem.suggested_measurements(fit)),
         curve: problem.fitted_curve(fit, covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
         rivals,

@@ -214,7 +214,7 @@ fn attempted(
         parameters: parameters.to_vec(),
         limits: limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?,
         identifiability,
-        goodness: Goodness::beside(problem.nuisance_count(), &problem, &fit),
+        goodness: Goodness::with_nuisances(problem.nuisance_count(), &problem, &fit),
         more,
         covariance,
         fit,

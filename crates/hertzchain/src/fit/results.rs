@@ -98,7 +98,7 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         "singular_values": fitted.identifiability.singular_values,
         "directions": fitted.identifiability.directions,
         "singular_value_floor": fitted.identifiability.floor,
-        "not_determined": fitted.identifiability.confused.iter().map(|c| json!({
+        "not_determined": fitted.identifiability.unidentifiable.iter().map(|c| json!({
             "words": c.words, "change": c.change,
         })).collect::<Value>(),
         "profiles": profiles(fitted),

@@ -13,7 +13,7 @@ use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments, WetFor
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{
-    Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
+    Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils,
 };
 use hertzchain_measure::records::text;
 use std::path::Path;
@@ -26,9 +26,7 @@ pub struct Gauged {
     pub rows: Vec<WetRow>,
     /// Power laws through them, where rows tell both.
     pub laws: Option<GaugeLaws>,
-    /// Power laws that the whole curve asks for, if they are asked for.
-    pub form: Option<PowerForm>,
-    /// Which oil: by its whole curve, or by the laws if these are asked for and sound.
+    /// Which oil.
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
@@ -44,26 +42,23 @@ pub fn gauged(
     oils: Vec<Oil>,
     form: WetForm,
 ) -> Result<Gauged, Failure> {
+    if form == WetForm::Power {
+        return Err(Failure::User(
+            "gauge fits no power laws of whole curves any more: use \
+             `hertzchain fit WET --free wet.K:power,wet.A:power`"
+                .to_owned(),
+        ));
+    }
     let gauge = Gauge::new(chains, dry, wet);
     wanted()?;
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
     wanted()?;
-    let form = match form {
-        WetForm::Each => None,
-        WetForm::Power => Some(gauge.power_form()),
-    };
-    wanted()?;
-    let form = form.transpose().map_err(user)?;
-    let verdict = match &form {
-        None => gauge.verdict(&oils),
-        Some(form) => gauge.verdict_of_laws(form, &oils),
-    };
+    let verdict = gauge.verdict(&oils);
     wanted()?;
     Ok(Gauged {
         laws: GaugeLaws::through(&rows).ok(),
         verdict: verdict.map_err(user)?,
-        form,
         oils,
         rows,
         gauge,
@@ -74,16 +69,13 @@ impl Gauged {
     /// What speaks against believing it.
     #[must_use]
     pub fn doubts(&self) -> Option<String> {
-        let of_form = self.form.as_ref().and_then(PowerForm::doubts);
-        let all = of_form.into_iter().chain(self.gauge.doubts(&self.verdict));
-        let all: Vec<String> = all.collect();
-        (!all.is_empty()).then(|| all.join(" "))
+        self.gauge.doubts(&self.verdict)
     }
 
     /// What to add to data that do not tell K and A apart, if nothing else does.
     #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
-        self.gauge.to_add().filter(|_| self.form.is_none())
+        self.gauge.to_add()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Gauged;
 use crate::inference::references_json;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Gauge, LAWS, Pair, PowerForm, Scan, SharedLaw, WetRow, is_told};
+use hertzchain_infer::gauge::{Pair, Scan, SharedLaw, WetRow, is_determined};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -22,7 +22,6 @@ pub fn json(gauged: &Gauged) -> Value {
         "contacts": gauged.rows.iter().map(row).collect::<Value>(),
         "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
         "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
-        "form": gauged.form.as_ref().map(|form| form_json(form, gauge)),
         "to_add": gauged.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
@@ -32,7 +31,7 @@ pub fn json(gauged: &Gauged) -> Value {
                 "name": own.parameter.name, "unit": own.parameter.unit,
                 "value": own.value, "standard_error": own.standard_error,
             })).collect::<Value>(),
-            "farthest": { "what": found.farthest.0, "standard_errors": found.farthest.1 },
+            "farthest": { "what": found.largest.0, "standard_errors": found.largest.1 },
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": verdict.sentence(),
@@ -42,7 +41,7 @@ pub fn json(gauged: &Gauged) -> Value {
 
 fn row(row: &WetRow) -> Value {
     let mut all = json!({ "line": row.line, "speed_m_s": row.speed_m_s });
-    match &row.told {
+    match &row.contact {
         Err(why) => all["missing"] = json!(why),
         Ok(contact) => {
             let [(k, k_sd), (a, a_sd)] = contact.first.estimates();
@@ -68,7 +67,7 @@ fn row(row: &WetRow) -> Value {
 
 fn number(value: f64, standard_error: f64) -> Value {
     json!({
-        "value": value, "standard_error": finite(standard_error), "determined": is_told(value, standard_error),
+        "value": value, "standard_error": finite(standard_error), "determined": is_determined(value, standard_error),
     })
 }
 
@@ -86,44 +85,6 @@ fn other(pair: &Pair) -> Value {
 fn scan(scan: &Scan) -> Value {
     json!({
         "between_s": scan.between_s, "complete": scan.is_complete(), "missing_s": scan.missing_s,
-    })
-}
-
-/// Power laws of the whole curve.
-fn form_json(form: &PowerForm, gauge: &Gauge) -> Value {
-    let sd = form.sd();
-    let law = |at: usize| {
-        json!({
-            "prefactor": form.values[at].exp(), "prefactor_relative_error": finite(sd[at]),
-            "exponent": form.values[at + 1], "exponent_error": finite(sd[at + 1]),
-        })
-    };
-    let speed = |speed: &f64| {
-        let at = form.at(*speed);
-        let [k, a] = at.ln.map(f64::exp);
-        json!({
-            "speed_m_s": speed,
-            "stiffness": number(k, k * at.ln_sd[0]),
-            "relaxation_time_s": number(a, a * at.ln_sd[1]),
-        })
-    };
-    let other = |values: &[f64; LAWS]| {
-        json!({
-            "stiffness": { "prefactor": values[0].exp(), "exponent": values[1] },
-            "relaxation_time_s": { "prefactor": values[2].exp(), "exponent": values[3] },
-        })
-    };
-    json!({
-        "stiffness": law(0),
-        "relaxation_time_s": law(2),
-        "covariance_of_ln_prefactors_and_exponents": form.covariance.map(|row| row.map(finite)),
-        "chi_square": form.chi_square.map(|c| json!({
-            "value": c.value, "freedom": c.freedom, "probability": c.probability,
-        })),
-        "contacts": gauge.wet().speeds_m_s().iter().map(speed).collect::<Value>(),
-        "oils_held_against_it": form.is_sound(),
-        "others": form.others.iter().map(other).collect::<Value>(),
-        "not_determined": form.undetermined,
     })
 }
 

@@ -4,7 +4,7 @@ use super::Gauged;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{
-    Branch, Contact, Match, OwnNumber, Pair, PowerForm, Scan, SharedLaw, WetRow,
+    Branch, Contact, Match, NuisanceParameter, Pair, Scan, SharedLaw, WetRow,
 };
 
 /// Every table: files' names and what stands in them.
@@ -18,28 +18,20 @@ pub fn tables(gauged: &Gauged) -> Vec<(&'static str, String)> {
     ];
     all.extend((!gauged.verdict.failed.is_empty()).then(|| ("failed.csv", failed(gauged))));
     all.extend(gauged.laws.is_some().then(|| ("laws.csv", laws(gauged))));
-    if let Some(form) = &gauged.form {
-        all.push(("form.csv", form_laws(form)));
-        all.push(("form-contacts.csv", form_contacts(form, gauged)));
-    }
     all
 }
 
 /// One line a number or sentence that tells of the whole.
 fn summary(gauged: &Gauged) -> String {
     let (gauge, verdict) = (&gauged.gauge, &gauged.verdict);
-    let form = gauged.form.as_ref().and_then(|form| form.chi_square);
     let chi_square = gauge.dry_goodness().chi_square;
-    let lines: [(&str, Cell); 9] = [
+    let lines: [(&str, Cell); 6] = [
         ("verdict", verdict.sentence().into()),
         ("doubts", gauged.doubts().into()),
         ("to_add", gauged.to_add().into()),
         ("dry_chi_square", chi_square.map(|c| c.value).into()),
         ("dry_freedom", chi_square.map(|c| c.freedom).into()),
         ("dry_probability", chi_square.map(|c| c.probability).into()),
-        ("form_chi_square", form.map(|c| c.value).into()),
-        ("form_freedom", form.map(|c| c.freedom).into()),
-        ("form_probability", form.map(|c| c.probability).into()),
     ];
     let line = |(name, value): (&str, Cell)| [name.into(), value];
     Csv::new(["quantity", "value"]).with_all(lines, line).text()
@@ -66,7 +58,7 @@ fn dry(gauged: &Gauged) -> String {
 fn contacts(gauged: &Gauged) -> String {
     let titles = "line,speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error,ln_covariance,\
                   combination_exponent,combination_reference_s,taken,missing,branch,scan_complete";
-    let lines = gauged.rows.iter().flat_map(|row| match &row.told {
+    let lines = gauged.rows.iter().flat_map(|row| match &row.contact {
         Err(why) => vec![missing(row, why)],
         Ok(contact) => pairs(row, contact),
     });
@@ -156,10 +148,10 @@ fn oils(gauged: &Gauged) -> String {
             chi_square.freedom.into(),
             chi_square.probability.into(),
             found.fits().into(),
-            found.farthest.0.clone().into(),
-            found.farthest.1.into(),
+            found.largest.0.clone().into(),
+            found.largest.1.into(),
         ];
-        let numbers = |own: &OwnNumber| [Cell::from(own.value), own.standard_error.into()];
+        let numbers = |own: &NuisanceParameter| [Cell::from(own.value), own.standard_error.into()];
         cells
             .into_iter()
             .chain(found.own.iter().flat_map(numbers))
@@ -202,33 +194,3 @@ fn laws(gauged: &Gauged) -> String {
     Csv::new(titles.split(',')).with_all(both, line).text()
 }
 
-/// One line a power law of the whole curve.
-fn form_laws(form: &PowerForm) -> String {
-    let sd = form.sd();
-    let line = |((name, unit), at): ((&str, &str), usize)| -> [Cell; 7] {
-        [
-            name.into(),
-            unit.into(),
-            form.values[at].exp().into(),
-            sd[at].into(),
-            form.values[at + 1].into(),
-            sd[at + 1].into(),
-            form.covariance[at][at + 1].into(),
-        ]
-    };
-    let titles = "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,covariance_of_ln_prefactor_and_exponent";
-    let both = [(CALLED[0], 0), (CALLED[1], 2)];
-    Csv::new(titles.split(',')).with_all(both, line).text()
-}
-
-/// One line a speed: what both laws give there.
-fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
-    let titles = "speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error";
-    let line = |speed: f64| {
-        let at = form.at(speed);
-        let [k, a] = at.ln.map(f64::exp);
-        [speed, k, k * at.ln_sd[0], a, a * at.ln_sd[1]]
-    };
-    let speeds = gauged.gauge.wet().speeds_m_s();
-    Csv::new(titles.split(',')).with_all(speeds, line).text()
-}

@@ -17,7 +17,7 @@ use crate::options::{
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeError, FreeNumber, FreeNumbers, Model,
+    CurveProblem, Data, Defaults, FEWEST_SHOTS, InferError, FreeNumber, FreeNumbers, Model,
     Observable, Problem, PulseProblem, Scatter, Selection,
 };
 use hertzchain_measure::records::{peek, text};
@@ -328,7 +328,7 @@ fn unknown(experiment: &Experiment, name: &str, error: &PathError) -> Failure {
             "--set takes paths of the experiment file, and `{name}` is a short name of --free: write --set {path}=VALUE"
         ),
         Ok(None) => format!("`{name}` is no number of the experiment file: --free alone knows it"),
-        Err(FreeError::Ambiguous { .. }) => format!(
+        Err(InferError::Ambiguous { .. }) => format!(
             "--set takes paths of the experiment file, and `{name}` is a short name of --free for several of its numbers: \
              `hertzchain schema` lists what paths there are"
         ),
@@ -355,7 +355,7 @@ pub fn model(
         let start = start.and_then(|start| known::any_number(&start.text));
         FreeNumber::find(experiment, name, start)
     };
-    let numbers: Result<Vec<_>, FreeError> = freed.free.iter().map(number).collect();
+    let numbers: Result<Vec<_>, InferError> = freed.free.iter().map(number).collect();
     let numbers = FreeNumbers::new(numbers.map_err(user)?).map_err(user)?;
     let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy.0);
     model.set = input::instruction_set()?;

@@ -261,7 +261,7 @@ pub(super) fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) ->
     }
     let mut text =
         format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
-    for confusion in &found.confused {
+    for confusion in &found.unidentifiable {
         text += &format!("  Not determined: {}.\n", confusion.words);
     }
     for advice in advice() {

@@ -2,10 +2,7 @@
 
 use hertzchain::gauge::Gauged;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
-use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_told};
-
-/// Standard errors that the band of power laws spans to either side: 95 %.
-const BAND: f64 = 1.96;
+use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
@@ -26,12 +23,12 @@ pub(super) fn contacts(gauged: &Gauged) -> Figure {
     }
 }
 
-/// Whether any row tells K and A apart, or a form that is stated does. If nothing does, an oil's K is another
+/// Whether any row determines both K and A. If none does, an oil's K is another
 /// quantity than what was measured.
 fn tells_both(gauged: &Gauged) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
-    let mut told = gauged.rows.iter().filter_map(|row| row.told.as_ref().ok());
-    gauged.form.is_some() || told.any(both)
+    let mut told = gauged.rows.iter().filter_map(|row| row.contact.as_ref().ok());
+    told.any(both)
 }
 
 fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
@@ -50,26 +47,13 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     let chart = oils.fold(chart, |chart, (at, oil)| {
         chart.with(curve(gauged, (at, oil), of, unit))
     });
-    let chart = gauged.form.iter().fold(chart, |chart, form| {
-        let [low, high] = [-BAND, BAND].map(|sign| law(gauged, form, of, unit, sign));
-        let middle = law(gauged, form, of, unit, 0.0);
-        let speeds = speeds(gauged);
-        let line = Series::line("power laws", &speeds, &middle).colour(Colour::BLACK);
-        chart
-            .with(Series::band("", &speeds, &low, &high).colour(Colour::BLACK))
-            .with(line)
-    });
     let known = gauged.rows.iter().filter_map(|row| {
-        let contact = row.told.as_ref().ok()?;
+        let contact = row.contact.as_ref().ok()?;
         if contact.branch == Branch::Unknown {
             return None;
         }
-        // A combination's K is not that of a law.
-        if gauged.form.is_some() && contact.combination.is_some() {
-            return None;
-        }
         let (value, sd) = contact.first.estimates()[of];
-        is_told(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
+        is_determined(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
     });
     let known: Vec<(f64, f64, f64)> = known.collect();
     let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
@@ -79,7 +63,7 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         .marker(Marker::Circle)
         .colour(Colour::BLACK);
     let others = gauged.rows.iter().filter_map(|row| {
-        let contact = row.told.as_ref().ok()?;
+        let contact = row.contact.as_ref().ok()?;
         let others = match contact.branch {
             Branch::Unknown => contact.pairs(),
             _ => contact.others.iter().collect(),
@@ -105,15 +89,6 @@ fn speeds(gauged: &Gauged) -> Vec<f64> {
     let last = speeds.last().copied().unwrap_or(1.0);
     let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
     (0..POINTS).map(speed).collect()
-}
-
-/// A power law of the whole curve, moved by so many of its standard errors.
-fn law(gauged: &Gauged, form: &PowerForm, of: usize, unit: f64, sds: f64) -> Vec<f64> {
-    let value = |speed: f64| {
-        let at = form.at(speed);
-        unit * (at.ln[of] + sds * at.ln_sd[of]).exp()
-    };
-    speeds(gauged).into_iter().map(value).collect()
 }
 
 /// What an oil would give.

@@ -2,11 +2,11 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{chi_square_text, estimate, lines, misfit, percent};
+use crate::words::{chi_square_of, chi_square_text, estimate, lines, misfit, percent};
 use hertzchain::gauge::Gauged;
 use hertzchain::inference::references;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_told};
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, SharedLaw, WetRow, is_determined};
 
 /// Everything that is to be said.
 pub(super) fn text(gauged: &Gauged) -> String {
@@ -29,10 +29,6 @@ pub(super) fn text(gauged: &Gauged) -> String {
         text += &law("K", "N/m^1.5", &laws.stiffness);
         text += &law("A", "s", &laws.relaxation);
     }
-    text += &gauged
-        .form
-        .as_ref()
-        .map_or(String::new(), |form| by_form(gauged, form));
     if let Some(add) = gauged.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To tell both, {add}.\n"
@@ -43,12 +39,7 @@ pub(super) fn text(gauged: &Gauged) -> String {
         .gauge
         .ambiguous(&gauged.rows)
         .map_or(String::new(), |why| format!("{why}\n"));
-    let by_laws = gauged.form.as_ref().is_some_and(PowerForm::is_sound);
-    let known = match by_laws {
-        false => "Known oils",
-        true => "Known oils, by the power laws that each would give",
-    };
-    text += &format!("\n{}\n{}", heading(known), matches(gauged));
+    text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
@@ -56,7 +47,7 @@ pub(super) fn text(gauged: &Gauged) -> String {
     // Tables may be longer than a screen: who sees the verdict alone is told, too.
     match doubts.is_empty() {
         true => text,
-        false => text + "warning: see the first lines.\n",
+        false => text + "Beware: what the first lines say speaks against believing this.\n",
     }
 }
 
@@ -65,7 +56,7 @@ fn doubts(gauged: &Gauged) -> String {
     let dry = misfit(&gauged.gauge.dry_goodness())
         .map(|told| format!("of the dry curve, on which all below rests, {told}."));
     let all = dry.into_iter().chain(gauged.doubts());
-    let lines: String = all.map(|doubt| format!("warning: {doubt}\n")).collect();
+    let lines: String = all.map(|doubt| format!("Beware: {doubt}\n")).collect();
     match lines.is_empty() {
         true => lines,
         false => lines + "\n",
@@ -79,9 +70,7 @@ fn dry(gauged: &Gauged) -> String {
         let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
     });
-    let chi_square = gauge.dry_goodness().chi_square;
-    let chi_square = chi_square.map_or(String::new(), |found| chi_square_text(found) + "\n");
-    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square
+    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square_text(&gauge.dry_goodness())
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
@@ -92,7 +81,7 @@ fn shown(pair: &Pair) -> [String; 2] {
 
 /// A positive number with its error, if it is known.
 fn told(value: f64, sd: f64) -> String {
-    if !is_told(value, sd) {
+    if !is_determined(value, sd) {
         return "not determined".to_owned();
     }
     let (value, sd) = with_error(value, sd);
@@ -134,7 +123,7 @@ fn pairs(contact: &Contact) -> Vec<[String; 3]> {
 fn contacts(gauged: &Gauged) -> String {
     let lines = |row: &WetRow| -> Vec<Vec<String>> {
         let speed = digits(row.speed_m_s, 4);
-        let lines = match &row.told {
+        let lines = match &row.contact {
             Ok(contact) => pairs(contact),
             Err(why) => vec![["–".to_owned(), "–".to_owned(), why.clone()]],
         };
@@ -162,7 +151,7 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
     let fits = match law.reduced_chi_square > NO_LAW {
         true => format!(
-            "; the values do not follow it (χ²/ν = {})",
+            "; the values do not follow it (reduced chi-square {})",
             digits(law.reduced_chi_square, 2)
         ),
         false => String::new(),
@@ -170,50 +159,6 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     format!(
         "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
         digits(prefactor, 4)
-    )
-}
-
-/// Power laws of the whole curve, and what they give at its speeds.
-fn by_form(gauged: &Gauged, form: &PowerForm) -> String {
-    let sd = form.sd();
-    let law = |name: &str, unit: &str, at: usize| {
-        let prefactor = digits(form.values[at].exp(), 4);
-        let relative = match sd[at].is_finite() {
-            true => percent(sd[at]),
-            false => "not determined".to_owned(),
-        };
-        let (exponent, error) = with_error(form.values[at + 1], sd[at + 1]);
-        format!("{name} = {prefactor} {unit} (± {relative}) · v^({exponent} ± {error})\n")
-    };
-    let row = |speed: f64| {
-        let at = form.at(speed);
-        let both = |of: usize, unit: f64| {
-            let value = unit * at.ln[of].exp();
-            told(value, value * at.ln_sd[of])
-        };
-        vec![digits(speed, 4), both(0, 1e-9), both(1, 1e9)]
-    };
-    let rows: Vec<Vec<String>> = gauged
-        .gauge
-        .wet()
-        .speeds_m_s()
-        .into_iter()
-        .map(row)
-        .collect();
-    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
-    let open = form
-        .undetermined
-        .iter()
-        .map(|words| format!("  Not determined: {words}.\n"));
-    format!(
-        "\n{}\n{}{}{}{}{}",
-        heading("Wet contacts as power laws of speed, fitted to both curves"),
-        law("K", "N/m^1.5", 0),
-        law("A", "s", 2),
-        form.chi_square
-            .map_or(String::new(), |found| chi_square_text(found) + "\n"),
-        open.collect::<String>(),
-        format::table(&head, &rows)
     )
 }
 
