@@ -1,7 +1,7 @@
 //! Shots cut out of a recording where it passes a level.
 
-use crate::Refused;
-use crate::records::{Channel, Record, RecordError, Samples};
+use crate::MeasureError;
+use crate::records::{Channel, Record, Samples};
 use crate::signal::{Cutter, Segment, Trigger, median};
 use std::collections::VecDeque;
 
@@ -31,7 +31,7 @@ pub(crate) struct AtLevel<I> {
     shots: u64,
     /// The recording that is being cut.
     under_way: Option<UnderWay>,
-    ready: VecDeque<Result<Record, Refused>>,
+    ready: VecDeque<Result<Record, MeasureError>>,
 }
 
 /// A recording that is being cut.
@@ -46,7 +46,7 @@ struct UnderWay {
     found: bool,
 }
 
-impl<I: Iterator<Item = Result<Record, RecordError>>> AtLevel<I> {
+impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
     pub(crate) fn new(pieces: I, level: Level) -> Self {
         Self {
             pieces,
@@ -62,7 +62,7 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> AtLevel<I> {
             self.finish();
             match UnderWay::new(&piece, self.level) {
                 Ok(begun) => self.under_way = Some(begun),
-                Err(refused) => self.ready.push_back(Err(refused)),
+                Err(error) => self.ready.push_back(Err(error)),
             }
         }
         if let Some(under_way) = &mut self.under_way {
@@ -78,8 +78,8 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> AtLevel<I> {
     }
 }
 
-impl<I: Iterator<Item = Result<Record, RecordError>>> Iterator for AtLevel<I> {
-    type Item = Result<Record, Refused>;
+impl<I: Iterator<Item = Result<Record, MeasureError>>> Iterator for AtLevel<I> {
+    type Item = Result<Record, MeasureError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         while self.ready.is_empty() {
@@ -87,7 +87,7 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> Iterator for AtLevel<I> {
                 Some(Ok(piece)) => self.piece(piece),
                 Some(Err(error)) => {
                     self.finish();
-                    self.ready.push_back(Err(error.into()));
+                    self.ready.push_back(Err(error));
                 }
                 None => {
                     self.finish();
@@ -100,7 +100,7 @@ impl<I: Iterator<Item = Result<Record, RecordError>>> Iterator for AtLevel<I> {
 }
 
 impl UnderWay {
-    fn new(piece: &Record, level: Level) -> Result<Self, Refused> {
+    fn new(piece: &Record, level: Level) -> Result<Self, MeasureError> {
         let usual = (SHOT_S / piece.interval_s).round() as usize;
         let length = level.samples.unwrap_or(usual.max(1));
         let volts = piece
@@ -121,10 +121,10 @@ impl UnderWay {
         });
         Ok(Self {
             head: piece.without_samples(),
-            cutter: cutter.map_err(|cause| Refused::Uncuttable {
-                source_name: piece.source.clone(),
-                cause,
-            })?,
+            cutter: cutter.map_err(|cause| MeasureError::Shots(
+                piece.source.clone(),
+                format!("cannot be cut: {cause}"),
+            ))?,
             kept: VecDeque::new(),
             extremes_v: (f64::INFINITY, f64::NEG_INFINITY),
             found: false,
@@ -135,7 +135,7 @@ impl UnderWay {
         &mut self,
         piece: Record,
         shots: &mut u64,
-        ready: &mut VecDeque<Result<Record, Refused>>,
+        ready: &mut VecDeque<Result<Record, MeasureError>>,
     ) {
         self.kept.push_back(piece);
         let mut cut = Vec::new();
@@ -168,7 +168,7 @@ impl UnderWay {
         &mut self,
         cut: &[Segment],
         shots: &mut u64,
-        ready: &mut VecDeque<Result<Record, Refused>>,
+        ready: &mut VecDeque<Result<Record, MeasureError>>,
     ) {
         self.found |= !cut.is_empty();
         for segment in cut {
@@ -195,18 +195,19 @@ impl UnderWay {
         &mut self,
         level: Level,
         shots: &mut u64,
-        ready: &mut VecDeque<Result<Record, Refused>>,
+        ready: &mut VecDeque<Result<Record, MeasureError>>,
     ) {
         let mut cut = Vec::new();
         self.cutter.finish(|one| cut.push(one));
         self.hand_out(&cut, shots, ready);
         if !self.found {
-            ready.push_back(Err(Refused::NeverPassed {
-                source_name: self.head.source.clone(),
-                level_v: level.volts,
-                low_v: self.extremes_v.0,
-                high_v: self.extremes_v.1,
-            }));
+            let (low_v, high_v) = self.extremes_v;
+            let detail = format!(
+                "never passes the level of {} V; its samples lie between {low_v:.4} and {high_v:.4} V",
+                level.volts
+            );
+            let source = self.head.source.clone();
+            ready.push_back(Err(MeasureError::Shots(source, detail)));
         }
     }
 }

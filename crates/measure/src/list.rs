@@ -1,6 +1,6 @@
 //! Speeds and cases that recordings themselves do not tell: `shots.csv`.
 
-use crate::Shot;
+use crate::{MeasureError, Shot};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
@@ -26,42 +26,9 @@ pub(crate) struct Entry {
     pub speed_error_m_s: Option<f64>,
 }
 
-/// What is wrong with a table of shots.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ListError {
-    /// No line of titles with a column of files.
-    #[error(
-        "the first line must name the columns: file, and any of shot, case, speed, speed error"
-    )]
-    NoTitles,
-    /// Speeds in another unit.
-    #[error("the column {title:?} has another unit: speeds and their errors are in m/s")]
-    Unit {
-        /// The column's title.
-        title: String,
-    },
-    /// A number that is none.
-    #[error("line {line}: {text:?} is no {what}")]
-    NoNumber {
-        /// Which line, from 1.
-        line: u64,
-        /// What stands there.
-        text: String,
-        /// What should stand there.
-        what: &'static str,
-    },
-    /// A line without a file.
-    #[error("line {line} names no file")]
-    NoFile {
-        /// Which line, from 1.
-        line: u64,
-    },
-    /// Fields that a table cannot have.
-    #[error("{detail}")]
-    Malformed {
-        /// What and where.
-        detail: String,
-    },
+fn no_titles() -> MeasureError {
+    let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error";
+    MeasureError::List(detail.to_owned())
 }
 
 /// Columns by their titles.
@@ -79,14 +46,14 @@ impl ShotList {
     /// Fields may stand in quotes.
     ///
     /// # Errors
-    /// See [`ListError`].
-    pub fn parse(text: &str) -> Result<Self, ListError> {
+    /// [`MeasureError::List`] with the line.
+    pub fn parse(text: &str) -> Result<Self, MeasureError> {
         let text = text.trim_start_matches('\u{feff}');
         let titles = text.lines().map(str::trim);
         let titles = titles
             .clone()
             .find(|line| !line.is_empty() && !line.starts_with('#'));
-        let titles = titles.ok_or(ListError::NoTitles)?;
+        let titles = titles.ok_or_else(no_titles)?;
         let marks = [b';', b'\t'].into_iter();
         let delimiter = marks
             .clone()
@@ -97,9 +64,7 @@ impl ShotList {
             .trim(Trim::All)
             .flexible(true)
             .from_reader(text.as_bytes().chain(b"\n".as_slice()));
-        let malformed = |error: csv::Error| ListError::Malformed {
-            detail: error.to_string(),
-        };
+        let malformed = |error: csv::Error| MeasureError::List(error.to_string());
         let titles = reader.headers().map_err(malformed)?.clone();
         let columns = Columns::of(&titles, delimiter.is_some())?;
         let mut entries = Vec::new();
@@ -215,10 +180,11 @@ fn in_other_unit(title: &str) -> bool {
 }
 
 impl Columns {
-    fn of(titles: &StringRecord, decimal_comma: bool) -> Result<Self, ListError> {
+    fn of(titles: &StringRecord, decimal_comma: bool) -> Result<Self, MeasureError> {
         if let Some(title) = titles.iter().find(|title| in_other_unit(title)) {
-            let title = title.to_owned();
-            return Err(ListError::Unit { title });
+            return Err(MeasureError::List(format!(
+                "the column {title:?} has another unit: speeds and their errors are in m/s"
+            )));
         }
         let plain = |title: &str| {
             let name = title.split(['(', '[']).next().unwrap_or_default();
@@ -232,7 +198,7 @@ impl Columns {
         };
         Ok(Self {
             decimal_comma,
-            file: find(&["file", "record", "recording"]).ok_or(ListError::NoTitles)?,
+            file: find(&["file", "record", "recording"]).ok_or_else(no_titles)?,
             shot: find(&["shot", "segment"]),
             case: find(&["case", "oil", "section"]),
             speed: find(&["speed", "speed m s", "v0", "velocity"]),
@@ -240,16 +206,13 @@ impl Columns {
         })
     }
 
-    fn entry(&self, row: &StringRecord, line: u64) -> Result<Entry, ListError> {
+    fn entry(&self, row: &StringRecord, line: u64) -> Result<Entry, MeasureError> {
         let field = |column: Option<usize>| {
             let text = row.get(column?);
             text.filter(|text| !text.is_empty())
         };
-        let wrong = |text: &str, what| ListError::NoNumber {
-            line,
-            text: text.to_owned(),
-            what,
-        };
+        let wrong =
+            |text: &str, what| MeasureError::List(format!("line {line}: {text:?} is no {what}"));
         let value = |column, what| {
             let number = |text: &str| self.number(text).ok_or_else(|| wrong(text, what));
             field(column).map(number).transpose()
@@ -263,7 +226,7 @@ impl Columns {
         Ok(Entry {
             line,
             file: field(Some(self.file))
-                .ok_or(ListError::NoFile { line })?
+                .ok_or_else(|| MeasureError::List(format!("line {line} names no file")))?
                 .to_owned(),
             shot: field(self.shot).map(shot).transpose()?,
             case: field(self.case).map(str::to_owned),

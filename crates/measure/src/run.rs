@@ -5,7 +5,7 @@ use crate::records::{Parts, ReadOptions, Record, read};
 use crate::several::{Content, content};
 use crate::signal::{Bandwidth, Doubt, Measuring, Method};
 use crate::speeds::Speeds;
-use crate::{Example, Level, Refused, Shot, ShotList};
+use crate::{Example, Level, MeasureError, Shot, ShotList};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -54,7 +54,7 @@ pub struct Measurement {
     /// Every record that could be read, in order; some without times.
     pub shots: Vec<Shot>,
     /// What could not be read.
-    pub refused: Vec<Refused>,
+    pub refused: Vec<MeasureError>,
     /// What was taken for granted, and of which files.
     pub notes: Vec<Note>,
     /// The amplifier's low-pass that maxima were corrected for.
@@ -88,7 +88,7 @@ pub trait Watch: Sync {
 /// Nobody.
 impl Watch for () {}
 
-type Read = Box<dyn Iterator<Item = Result<Record, (PathBuf, Refused)>>>;
+type Read = Box<dyn Iterator<Item = Result<Record, (PathBuf, MeasureError)>>>;
 
 /// Reads and measures recordings while somebody may watch.
 ///
@@ -119,7 +119,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
         }
         batch = next;
     }
-    let (of_files, refused): (Vec<PathBuf>, Vec<Refused>) = refused.into_iter().unzip();
+    let (of_files, refused): (Vec<PathBuf>, Vec<MeasureError>) = refused.into_iter().unzip();
     speeds.deal(&mut measurement, options, &of_files);
     measurement.refused.splice(0..0, refused);
     measurement.note_spikes();
@@ -132,7 +132,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
 /// The records of a file, cut at a level if one is given.
 fn records(file: &Path, options: &Options) -> Read {
     let of = file.to_owned();
-    let refused = move |refused: Refused| (of.clone(), refused);
+    let refused = move |error: MeasureError| (of.clone(), error);
     match options.cutting {
         Cut::Level(level) => {
             let pieces = ReadOptions {
@@ -144,15 +144,15 @@ fn records(file: &Path, options: &Options) -> Read {
         }
         _ => {
             let records = read(file, &options.reading);
-            Box::new(records.map(move |record| record.map_err(|error| refused(error.into()))))
+            Box::new(records.map(move |record| record.map_err(&refused)))
         }
     }
 }
 
 /// The next records that can be read, as many as are measured together.
 fn gather(
-    records: &mut dyn Iterator<Item = Result<Record, (PathBuf, Refused)>>,
-    refused: &mut Vec<(PathBuf, Refused)>,
+    records: &mut dyn Iterator<Item = Result<Record, (PathBuf, MeasureError)>>,
+    refused: &mut Vec<(PathBuf, MeasureError)>,
 ) -> Vec<Record> {
     let mut batch = Vec::new();
     let mut waiting = 0;

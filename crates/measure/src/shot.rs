@@ -173,6 +173,30 @@ impl Shot {
     }
 }
 
+/// A shot with its samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Example {
+    /// What was measured.
+    pub shot: Shot,
+    /// Names of the channels.
+    pub names: Vec<String>,
+    /// Samples in V, a channel each.
+    pub volts: Vec<Vec<f64>>,
+}
+
+impl Example {
+    /// A shot of a record, of which it may be a part.
+    pub(crate) fn of(shot: &Shot, record: &Record, range: Option<(usize, usize)>) -> Self {
+        let (from, to) = range.unwrap_or((0, record.len()));
+        let channels = record.part(from, to - from).channels;
+        Self {
+            shot: shot.clone(),
+            volts: channels.iter().map(|c| c.samples.volts()).collect(),
+            names: channels.into_iter().map(|c| c.name).collect(),
+        }
+    }
+}
+
 /// Whether a gap is within a width and a half of a pulse's time.
 fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
     let picks = &flight.picks;

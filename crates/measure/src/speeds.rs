@@ -1,7 +1,8 @@
 //! Speeds that a file tells of its shots in order, dealt once all of them are cut out.
 
 use crate::records::{Parts, Record};
-use crate::{Measurement, Options, Refused, Shot};
+use crate::error::{MeasureError, file_name};
+use crate::{Measurement, Options, Shot};
 use std::path::{Path, PathBuf};
 
 /// Files that tell speeds of shots which had yet to be cut out, with the speeds in m/s.
@@ -39,7 +40,7 @@ impl Speeds {
             let told = speeds.len();
             if !(found..=found + lost).contains(&(told as u64)) {
                 let nameless = shots.iter().any(|shot| shot.speed_m_s.is_none());
-                let unlike = nameless.then_some(Refused::Speeds { file, told, found });
+                let unlike = nameless.then(|| unmatched(&file, told, found));
                 measurement.refused.extend(unlike);
                 continue;
             }
@@ -54,6 +55,16 @@ impl Speeds {
             }
         }
     }
+}
+
+/// The error where speeds are not as many as shots.
+fn unmatched(file: &Path, speeds: usize, shots: u64) -> MeasureError {
+    let s = if shots == 1 { "" } else { "s" };
+    let detail = format!(
+        "has {speeds} speeds, and {shots} shot{s} were found in it: none was given a speed; say \
+         which is which with --shots, or cut it otherwise with --level or --shot-samples"
+    );
+    MeasureError::Shots(file_name(file), detail)
 }
 
 /// Of a shot in its file, from 1.

@@ -437,7 +437,8 @@ fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
         );
     }
     let never = cut(&file, level(50_000.0, None));
-    assert!(matches!(never.refused[0], Refused::NeverPassed { .. }));
+    let why = never.refused[0].to_string();
+    assert!(why.contains("never passes the level of 50000 V"), "{why}");
 }
 
 #[test]

@@ -102,10 +102,9 @@ fn speeds_that_are_not_as_many_as_shots_are_given_to_none_and_told() {
     for mut options in ways() {
         let measured = measure(from_ref(&path), &options, &());
         assert_eq!(speeds_m_s(&measured), [None; 3]);
-        let [Refused::Speeds { told, found, .. }] = measured.refused.as_slice() else {
-            unreachable!("{:?}", measured.refused)
-        };
-        assert_eq!((*told, *found), (2, 3));
+        assert_eq!(measured.refused.len(), 1, "{:?}", measured.refused);
+        let why = measured.refused[0].to_string();
+        assert!(why.contains("has 2 speeds, and 3 shots"), "{why}");
         let list = "file,shot,speed\nunlike.h5,1,0.2\nunlike.h5,2,0.4\nunlike.h5,3,0.6\n";
         options.list = Some(ShotList::parse(list).unwrap());
         let listed = measure(from_ref(&path), &options, &());

@@ -1,43 +1,29 @@
-//! Records on disk: what a rig's sensors gave, sampled and digitised.
+//! Records on disk: the samples of a rig's sensors.
 //!
-//! Writes series of a virtual campaign as HDF5 ([`SeriesWriter`]) and reads
-//! anybody's recordings, one record at a time ([`read`]): HDF5, CSV,
-//! NPY and NPZ, WAV and LabVIEW TDMS. Knows nothing of chains.
-//!
-//! The reader never opens the true values that a virtual campaign keeps beside
-//! its samples, so that no analysis peeks by accident.
+//! Writes series of a virtual campaign as HDF5 ([`SeriesWriter`]) and reads recordings of any
+//! program, one record at a time ([`read`]): HDF5, text, NPY and NPZ, WAV and LabVIEW TDMS.
 
 mod arrays;
-mod channels;
-mod check;
 mod checksum;
-mod csv;
-mod cut;
-mod encoding;
-mod error;
-mod format;
+mod files;
 mod hdf5;
-mod input;
 mod interval;
-mod numbers;
 mod numpy;
 mod options;
-mod plain;
 mod read;
 mod record;
 mod series;
-mod table;
+mod stream;
 mod tdms;
+mod text;
 mod wav;
-mod whole;
 
-pub use error::RecordError;
-pub use format::Format;
-pub use input::{peek, remove_copies, seekable, text};
+pub use files::{
+    Files, no_formula, peek, remove_copies, remove_left_behind, seekable, text, without_controls,
+    write_whole,
+};
+pub use hdf5::ColumnFile;
 pub use options::{Parts, ReadOptions, Rows};
-pub use plain::{no_formula, without_controls};
 pub use read::{Records, read};
 pub use record::{Channel, LowPass, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
-pub use table::Table;
-pub use whole::{Files, remove_left_behind, write_whole};

@@ -1,32 +1,89 @@
-//! Any recording, record by record.
+//! Records of a file of any format, one by one.
 
-use crate::records::cut::from_sample;
-use crate::records::error::RecordError;
-use crate::records::format::Format;
+use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::Record;
-use crate::records::{check, csv, hdf5, numpy, series, tdms, wav};
+use crate::records::record::{Channel, Record, Samples};
+use crate::records::stream::from_sample;
+use crate::records::text::Encoding;
+use crate::records::{hdf5, numpy, series, tdms, text, wav};
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// What a format's reader gives: records until nothing sensible is left.
-pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, RecordError>>>;
-
-/// The records of a file, one at a time: a file larger than memory is never read
-/// whole.
-///
-/// A record that is no good is an error in its place; the good ones are still
-/// given.
-pub struct Records {
-    records: Raw,
-    parts: Parts,
-    channels_were_told: bool,
-    length: Option<usize>,
-    file: PathBuf,
-    given: usize,
-}
+/// Records as a format's reader returns them.
+pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, MeasureError>>>;
 
 /// Most records of a file: an array of more rows is one of something else.
 const MOST_RECORDS: usize = 100_000;
+
+/// Bytes that show the format of a file.
+const PROBE: u64 = 4096;
+
+/// Most samples of a channel that are not finite, as a share.
+const MOST_FILLED: f64 = 0.01;
+
+/// A format: its name, how files begin, their extensions, and its reader.
+struct Format {
+    name: &'static str,
+    magic: &'static [u8],
+    extensions: &'static [&'static str],
+    open: fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>,
+}
+
+/// All formats; text, which has no magic, last.
+const FORMATS: &[Format] = &[
+    Format {
+        name: "HDF5",
+        magic: b"\x89HDF\r\n\x1a\n",
+        extensions: &["h5", "hdf5", "hdf"],
+        open: hdf5::open,
+    },
+    Format {
+        name: "a NumPy array",
+        magic: b"\x93NUMPY",
+        extensions: &["npy"],
+        open: numpy::open_npy,
+    },
+    Format {
+        name: "a ZIP archive, as NPZ files are",
+        magic: b"PK\x03\x04",
+        extensions: &["npz"],
+        open: numpy::open_npz,
+    },
+    Format {
+        name: "RIFF WAVE",
+        magic: b"RIFF",
+        extensions: &["wav", "wave"],
+        open: wav::open,
+    },
+    Format {
+        name: "TDMS",
+        magic: b"TDSm",
+        extensions: &["tdms"],
+        open: tdms::open,
+    },
+    Format {
+        name: "text",
+        magic: b"",
+        extensions: &["csv", "tsv", "txt", "asc", "prn"],
+        open: text::open,
+    },
+];
+
+/// The records of a file, one at a time: a file larger than memory is never read whole.
+///
+/// A record that is of no use is an error in its place; the good ones follow.
+pub struct Records {
+    records: Raw,
+    parts: Parts,
+    /// Whether the options choose the channels.
+    are_chosen: bool,
+    /// Samples of the first record.
+    length: Option<usize>,
+    file: PathBuf,
+    count: usize,
+}
 
 impl std::fmt::Debug for Records {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -34,86 +91,169 @@ impl std::fmt::Debug for Records {
     }
 }
 
-impl Iterator for Records {
-    type Item = Result<Record, RecordError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let record = self.records.next()?;
-        self.given += 1;
-        if self.given > MOST_RECORDS {
-            self.records = Box::new(std::iter::empty());
-            let detail = format!(
-                "more than {MOST_RECORDS} records; --rows says what the rows of an array are, and \
-                 parts of a file can be measured one by one"
-            );
-            return Some(Err(RecordError::malformed(
-                &self.file,
-                "a recording",
-                detail,
-            )));
-        }
-        Some(record.and_then(|record| self.judged(record)))
-    }
-}
-
-impl Records {
-    fn judged(&mut self, record: Record) -> Result<Record, RecordError> {
-        let mut record = check::sound(record, self.parts)?;
-        if !self.channels_were_told {
-            record.notes.extend(two_channels(&record));
-        }
-        check::as_long(record, self.parts, &mut self.length)
-    }
-}
-
-/// Which of two channels was taken for which.
-fn two_channels(record: &Record) -> Option<String> {
-    let [sensor, wall] = record.channels.as_slice() else {
-        return None;
-    };
-    let (sensor, wall) = (&sensor.name, &wall.name);
-    if series::SEPARATE == [sensor.as_str(), wall.as_str()] {
-        return None;
-    }
-    Some(format!(
-        "{sensor:?} was taken for the sensor bead's channel, {wall:?} for the wall's; if it is \
-         the other way round: --channel {wall:?} --channel {sensor:?}, if one sums both sensors: \
-         --channel and its name alone"
-    ))
-}
-
-/// Reads the records of a file of any [`Format`].
+/// Reads the records of a file: HDF5, text, NPY, NPZ, WAV or TDMS, by its content.
 ///
 /// A file that cannot be read at all gives one error and nothing else.
 #[must_use]
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
-    let records = open(file, options).unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
+    let opened = format_of(file).and_then(|format| (format.open)(file, options));
+    let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
     Records {
         records: match options.parts.most() {
             Some(most) => divided(records, most, options.parts),
             None => records,
         },
         parts: options.parts,
-        channels_were_told: !options.channels.is_empty(),
+        are_chosen: !options.channels.is_empty(),
         length: None,
         file: file.to_owned(),
-        given: 0,
+        count: 0,
     }
 }
 
-fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
-    match Format::of(file)? {
-        Format::Hdf5 => hdf5::open(file, options),
-        Format::Text => csv::open(file, options),
-        Format::Npy => numpy::open_npy(file, options),
-        Format::Npz => numpy::open_npz(file, options),
-        Format::Wav => wav::open(file, options),
-        Format::Tdms => tdms::open(file, options),
+impl Iterator for Records {
+    type Item = Result<Record, MeasureError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let record = self.records.next()?;
+        self.count += 1;
+        if self.count > MOST_RECORDS {
+            self.records = Box::new(std::iter::empty());
+            let detail = format!(
+                "more than {MOST_RECORDS} records; --rows says what the rows of an array are, and \
+                 parts of a file can be measured one by one"
+            );
+            return Some(Err(MeasureError::malformed(
+                &self.file,
+                "a recording",
+                detail,
+            )));
+        }
+        Some(record.and_then(|record| self.checked(record)))
     }
 }
 
-/// Divides what a format's reader gives longer than asked: rows of tables, which
-/// it reads whole. Shots are then numbered through the file.
+impl Records {
+    /// Rejects records without samples, with channels of different lengths, with many samples
+    /// that are not finite, with channels that never change unless they are pieces, and shots
+    /// that are not as long as the first. Fills single samples that are not finite.
+    fn checked(&mut self, mut record: Record) -> Result<Record, MeasureError> {
+        let length = record.len();
+        if length == 0 {
+            return Err(MeasureError::empty(record.source));
+        }
+        let is_piece = matches!(self.parts, Parts::Pieces(_));
+        let mut gaps = Vec::new();
+        for channel in &mut record.channels {
+            gaps.extend(fill_gaps(&record.source, channel)?);
+        }
+        record.gaps = gaps;
+        for channel in &record.channels {
+            let found = channel.samples.len();
+            if found != length {
+                let why = "as in its first channel";
+                return Err(MeasureError::lengths(record.source, found, length, why));
+            }
+            if !is_piece {
+                reject_constant(&record.source, channel)?;
+            }
+        }
+        if !self.are_chosen {
+            record.notes.extend(two_channels(&record));
+        }
+        let expected = *self.length.get_or_insert(length);
+        if length == expected || is_piece {
+            return Ok(record);
+        }
+        let why = match self.parts == Parts::Shots(expected) {
+            true => "what cutting left over is no shot",
+            false => "as in the file's first record",
+        };
+        Err(MeasureError::lengths(record.source, length, expected, why))
+    }
+}
+
+/// The note which of two channels is taken for which.
+fn two_channels(record: &Record) -> Option<String> {
+    let [sensor, wall] = record.channels.as_slice() else {
+        return None;
+    };
+    let (sensor, wall) = (&sensor.name, &wall.name);
+    (series::SEPARATE != [sensor.as_str(), wall.as_str()]).then(|| {
+        format!(
+            "{sensor:?} was taken for the sensor bead's channel, {wall:?} for the wall's; if it is \
+             the other way round: --channel {wall:?} --channel {sensor:?}, if one sums both \
+             sensors: --channel and its name alone"
+        )
+    })
+}
+
+/// Fills the samples that are not finite, and returns their runs.
+fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, MeasureError> {
+    let Samples::Volts(volts) = &mut channel.samples else {
+        return Ok(Vec::new());
+    };
+    let bad = || (0..volts.len()).filter(|at| !volts[*at].is_finite());
+    let Some(first) = bad().next() else {
+        return Ok(Vec::new());
+    };
+    let (count, of) = (bad().count(), volts.len());
+    if count as f64 > MOST_FILLED * of as f64 {
+        let detail = format!(
+            "{count} of {of} samples in {:?} are not finite numbers, the first is sample {}",
+            channel.name,
+            first + 1
+        );
+        return Err(MeasureError::Samples(source.to_owned(), detail));
+    }
+    let finite = || volts.iter().copied().filter(|volt| volt.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let bad: Vec<usize> = bad().collect();
+    let runs = bad.chunk_by(|one, next| one + 1 == *next);
+    let gaps: Vec<Range<usize>> = runs.map(|run| run[0]..run[0] + run.len()).collect();
+    gaps.iter().for_each(|gap| fill(volts, gap, (low, high)));
+    Ok(gaps)
+}
+
+/// Fills a gap: with the record's extreme what was beyond a range, else between its neighbours.
+fn fill(volts: &mut [f64], gap: &Range<usize>, (low, high): (f64, f64)) {
+    let before = gap.start.checked_sub(1).map(|at| volts[at]);
+    let after = volts.get(gap.end).copied();
+    let from = before.or(after).unwrap_or(0.0);
+    let to = after.unwrap_or(from);
+    let steps = gap.len() as f64 + 1.0;
+    for (number, volt) in volts[gap.clone()].iter_mut().enumerate() {
+        *volt = match *volt {
+            f64::INFINITY => high,
+            f64::NEG_INFINITY => low,
+            _ => from + (to - from) * (number as f64 + 1.0) / steps,
+        };
+    }
+}
+
+fn reject_constant(source: &str, channel: &Channel) -> Result<(), MeasureError> {
+    fn all_same<T: PartialEq>(of: &[T]) -> bool {
+        of.iter().all(|value| Some(value) == of.first())
+    }
+    let constant = match &channel.samples {
+        Samples::Volts(volts) => all_same(volts),
+        Samples::Counts { counts, .. } => all_same(counts),
+    };
+    let first = channel.samples.part(0, 1).volts();
+    match (constant, first.first()) {
+        (true, Some(value)) => {
+            let (of, name) = (channel.samples.len(), &channel.name);
+            let detail =
+                format!("all {of} samples in {name:?} are {value}; was the sensor connected?");
+            Err(MeasureError::Samples(source.to_owned(), detail))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Divides records that are longer than asked: rows of tables, which are read whole. Shots are
+/// then numbered through the file.
 fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
     let mut shots = 0;
     Box::new(records.flat_map(move |record| -> Raw {
@@ -136,4 +276,42 @@ fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
             Ok(part)
         }))
     }))
+}
+
+/// The format of a file by its content, unless its extension promises another.
+fn format_of(file: &Path) -> Result<&'static Format, MeasureError> {
+    let mut bytes = Vec::new();
+    File::open(file)
+        .and_then(|file| file.take(PROBE).read_to_end(&mut bytes))
+        .map_err(|cause| MeasureError::reading(file, cause))?;
+    if bytes.is_empty() {
+        return Err(MeasureError::empty(file_name(file)));
+    }
+    let is = |format: &&Format| match format.magic {
+        b"" => is_text(&bytes),
+        magic => bytes.starts_with(magic),
+    };
+    let found = FORMATS.iter().find(is);
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    let extension = extension.to_ascii_lowercase();
+    let mut formats = FORMATS.iter();
+    let promised = formats.find(|format| format.extensions.contains(&&*extension));
+    let detail = match (found, promised) {
+        (Some(found), None) => return Ok(found),
+        (Some(found), Some(promised)) if found.name == promised.name => return Ok(found),
+        (None, None) => "is none of HDF5, CSV or other text, NPY, NPZ, WAV and TDMS".to_owned(),
+        (found, Some(_)) => {
+            let content = found.map_or("something else", |found| found.name);
+            format!("is called .{extension} but holds {content}; give it its right ending")
+        }
+    };
+    Err(MeasureError::Format(file_name(file), detail))
+}
+
+/// Text has no control characters but spaces.
+fn is_text(bytes: &[u8]) -> bool {
+    let (text, _) = Encoding::of(bytes).decoded(bytes);
+    !text
+        .iter()
+        .any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
 }

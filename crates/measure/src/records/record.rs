@@ -3,60 +3,58 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// What one or two sensors gave during one shot.
-#[derive(Clone, Debug, PartialEq)]
+/// Samples of one or two sensors during one shot, and what the file states of them.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Which file and which shot in it, as it is told to people.
+    /// File and shot, for messages.
     pub source: String,
-    /// Which file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Number of the shot, if the file holds several or says.
+    /// Number of the shot, if the file holds several or states it.
     pub shot: Option<u64>,
     /// Time between samples in s.
     pub interval_s: f64,
-    /// Standard error of that, if its file tells it by times of few digits.
+    /// Standard error of the interval in s, where it follows from times of few digits.
     pub interval_error_s: f64,
-    /// The channels, all of the same length: one that sums both sensors, or two.
+    /// Channels of one length: one that sums both sensors, or two.
     pub channels: Vec<Channel>,
-    /// Speed that the striker was told, in m/s, if the file says.
+    /// Programmed speed of the striker in m/s.
     pub programmed_speed_m_s: Option<f64>,
-    /// Speed of the striker in m/s, if the file says.
+    /// Measured speed of the striker in m/s.
     pub speed_m_s: Option<f64>,
-    /// Speeds in m/s that the file tells of all its shots, in order, if these are more than its
-    /// recordings: which shot has which, only who cuts them out can tell.
+    /// Speeds in m/s of all shots of the file, where these are still to be cut out.
     pub speeds_m_s: Vec<f64>,
-    /// Standard error of that speed in m/s, if the file says.
+    /// Standard error of the measured speed in m/s.
     pub speed_error_m_s: Option<f64>,
-    /// Which section of the chain was wet and with what, if the file says.
+    /// Which section of the chain was wet and with what.
     pub case: Option<String>,
-    /// Corner of the amplifier's high-pass in Hz, 0 for none, if the file says.
+    /// Corner of the amplifier's high-pass in Hz, 0 for none.
     pub high_pass_hz: Option<f64>,
-    /// The amplifier's low-pass, if the file states one.
+    /// The amplifier's low-pass.
     pub low_pass: Option<LowPass>,
-    /// Samples before the trigger, if the file says.
+    /// Samples before the trigger.
     pub pretrigger: Option<usize>,
-    /// Whether the trigger fired, if the file says; if not, the recorder gave up waiting.
+    /// Whether the trigger fired.
     pub triggered: Option<bool>,
-    /// Number of its first sample in a recording of which it is a piece, from 0.
+    /// Number, from 0, of its first sample in the recording of which it is a piece.
     pub first_sample: u64,
-    /// Samples that were no numbers, in runs, and have others in their places: between their
-    /// neighbours, or the largest or least of the record where they were beyond a range.
+    /// Runs of samples that were not finite and were filled: between their neighbours, or with
+    /// the record's extreme where they were beyond a range.
     pub gaps: Vec<Range<usize>>,
-    /// What was taken for granted while it was read, as it is told to people.
+    /// Assumptions made while the record was read.
     pub notes: Vec<String>,
 }
 
 /// An amplifier's low-pass: of one pole, or a Butterworth filter of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowPass {
-    /// Its corner in Hz.
+    /// Corner frequency in Hz.
     pub corner_hz: f64,
     /// 1 or 2.
     pub order: usize,
 }
 
 impl Record {
-    /// A record of which nothing but its samples is known.
     pub(crate) fn new(
         source: String,
         file: &Path,
@@ -66,22 +64,9 @@ impl Record {
         Self {
             source,
             file: file.to_owned(),
-            shot: None,
             interval_s,
-            interval_error_s: 0.0,
             channels,
-            programmed_speed_m_s: None,
-            speed_m_s: None,
-            speeds_m_s: Vec::new(),
-            speed_error_m_s: None,
-            case: None,
-            high_pass_hz: None,
-            low_pass: None,
-            pretrigger: None,
-            triggered: None,
-            first_sample: 0,
-            gaps: Vec::new(),
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -103,9 +88,8 @@ impl Record {
         }
     }
 
-    /// What is known of it besides its samples.
-    #[must_use]
-    pub fn without_samples(&self) -> Self {
+    /// Everything but channels and gaps.
+    pub(crate) fn without_samples(&self) -> Self {
         Self {
             source: self.source.clone(),
             file: self.file.clone(),
@@ -118,9 +102,8 @@ impl Record {
         }
     }
 
-    /// Adds what a later piece of the same recording has from sample `start` on, at most
-    /// `count` samples, and takes its channels where there are none yet.
-    pub fn append(&mut self, later: &Self, start: usize, count: usize) {
+    /// Appends at most `count` samples of a later piece of the recording from sample `start` on.
+    pub(crate) fn append(&mut self, later: &Self, start: usize, count: usize) {
         let (before, part) = (self.len(), later.part(start, count));
         let gaps = part.gaps.iter();
         self.gaps
@@ -129,17 +112,15 @@ impl Record {
             self.channels = part.channels;
             return;
         }
-        for (channel, later) in self.channels.iter_mut().zip(&later.channels) {
-            channel.samples.append(&later.samples, start, count);
+        for (channel, later) in self.channels.iter_mut().zip(part.channels) {
+            channel.samples.append(later.samples);
         }
     }
 
     /// Number of samples of a channel.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.channels
-            .first()
-            .map_or(0, |channel| channel.samples.len())
+        self.channels.first().map_or(0, |one| one.samples.len())
     }
 
     /// Whether there are no samples.
@@ -149,7 +130,7 @@ impl Record {
     }
 }
 
-/// What one input of the digitiser gave.
+/// Samples of one input of the digitiser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Its name in the file, or its number from 1.
@@ -158,7 +139,7 @@ pub struct Channel {
     pub samples: Samples,
 }
 
-/// Samples, kept as small as they came.
+/// Samples, stored as small as they came.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
     /// Numbers in the file's unit, mostly V.
@@ -175,7 +156,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// How many.
+    /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -190,7 +171,7 @@ impl Samples {
         self.len() == 0
     }
 
-    /// All of them in V.
+    /// All samples in V.
     #[must_use]
     pub fn volts(&self) -> Vec<f64> {
         match self {
@@ -206,54 +187,46 @@ impl Samples {
         }
     }
 
-    /// Lowest and highest voltage that the converter can tell, if its range is
-    /// known: samples there are clipped.
+    /// Lowest and highest voltage of the converter's range: samples there are clipped.
     #[must_use]
     pub fn range_v(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Volts(_) => None,
+            Self::Counts { .. } => Some(self.counted_extremes_v(&[i16::MIN, i16::MAX])),
+        }
+    }
+
+    /// Lowest and highest voltage of these samples, +∞ and −∞ of none.
+    pub(crate) fn extremes_v(&self) -> (f64, f64) {
+        match self {
+            Self::Volts(volts) => extremes(volts.iter().copied()),
+            Self::Counts { counts, .. } => {
+                // Whole numbers first: they are compared many at a time.
+                let ends = counts.iter().min().into_iter().chain(counts.iter().max());
+                self.counted_extremes_v(&ends.copied().collect::<Vec<_>>())
+            }
+        }
+    }
+
+    fn counted_extremes_v(&self, of: &[i16]) -> (f64, f64) {
         let Self::Counts {
             volts_per_count,
             offset_v,
             ..
         } = self
         else {
-            return None;
+            return extremes(std::iter::empty());
         };
-        let at = |count: i16| f64::from(count) * volts_per_count + offset_v;
-        let (a, b) = (at(i16::MIN), at(i16::MAX));
-        Some((a.min(b), a.max(b)))
+        extremes(
+            of.iter()
+                .map(|count| f64::from(*count) * volts_per_count + offset_v),
+        )
     }
 
-    /// Lowest and highest voltage of these samples, +∞ and −∞ of none.
-    #[must_use]
-    pub fn extremes_v(&self) -> (f64, f64) {
-        fn extremes(volts: impl Iterator<Item = f64>) -> (f64, f64) {
-            volts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), volt| {
-                (low.min(volt), high.max(volt))
-            })
-        }
-        match self {
-            Self::Volts(volts) => extremes(volts.iter().copied()),
-            Self::Counts {
-                counts,
-                volts_per_count,
-                offset_v,
-            } => {
-                // Whole numbers first: they are compared many at a time.
-                let ends = counts.iter().min().into_iter().chain(counts.iter().max());
-                extremes(ends.map(|count| f64::from(*count) * volts_per_count + offset_v))
-            }
-        }
-    }
-
-    /// Adds what a later piece of the same recording has from sample `start` on, at most
-    /// `count` samples. Readings of another scale make all of them volts.
-    pub fn append(&mut self, later: &Self, start: usize, count: usize) {
-        fn added<T: Copy>(to: &mut Vec<T>, of: &[T], start: usize, count: usize) {
-            let of = of.get(start..).unwrap_or_default();
-            to.extend_from_slice(of.get(..count).unwrap_or(of));
-        }
+    /// Appends samples; those of another scale turn all of them into volts.
+    pub(crate) fn append(&mut self, later: Self) {
         match (&mut *self, later) {
-            (Self::Volts(volts), Self::Volts(later)) => added(volts, later, start, count),
+            (Self::Volts(volts), Self::Volts(later)) => volts.extend(later),
             (
                 Self::Counts {
                     counts,
@@ -265,33 +238,32 @@ impl Samples {
                     volts_per_count: scale,
                     offset_v: offset,
                 },
-            ) if *volts_per_count == *scale && *offset_v == *offset => {
-                added(counts, later, start, count);
-            }
-            (_, later) => {
-                let mut volts = self.volts();
-                volts.extend(later.part(start, count).volts());
-                *self = Self::Volts(volts);
-            }
+            ) if *volts_per_count == scale && *offset_v == offset => counts.extend(later),
+            (_, later) => *self = Self::Volts([self.volts(), later.volts()].concat()),
         }
     }
 
     /// The part from `start`, at most `count` long.
     pub(crate) fn part(&self, start: usize, count: usize) -> Self {
-        fn cut<T: Copy>(of: &[T], start: usize, count: usize) -> Vec<T> {
-            of.iter().skip(start).take(count).copied().collect()
-        }
+        let end = start.saturating_add(count).min(self.len());
+        let range = start.min(end)..end;
         match self {
-            Self::Volts(volts) => Self::Volts(cut(volts, start, count)),
+            Self::Volts(volts) => Self::Volts(volts[range].to_vec()),
             Self::Counts {
                 counts,
                 volts_per_count,
                 offset_v,
             } => Self::Counts {
-                counts: cut(counts, start, count),
+                counts: counts[range].to_vec(),
                 volts_per_count: *volts_per_count,
                 offset_v: *offset_v,
             },
         }
     }
+}
+
+fn extremes(volts: impl Iterator<Item = f64>) -> (f64, f64) {
+    volts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), volt| {
+        (low.min(volt), high.max(volt))
+    })
 }

@@ -4,14 +4,13 @@
 use crate::common::{folder, python};
 use crate::formats::at_1_mhz;
 use allocation_counter::measure;
-use hertzchain_measure::records::{
-    ReadOptions, RecordError, Rows, read, remove_copies, seekable, text,
-};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, Rows, read, remove_copies, seekable, text};
 use std::fs;
 use std::path::Path;
 
 /// The only thing that a file gives.
-fn refusal(file: &Path) -> RecordError {
+fn refusal(file: &Path) -> MeasureError {
     let mut given = read(file, &at_1_mhz());
     let error = given.next().unwrap().unwrap_err();
     assert!(given.next().is_none(), "{error}");
@@ -99,7 +98,7 @@ fn an_interval_that_no_recorder_has_is_refused() {
             ..ReadOptions::default()
         };
         let error = read(&file, &options).next().unwrap().unwrap_err();
-        assert!(matches!(error, RecordError::ImpossibleRate { .. }));
+        assert!(matches!(error, MeasureError::Rate(..)));
         assert!(error.to_string().len() < 200, "{error}");
     }
 }

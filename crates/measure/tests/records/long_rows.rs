@@ -2,7 +2,8 @@
 
 use crate::common::{folder, python};
 use crate::formats::at_1_mhz;
-use hertzchain_measure::records::{Parts, ReadOptions, RecordError, Rows, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, read};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -97,7 +98,7 @@ fn channels_stored_one_after_the_other_are_read_in_pieces() {
         ..at_1_mhz()
     };
     let whole = read(&file, &channels(Parts::Whole)).next().unwrap();
-    assert!(matches!(whole, Err(RecordError::TooLong { .. })));
+    assert!(matches!(whole, Err(MeasureError::Samples(..))));
     let mut pieces = read(&file, &channels(Parts::Pieces(1 << 20)));
     let first = pieces.next().unwrap().unwrap();
     let of = |channel: usize, at: usize| first.channels[channel].samples.volts()[at];

@@ -2,7 +2,8 @@
 //! cells without a number, times among samples.
 
 use crate::common::folder;
-use hertzchain_measure::records::{ReadOptions, Record, RecordError, Samples, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, Record, Samples, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -217,7 +218,7 @@ fn times_in_an_array_are_no_channel() {
     let counts = (0..900).flat_map(|i| [i as f64, volt(i)]);
     let path = written(&folder, "counts.npy", npy("(900, 2)", "False", counts));
     let told = read(&path, &ReadOptions::default()).next().unwrap();
-    assert!(matches!(told, Err(RecordError::NoRate { .. })));
+    assert!(matches!(told, Err(MeasureError::Rate(..))));
 }
 
 #[test]
@@ -254,6 +255,6 @@ fn half_an_array_is_told_as_such_before_a_rate_is_asked_for() {
         .next()
         .unwrap()
         .unwrap_err();
-    assert!(matches!(told, RecordError::Truncated { .. }), "{told}");
+    assert!(matches!(told, MeasureError::Truncated(..)), "{told}");
     assert!(told.to_string().contains("3200 of 7200 bytes"), "{told}");
 }

@@ -2,7 +2,8 @@
 //! after the format's description by its maker.
 
 use crate::common::{folder, python};
-use hertzchain_measure::records::{ReadOptions, Record, RecordError, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, Record, read};
 use std::fs;
 
 /// Flags of a segment: metadata, new list of objects, raw data.
@@ -234,7 +235,7 @@ fn a_scale_that_is_no_polynomial_is_named_and_the_other_channels_are_read() {
     assert!(read(&path, &told("bead")).all(|record| record.is_ok()));
 }
 
-fn records(test: &str, bytes: &[u8]) -> Vec<Result<Record, RecordError>> {
+fn records(test: &str, bytes: &[u8]) -> Vec<Result<Record, MeasureError>> {
     let path = folder(test).join("rig.tdms");
     fs::write(&path, bytes).unwrap();
     read(&path, &ReadOptions::default()).collect()
@@ -284,5 +285,5 @@ fn a_file_that_was_not_closed_gives_its_whole_chunks_and_says_so() {
     let results = records("open", &bytes);
     let first = results[0].as_ref().unwrap().channels[0].samples.volts();
     assert_eq!(first, BEAD[..3]);
-    assert!(matches!(results[1], Err(RecordError::Truncated { .. })));
+    assert!(matches!(results[1], Err(MeasureError::Truncated(..))));
 }

@@ -1,7 +1,8 @@
 //! What stands beside numbers: footers, times of day, columns that are shots.
 
 use crate::common::folder;
-use hertzchain_measure::records::{ReadOptions, Record, RecordError, Rows, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, Record, Rows, read};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ fn text(name: &str, after: &str) -> PathBuf {
     path
 }
 
-fn results(path: &Path, options: &ReadOptions) -> Vec<Result<Record, RecordError>> {
+fn results(path: &Path, options: &ReadOptions) -> Vec<Result<Record, MeasureError>> {
     read(path, options).collect()
 }
 

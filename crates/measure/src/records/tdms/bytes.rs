@@ -1,6 +1,6 @@
 //! Numbers and texts of TDMS metadata.
 
-use crate::records::numbers::{Kind, Number};
+use crate::records::stream::{Kind, Number};
 
 /// A reader over metadata in either byte order; `None` beyond its end.
 #[derive(Clone, Copy, Debug)]

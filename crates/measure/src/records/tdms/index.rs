@@ -4,8 +4,8 @@ use super::bytes::{Bytes, Property, TEXT, kind, width};
 use super::daqmx::{ANALOGUE, DIGITAL, Layout, cards};
 use super::lead::{LEAD, Lead};
 use super::scaling::{Properties, polynomial};
-use crate::records::error::{RecordError, name};
-use crate::records::numbers::Number;
+use crate::error::{MeasureError, file_name};
+use crate::records::stream::Number;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -145,8 +145,8 @@ struct Walk {
 
 impl Index {
     /// Reads all metadata of a file.
-    pub(super) fn of(file: &Path) -> Result<Self, RecordError> {
-        let reading = |cause| RecordError::reading(file, cause);
+    pub(super) fn of(file: &Path) -> Result<Self, MeasureError> {
+        let reading = |cause| MeasureError::reading(file, cause);
         let mut opened = File::open(file).map_err(reading)?;
         let length = opened.metadata().map_err(reading)?.len();
         let mut walk = Walk::default();
@@ -170,7 +170,7 @@ impl Index {
                 let metadata = bytes(&mut opened, begin, size).map_err(reading)?;
                 if walk.metadata(&lead, &metadata).is_none() {
                     let detail = format!("the segment at byte {at} has metadata it cannot have");
-                    return Err(RecordError::malformed(file, "TDMS", detail));
+                    return Err(MeasureError::malformed(file, "TDMS", detail));
                 }
             }
             if lead.has_samples() {
@@ -182,14 +182,14 @@ impl Index {
                     "its segments list more than {MOST_OBJECTS} channels in all; defragment it, or \
                      export parts of it"
                 );
-                return Err(RecordError::malformed(file, "TDMS", detail));
+                return Err(MeasureError::malformed(file, "TDMS", detail));
             }
             at = end;
         }
         if walk.groups.is_empty()
             && let Some(detail) = cut_short
         {
-            return Err(RecordError::truncated(name(file), detail));
+            return Err(MeasureError::truncated(file_name(file), detail));
         }
         walk.groups
             .iter_mut()

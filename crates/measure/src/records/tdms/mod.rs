@@ -7,14 +7,13 @@ mod index;
 mod lead;
 mod scaling;
 
+use crate::error::{MeasureError, file_name};
 use crate::records::arrays;
-use crate::records::channels::chosen;
-use crate::records::cut::{Cut, Head, MOST_SAMPLES, Stream};
-use crate::records::error::{RecordError, name};
-use crate::records::interval::{interval_s, seconds_taken};
-use crate::records::options::ReadOptions;
+use crate::records::interval::seconds_taken;
+use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use crate::records::record::Samples;
+use crate::records::stream::{Cut, Head, MOST_SAMPLES, Stream};
 use index::{Channel, Index, Piece};
 use scaling::value;
 use std::fs::File;
@@ -23,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 /// Opens a TDMS file: every group with samples is a record, or several if it is
 /// to be cut.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
     let index = Index::of(file)?;
     let several = index.groups.len() > 1;
     let mut records: Vec<Raw> = Vec::new();
@@ -38,14 +37,12 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, RecordErro
         })));
     }
     if records.is_empty() && index.cut_short.is_none() {
-        return Err(RecordError::Empty {
-            source_name: name(file),
-        });
+        return Err(MeasureError::empty(file_name(file)));
     }
-    let file = name(file);
+    let file = file_name(file);
     let end = index
         .cut_short
-        .map(move |detail| Err(RecordError::truncated(file, detail)));
+        .map(move |detail| Err(MeasureError::truncated(file, detail)));
     Ok(Box::new(records.into_iter().flatten().chain(end)))
 }
 
@@ -54,68 +51,53 @@ fn open_group(
     group: String,
     channels: Vec<Channel>,
     options: &ReadOptions,
-) -> Result<Raw, RecordError> {
+) -> Result<Raw, MeasureError> {
     let (channels, step) = without_times(file, channels, options);
     let names: Vec<String> = channels
         .iter()
         .map(|channel| channel.name.clone())
         .collect();
     let picked = chosen(file, &names, options)?;
-    let source_name = format!("{}, {group}", name(file));
+    let source = format!("{}, {group}", file_name(file));
     let kept = picked.into_iter().filter_map(|at| channels.get(at));
-    let kept: Result<Vec<Channel>, RecordError> = kept
+    let kept: Result<Vec<Channel>, MeasureError> = kept
         .map(|channel| {
             channel.clone().scaled().map_err(|scale| {
                 let name = &channel.name;
                 let detail = format!("{name:?} has {scale}; export it with scaled values");
-                RecordError::malformed(file, "TDMS", detail)
+                MeasureError::malformed(file, "TDMS", detail)
             })
         })
         .collect();
     let kept = kept?;
     let total = kept.first().map_or(0, Channel::len);
     if total == 0 {
-        return Err(RecordError::Empty { source_name });
+        return Err(MeasureError::empty(source));
     }
     if let Some(other) = kept.iter().find(|channel| channel.len() != total) {
-        return Err(RecordError::MixedLengths {
-            source_name,
-            found: other.len(),
-            expected: total,
-            why: "as in its first channel",
-        });
+        let why = "as in its first channel";
+        return Err(MeasureError::lengths(source, other.len(), total, why));
     }
     let stated_s = kept.iter().find_map(Channel::interval_s);
     let own_s = step
         .as_ref()
-        .and_then(|(_, step)| arrays::of_step(*step, options));
+        .and_then(|(_, step)| arrays::step_s(*step, options));
     let times = step.filter(|_| stated_s.is_none() && own_s.is_some());
     let note = times.and_then(|(name, _)| seconds_taken(&name, None, options));
+    let names = kept.iter().map(|channel| channel.name.clone()).collect();
     let head = Head {
-        file: file.to_owned(),
         part: Some(group),
-        names: kept.iter().map(|channel| channel.name.clone()).collect(),
-        interval_s: interval_s(file, stated_s.or(own_s), options)?,
-        total,
-        row: total,
-        each: total,
-        pieces: false,
-        note: None,
+        note,
+        ..Head::new(file, names, stated_s.or(own_s), total, options)?
     };
-    let opened = File::open(file).map_err(|cause| RecordError::reading(file, cause))?;
+    let opened = File::open(file).map_err(|cause| MeasureError::reading(file, cause))?;
     let stream = Group {
         file: file.to_owned(),
         opened,
         channels: kept,
         at: 0,
     };
-    let records = Cut::new(head.divided(options.parts), stream);
-    Ok(Box::new(records.map(move |record| {
-        record.map(|mut record| {
-            record.notes.extend(note.clone());
-            record
-        })
-    })))
+    Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
 }
 
 /// Channels but for one that rises evenly, as times do and no signal, with its name and step.
@@ -138,9 +120,9 @@ fn without_times(
             &mut opened,
             &channel,
             0,
-            channel.len().min(arrays::LOOKED_AT),
+            channel.len().min(arrays::TIMES_SEEN),
         );
-        arrays::rises(&samples.ok()?.volts())
+        arrays::even_step(&samples.ok()?.volts())
     };
     let found = channels
         .iter()
@@ -167,7 +149,7 @@ struct Group {
 }
 
 impl Stream for Group {
-    fn take(&mut self, count: usize) -> Result<Vec<Samples>, RecordError> {
+    fn take(&mut self, count: usize) -> Result<Vec<Samples>, MeasureError> {
         let (from, to) = (self.at, self.at + count);
         self.at = to;
         let Self {
@@ -177,7 +159,7 @@ impl Stream for Group {
             .iter()
             .map(|channel| part(opened, channel, from, to))
             .collect();
-        taken.map_err(|cause| RecordError::reading(&self.file, cause))
+        taken.map_err(|cause| MeasureError::reading(&self.file, cause))
     }
 }
 

@@ -7,7 +7,7 @@ fn a_rate_that_contradicts_the_file_is_refused_unless_insisted_on() {
         ..ReadOptions::default()
     };
     let refused = interval_s(Path::new("x"), Some(1e-6), &options).unwrap_err();
-    assert!(matches!(refused, RecordError::WrongRate { .. }));
+    assert!(matches!(refused, MeasureError::Rate(..)));
     options.trust_rate = true;
     assert_eq!(
         interval_s(Path::new("x"), Some(1e-6), &options).unwrap(),
@@ -65,7 +65,7 @@ fn a_rate_that_is_given_or_stated_counts_where_times_allow_it() {
     assert_eq!(of(None, Some(0.97e-6)).unwrap().s, 0.97e-6);
     assert!(matches!(
         of(Some(5e5), None),
-        Err(RecordError::WrongRate { .. })
+        Err(MeasureError::Rate(..))
     ));
 }
 

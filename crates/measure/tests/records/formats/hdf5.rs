@@ -2,7 +2,8 @@
 
 use super::{WAVE, all, assert_wave, at_1_mhz};
 use crate::common::{folder, python};
-use hertzchain_measure::records::{ReadOptions, RecordError, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, read};
 
 #[test]
 fn datasets_of_h5py_are_read() {
@@ -66,5 +67,5 @@ with h5py.File("text.h5", "w") as file:
     );
     assert_wave(&all(&folder.join("columns.h5"), &at_1_mhz())[0], 1, 1, 1.0);
     let empty: Vec<_> = read(&folder.join("text.h5"), &open).collect();
-    assert!(matches!(empty[0], Err(RecordError::Empty { .. })));
+    assert!(matches!(empty[0], Err(MeasureError::Samples(..))));
 }

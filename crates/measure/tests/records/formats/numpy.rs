@@ -2,7 +2,8 @@
 
 use super::{WAVE, all, assert_wave, at_1_mhz};
 use crate::common::{folder, python};
-use hertzchain_measure::records::{Parts, ReadOptions, RecordError, Rows, Samples, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, Samples, read};
 use std::path::Path;
 
 #[test]
@@ -167,7 +168,7 @@ numpy.savez("uneven.npz", bead=shots, wall=shots[:2], fs=1e6)
         return;
     }
     let results: Vec<_> = read(&folder.join("tables.npz"), &ReadOptions::default()).collect();
-    assert!(matches!(results[0], Err(RecordError::WhichChannel { .. })));
+    assert!(matches!(results[0], Err(MeasureError::Channels(..))));
     let both = |a: &str, b: &str| ReadOptions {
         channels: vec![a.to_owned(), b.to_owned()],
         ..ReadOptions::default()

@@ -2,7 +2,8 @@
 
 use super::{WAVE, all, assert_wave, at_1_mhz};
 use crate::common::{folder, kept, python};
-use hertzchain_measure::records::{ReadOptions, RecordError, read};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{ReadOptions, read};
 
 #[test]
 fn tdms_of_another_writer_is_read_segment_by_segment() {
@@ -42,7 +43,7 @@ with TdmsWriter("groups.tdms") as writer:
     assert!(records[0].is_ok() && records[1].is_ok());
     let last = records.last().unwrap();
     assert!(
-        matches!(last, Err(RecordError::Truncated { .. })),
+        matches!(last, Err(MeasureError::Truncated(..))),
         "{last:?}"
     );
 }

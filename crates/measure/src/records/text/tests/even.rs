@@ -17,7 +17,7 @@ fn the_true_interval_is_among_those_that_digits_allow() {
         for begun_s in [0.0, -3.21e-4, 17.3e-6] {
             for unit in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
                 let times = printed(interval_s, begun_s, unit, 4000);
-                let told = interval(&times).unwrap();
+                let told = even_interval(&times).unwrap();
                 let slack = 1e-9 * interval_s;
                 let inside = told.least_s - slack..=told.most_s + slack;
                 assert!(
@@ -33,7 +33,7 @@ fn the_true_interval_is_among_those_that_digits_allow() {
 
 #[test]
 fn digits_that_show_every_step_are_taken_as_they_stand() {
-    let told = interval(&printed(2e-6, -1e-3, 1e-6, 1000)).unwrap();
+    let told = even_interval(&printed(2e-6, -1e-3, 1e-6, 1000)).unwrap();
     assert_eq!(told.least_s, told.most_s);
     // Rounding.
     assert!((told.least_s - 2e-6).abs() < 1e-18);
@@ -45,7 +45,7 @@ fn a_lost_sample_is_told_where_digits_show_it() {
         for unit in [1e-6, 1e-7] {
             let mut times = printed(1e-6, 0.0, unit, 1000);
             times.remove(lost);
-            assert!(interval(&times).is_none(), "{lost} {unit}");
+            assert!(even_interval(&times).is_none(), "{lost} {unit}");
         }
     }
 }
@@ -55,7 +55,7 @@ fn jitter_beyond_the_digits_is_borne_to_two_fifths_of_a_step() {
     let jittered = |by: f64| {
         let mut times = printed(1e-6, 0.0, 1e-12, 1000);
         times.iter_mut().step_by(7).for_each(|time| time.s += by);
-        interval(&times)
+        even_interval(&times)
     };
     let told = jittered(0.2e-6).unwrap();
     assert!(told.least_s < 1e-6 && told.most_s > 1e-6, "{told:?}");

@@ -1,0 +1,450 @@
+//! Arrays of numbers, alone or several by name in one file: which are samples, and which other
+//! things.
+
+use crate::error::{MeasureError, file_name};
+use crate::records::interval::{interval_s, seconds_taken};
+use crate::records::options::{
+    MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, numbered,
+};
+use crate::records::read::Raw;
+use crate::records::record::Record;
+use crate::records::stream::Head;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Names of numbers that are an interval in s.
+pub(crate) const INTERVALS: &[&str] = &[
+    "dt",
+    "interval",
+    "interval_s",
+    "sampling_interval",
+    "sampling_interval_s",
+];
+/// Names of numbers that are a rate in Hz.
+pub(crate) const RATES: &[&str] = &[
+    "fs",
+    "rate",
+    "rate_hz",
+    "sample_rate",
+    "sampling_rate",
+    "samplerate",
+];
+/// Names of arrays of times without a unit, and in s.
+const TIMES: &[&str] = &["t", "time", "times"];
+const TIMES_S: &[&str] = &["time_s", "t_s"];
+/// Names of arrays of speeds in m/s, one a shot.
+const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
+/// Names, before a number, of arrays that are shots.
+const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg"];
+
+/// Samples that show whether numbers are times.
+pub(crate) const TIMES_SEEN: usize = 4096;
+
+/// Fewer numbers may rise evenly by chance.
+const LEAST_TIMES: usize = 32;
+
+/// Share of a step by which times in single or double precision may be off even ones, besides
+/// single precision's own rounding; and the most that this may be.
+const EVEN: f64 = 1e-3;
+const ROUNDED: f64 = 0.4;
+
+/// Axes by their meaning, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Axes {
+    pub shots: Option<usize>,
+    pub channels: Option<usize>,
+    pub time: usize,
+}
+
+impl Axes {
+    /// The axes of an array of this shape, if it can be one of samples.
+    fn of(shape: &[usize], rows: Rows) -> Option<Self> {
+        let (shots, channels, time) = match (shape, rows) {
+            (&[_], _) => (None, None, 0),
+            (&[a, b], Rows::Auto) if a <= b => (Some(0), None, 1),
+            (&[_, _], Rows::Shots) => (Some(0), None, 1),
+            (&[_, _], Rows::Channels) => (None, Some(0), 1),
+            (&[_, _], Rows::Moments) => (Some(1), None, 0),
+            (&[_, _], Rows::Auto | Rows::Times) => (None, Some(1), 0),
+            (&[_, _, _], _) => (Some(0), Some(1), 2),
+            _ => return None,
+        };
+        Some(Self {
+            shots,
+            channels,
+            time,
+        })
+    }
+}
+
+/// An array of samples with the meaning of its axes.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub axes: Axes,
+    /// Channels that are stored.
+    pub stored: usize,
+    pub shots: usize,
+    /// Samples of a channel in a shot.
+    pub frames: usize,
+    /// Channels that are wanted.
+    pub chosen: Vec<usize>,
+    /// What its records share; none is divided yet.
+    pub head: Head,
+}
+
+impl Table {
+    pub(crate) fn of(
+        file: &Path,
+        part: Option<String>,
+        shape: &[usize],
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Self, MeasureError> {
+        if shape.contains(&0) {
+            return Err(MeasureError::empty(file_name(file)));
+        }
+        let axes = Axes::of(shape, options.rows_of(shape)).ok_or_else(|| {
+            let detail = format!("of {} axes, {shape:?}, is no table of samples", shape.len());
+            MeasureError::malformed(file, "an array", detail)
+        })?;
+        let size = |axis: Option<usize>| axis.and_then(|axis| shape.get(axis)).map_or(1, |n| *n);
+        let (stored, shots) = (size(axes.channels), size(axes.shots));
+        let frames = size(Some(axes.time));
+        let names = numbered(stored);
+        let chosen = match stored {
+            1 => vec![0],
+            _ => chosen(file, &names, options)?,
+        };
+        let are_assumed = options.rows == Rows::Auto && axes.shots == Some(1);
+        let head = Head {
+            file: file.to_owned(),
+            part,
+            names: chosen.iter().map(|index| names[*index].clone()).collect(),
+            interval_s,
+            total: frames.saturating_mul(shots),
+            row: frames,
+            each: frames,
+            pieces: false,
+            note: are_assumed.then(|| {
+                format!(
+                    "each of the {shots} columns, of {frames} samples, was taken for a shot; --rows times \
+                     or --channel says that they are channels"
+                )
+            }),
+        };
+        Ok(Self {
+            axes,
+            stored,
+            shots,
+            frames,
+            chosen,
+            head,
+        })
+    }
+}
+
+/// An array of which the first column, or row, is times or counts.
+pub(crate) struct TimeColumn {
+    /// How the others are to be read.
+    pub options: ReadOptions,
+    /// Interval in s; `None` of counts.
+    pub interval_s: Option<f64>,
+    pub note: Option<String>,
+}
+
+/// The times among few columns, or few rows, of an array: the first, if it rises evenly, as no
+/// signal does; `open` reads the array.
+pub(crate) fn time_column(
+    shape: &[usize],
+    options: &ReadOptions,
+    open: &dyn Fn(&ReadOptions) -> Result<Raw, MeasureError>,
+) -> Option<TimeColumn> {
+    let &[first, second] = shape else { return None };
+    let (columns, long) = (first.min(second), first.max(second));
+    let rows = match first <= second {
+        true => Rows::Channels,
+        false => Rows::Times,
+    };
+    let may_be = (2..=MOST_COLUMNS).contains(&columns) && long >= LEAST_TIMES;
+    let free = options.rows == Rows::Auto || options.rows == rows;
+    if !may_be || !free || options.channels.iter().any(|name| name == "1") {
+        return None;
+    }
+    let looking = ReadOptions {
+        rows,
+        channels: vec!["1".to_owned()],
+        parts: Parts::Pieces(TIMES_SEEN),
+        ..options.clone()
+    };
+    let record = open(&looking).ok()?.next()?.ok()?;
+    let step = even_step(&record.channels.first()?.samples.volts())?;
+    let interval_s = step_s(step, options);
+    let are_chosen = !options.channels.is_empty() || columns > MOST_CHANNELS + 1;
+    Some(TimeColumn {
+        interval_s,
+        note: interval_s.and_then(|_| seconds_taken("", None, options)),
+        options: ReadOptions {
+            rows,
+            channels: match are_chosen {
+                true => options.channels.clone(),
+                false => numbered(columns).split_off(1),
+            },
+            ..options.clone()
+        },
+    })
+}
+
+/// A step between numbers in s; `None` of counts, which have no unit.
+pub(crate) fn step_s(step: f64, options: &ReadOptions) -> Option<f64> {
+    let counts = step == 1.0 && options.time_unit_s.is_none();
+    (!counts).then(|| step * options.time_unit_s.unwrap_or(1.0))
+}
+
+/// The step of numbers that rise evenly; those in single precision are rounded.
+pub(crate) fn even_step(values: &[f64]) -> Option<f64> {
+    let (first, last) = (values.first()?, values.last()?);
+    let step = (last - first) / (values.len().checked_sub(1)? as f64);
+    let rounding = f64::from(f32::EPSILON) * first.abs().max(last.abs());
+    let most = (EVEN * step + rounding).min(ROUNDED * step);
+    let even = |(i, value): (usize, &f64)| (value - first - i as f64 * step).abs() <= most;
+    let all = values.len() >= LEAST_TIMES && step > 0.0 && values.iter().enumerate().all(even);
+    all.then_some(step)
+}
+
+/// A file of named arrays. Names may be paths.
+pub(crate) trait Arrays {
+    fn file(&self) -> &Path;
+
+    /// Names of all arrays of numbers.
+    fn names(&self) -> Vec<String>;
+
+    fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError>;
+
+    /// All numbers of a small array.
+    fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError>;
+
+    /// The records of an array of samples.
+    fn records(
+        &self,
+        name: &str,
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Raw, MeasureError>;
+
+    /// Sampling interval in s that the file states beside its arrays.
+    fn stated_s(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// The records of a file of named arrays.
+///
+/// One array is shots or channels by its axes. Several are shots if they are called so, else
+/// channels.
+pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw, MeasureError> {
+    let names = arrays.names();
+    let of = |known: &[&str]| names.iter().find(|name| known.contains(&last(name)));
+    let values = |known| of(known).map(|name| arrays.values(name)).transpose();
+    let first = |values: Option<Vec<f64>>| values?.first().copied();
+    let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
+    let stated_s = first(values(INTERVALS)?)
+        .or(first(values(RATES)?).map(f64::recip))
+        .or_else(|| arrays.stated_s())
+        .or(times_s.and_then(mean_step));
+    let mut note = match (stated_s, of(TIMES)) {
+        (None, Some(name)) => seconds_taken(name, None, options),
+        _ => None,
+    };
+    let unit_s = options.time_unit_s.unwrap_or(1.0);
+    let mut interval = stated_s.or(times.and_then(mean_step).map(|step| step * unit_s));
+    let speeds = values(SPEEDS)?.unwrap_or_default();
+    let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
+    let mut samples = names.clone();
+    samples.retain(|name| {
+        // Single numbers beside them are whatever they are.
+        let several = || arrays.shape(name).map_or(true, |shape| !shape.is_empty());
+        !known.contains(&last(name)) && several()
+    });
+    let mut read = options.clone();
+    if let Some(times) = only_time_column(&*arrays, &samples, options) {
+        read = times.options;
+        if interval.is_none() {
+            (interval, note) = (times.interval_s, note.or(times.note));
+        }
+    }
+    let interval_s = interval_s(arrays.file(), interval, options)?;
+    let (records, recordings) = of_samples(&arrays, samples, interval_s, &read)?;
+    Ok(with_speeds(records, speeds, recordings, note))
+}
+
+/// Times among the columns of the only array of samples.
+fn only_time_column(
+    arrays: &dyn Arrays,
+    samples: &[String],
+    options: &ReadOptions,
+) -> Option<TimeColumn> {
+    let [one] = samples else { return None };
+    if options.channels.contains(one) {
+        return None;
+    }
+    let open = |options: &ReadOptions| arrays.records(one, 1.0, options);
+    time_column(&arrays.shape(one).ok()?, options, &open)
+}
+
+/// The last part of a path.
+fn last(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
+}
+
+/// The mean step of times.
+fn mean_step(times: Vec<f64>) -> Option<f64> {
+    let steps = times.len().checked_sub(1).filter(|steps| *steps > 0)?;
+    Some((times.last()? - times.first()?) / steps as f64)
+}
+
+/// Number of recordings in one array.
+fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, MeasureError> {
+    let shape = arrays.shape(name)?;
+    let axes = Axes::of(&shape, options.rows_of(&shape));
+    let rows = axes.and_then(|axes| shape.get(axes.shots?));
+    Ok(rows.copied().unwrap_or(1))
+}
+
+/// The records of arrays of samples, and the number of their recordings.
+fn of_samples(
+    arrays: &Rc<dyn Arrays>,
+    samples: Vec<String>,
+    interval_s: f64,
+    options: &ReadOptions,
+) -> Result<(Raw, usize), MeasureError> {
+    let file = arrays.file();
+    // Columns of an array that is itself chosen are not chosen from.
+    let free = ReadOptions {
+        channels: Vec::new(),
+        ..options.clone()
+    };
+    if let [one] = samples.as_slice() {
+        let options = match options.channels.contains(one) {
+            true => &free,
+            false => options,
+        };
+        let recordings = rows(&**arrays, one, options)?;
+        return Ok((arrays.records(one, interval_s, options)?, recordings));
+    }
+    let are_shots = samples.iter().all(|name| is_shot(last(name)));
+    if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
+        let each = samples.iter().map(|name| rows(&**arrays, name, options));
+        let recordings = match options.parts {
+            // Shots of equal length come one by one, whatever array they are of.
+            Parts::Shots(_) => 0,
+            _ => each.sum::<Result<usize, MeasureError>>()?,
+        };
+        let all = one_by_one(arrays.clone(), samples, interval_s, free);
+        return Ok((all, recordings));
+    }
+    let chosen = chosen(file, &samples, options)?;
+    let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
+    for name in &chosen {
+        // Tables may as well be of different chains.
+        if options.channels.is_empty() && arrays.shape(name)?.len() > 1 {
+            return Err(ambiguous(file, &samples));
+        }
+    }
+    let recordings = chosen.first().map(|name| rows(&**arrays, name, options));
+    let recordings = recordings.unwrap_or(Ok(0))?;
+    let records = side_by_side(arrays, &chosen, interval_s, &free)?;
+    Ok((records, recordings))
+}
+
+fn is_shot(name: &str) -> bool {
+    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let word = stem.trim_end_matches(['_', '-', ' ']).to_lowercase();
+    stem.len() < name.len() && SHOTS.contains(&word.as_str())
+}
+
+/// Arrays of which each holds one channel of every shot.
+fn side_by_side(
+    arrays: &Rc<dyn Arrays>,
+    names: &[&String],
+    interval_s: f64,
+    options: &ReadOptions,
+) -> Result<Raw, MeasureError> {
+    let open = |name: &&String| {
+        let records = arrays.records(name, interval_s, options)?;
+        Ok((name.to_string(), records))
+    };
+    let opened: Result<Vec<(String, Raw)>, MeasureError> = names.iter().map(open).collect();
+    let (mut opened, file) = (opened?, arrays.file().to_owned());
+    Ok(Box::new(std::iter::from_fn(move || {
+        let next = opened.iter_mut();
+        let next: Vec<_> = next.map(|(name, of)| (name.clone(), of.next())).collect();
+        let any = next.iter().any(|(_, record)| record.is_some());
+        any.then(|| joined(&file, next))
+    })))
+}
+
+/// One shot of channels that came one by one.
+fn joined(
+    file: &Path,
+    channels: Vec<(String, Option<Result<Record, MeasureError>>)>,
+) -> Result<Record, MeasureError> {
+    let unlike = |detail: &str| MeasureError::malformed(file, "arrays", detail);
+    let mut joined: Option<Record> = None;
+    for (name, record) in channels {
+        let missing = || unlike("not every channel has as many shots");
+        let mut record = record.ok_or_else(missing)??;
+        let (Some(mut channel), true) = (record.channels.pop(), record.channels.is_empty()) else {
+            let detail = format!("{name:?} has columns of its own: choose it alone");
+            return Err(unlike(&detail));
+        };
+        channel.name = name;
+        joined.get_or_insert(record).channels.push(channel);
+    }
+    joined.ok_or_else(|| unlike("without channels"))
+}
+
+/// The records of one array after the other.
+fn one_by_one(
+    arrays: Rc<dyn Arrays>,
+    samples: Vec<String>,
+    interval_s: f64,
+    options: ReadOptions,
+) -> Raw {
+    let records = samples.into_iter().flat_map(move |name| {
+        let opened = arrays.records(&name, interval_s, &options);
+        opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
+    });
+    Box::new((1..).zip(records).map(|(shot, record)| {
+        record.map(|record| Record {
+            shot: Some(shot),
+            ..record
+        })
+    }))
+}
+
+/// Gives recordings the speeds of the file in order; pieces of one have the same, and a single
+/// speed is that of all. Speeds of shots that are still to be cut out go with every record.
+fn with_speeds(records: Raw, speeds: Vec<f64>, recordings: usize, note: Option<String>) -> Raw {
+    let matched = speeds.len() == recordings;
+    let mut begun = 0_usize;
+    Box::new(records.map(move |record| {
+        let goes_on = record.as_ref().is_ok_and(|record| record.first_sample > 0);
+        begun += usize::from(!goes_on);
+        let speed = match speeds.as_slice() {
+            [one] => Some(one),
+            all if matched => all.get(begun.saturating_sub(1)),
+            _ => None,
+        };
+        let mut record = record?;
+        record.speed_m_s = speed.copied().filter(|speed| speed.is_finite());
+        if !matched && speeds.len() > 1 {
+            record.speeds_m_s.clone_from(&speeds);
+        }
+        record.notes = note.clone().into_iter().collect();
+        Ok(record)
+    }))
+}
+
+#[cfg(test)]
+#[path = "tests/arrays.rs"]
+mod tests;

@@ -1,0 +1,316 @@
+//! HDF5: datasets of any program, and tables of results.
+
+use crate::error::{MeasureError, file_name};
+use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, Table};
+use crate::records::files::{exclusive, persist};
+use crate::records::options::ReadOptions;
+use crate::records::read::Raw;
+use crate::records::record::Samples;
+use crate::records::series;
+use crate::records::stream::{Cut, Stream};
+use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Dataset of the text of a table.
+const ABOUT: &str = "about";
+
+/// Effort of the compression of tables: numbers that follow a curve lose a third of their bytes at
+/// the lowest, and hardly more at the highest.
+const DEFLATE: u32 = 1;
+
+/// Rows of a table's chunk, which is compressed and read as one.
+const CHUNK: usize = 1 << 16;
+
+/// Endings of names, with units as CF conventions write them.
+const UNITS: &[(&str, &str)] = &[
+    ("_m_s", "m s-1"),
+    ("_s", "s"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_v", "V"),
+    ("_j", "J"),
+];
+
+/// Opens a series of a virtual campaign, or the datasets of another program.
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+    let open =
+        H5File::open(file).map_err(|e| MeasureError::malformed(file, "HDF5", damaged(&e)))?;
+    if series::is_series(&open) {
+        return series::open(file, &open, options);
+    }
+    let mut names = open.dataset_names();
+    names.retain(|name| {
+        let kind = open.dataset(name).and_then(|dataset| dataset.datatype());
+        matches!(
+            kind,
+            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
+        )
+    });
+    if names.is_empty() {
+        return Err(MeasureError::empty(file_name(file)));
+    }
+    let file = file.to_owned();
+    arrays::open(Rc::new(Datasets { file, open, names }), options)
+}
+
+/// A dataset whose numbers are in this file. What lies in other files could be any file of the
+/// machine: external links, external storage and virtual datasets are refused.
+pub(crate) fn dataset(open: &H5File, name: &str) -> Result<H5Dataset, Hdf5Error> {
+    let refused = |why: &str| {
+        Hdf5Error::InvalidState(format!(
+            "{name:?} {why}, which are not read: copy its numbers into this file"
+        ))
+    };
+    if !open.dataset_names().iter().any(|known| known == name) {
+        return Err(refused("is missing, or one of the links to other files"));
+    }
+    let dataset = open.dataset(name)?;
+    if !dataset.external_files()?.is_empty() || !dataset.virtual_mappings()?.is_empty() {
+        return Err(refused("has its numbers in other files"));
+    }
+    Ok(dataset)
+}
+
+/// All numbers of a dataset of so many.
+pub(crate) fn column<T: H5Type>(
+    open: &H5File,
+    name: &str,
+    count: usize,
+) -> Result<Vec<T>, Hdf5Error> {
+    let column = dataset(open, name)?.read_raw::<T>()?;
+    match column.len() == count {
+        true => Ok(column),
+        false => Err(Hdf5Error::InvalidState(format!(
+            "{name} has {} rows where samples have {count}",
+            column.len()
+        ))),
+    }
+}
+
+/// A number that is an attribute of a dataset.
+pub(crate) fn attribute(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
+    let attribute = of.attr(name)?;
+    let value = match attribute.read_numeric_as::<f64>() {
+        Ok(floats) => floats.first().copied(),
+        Err(_) => {
+            let whole = attribute.read_numeric_as::<u64>()?;
+            whole.first().map(|whole| *whole as f64)
+        }
+    };
+    value.ok_or_else(|| Hdf5Error::NotFound(name.to_owned()))
+}
+
+/// The library's message, after the likeliest reason.
+pub(crate) fn damaged(error: &Hdf5Error) -> String {
+    format!("cut short or damaged ({error})")
+}
+
+/// Writes what a dataset is, with the unit that its name ends in.
+pub(crate) fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
+    for (name, text) in [("long_name", what), ("units", unit)] {
+        of.new_attr::<VarLenUnicode>()
+            .shape(())
+            .create(name)?
+            .write_string(text)?;
+    }
+    Ok(())
+}
+
+/// The unit that a name ends in.
+pub(crate) fn unit(name: &str) -> &'static str {
+    let lower = name.to_ascii_lowercase();
+    let found = UNITS.iter().find(|ending| lower.ends_with(ending.0));
+    found.map_or("1", |ending| ending.1)
+}
+
+/// An open file and the paths of its datasets of numbers.
+struct Datasets {
+    file: PathBuf,
+    open: H5File,
+    names: Vec<String>,
+}
+
+impl Datasets {
+    fn dataset(&self, name: &str) -> Result<H5Dataset, MeasureError> {
+        dataset(&self.open, name).map_err(|error| refused(&self.file, name, &error))
+    }
+}
+
+fn refused(file: &Path, dataset: &str, error: &Hdf5Error) -> MeasureError {
+    let detail = format!("dataset {dataset:?} is {}", damaged(error));
+    MeasureError::malformed(file, "HDF5", detail)
+}
+
+impl Arrays for Datasets {
+    fn file(&self) -> &Path {
+        &self.file
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.names.clone()
+    }
+
+    fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError> {
+        self.dataset(name).map(|dataset| dataset.shape())
+    }
+
+    fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError> {
+        let values = self.dataset(name)?.read_numeric_as::<f64>();
+        values.map_err(|error| refused(&self.file, name, &error))
+    }
+
+    fn records(
+        &self,
+        name: &str,
+        interval_s: f64,
+        options: &ReadOptions,
+    ) -> Result<Raw, MeasureError> {
+        let dataset = self.dataset(name)?;
+        let shape = dataset.shape();
+        let part = Some(name.to_owned());
+        let table = Table::of(&self.file, part, &shape, interval_s, options)?;
+        let rows = Rows {
+            file: self.file.clone(),
+            name: name.to_owned(),
+            dataset,
+            axes: table.axes,
+            chosen: table.chosen,
+            frames: table.frames,
+            at: 0,
+        };
+        Ok(Box::new(Cut::new(table.head.divided(options.parts), rows)))
+    }
+
+    fn stated_s(&self) -> Option<f64> {
+        let number = |names: &[&str]| {
+            let datasets = self.names.iter().filter_map(|name| self.dataset(name).ok());
+            let values = |of: &H5Dataset| names.iter().find_map(|name| attribute(of, name).ok());
+            datasets.into_iter().find_map(|dataset| values(&dataset))
+        };
+        number(INTERVALS).or_else(|| number(RATES).map(f64::recip))
+    }
+}
+
+/// A dataset, read shot by shot or piece by piece.
+struct Rows {
+    file: PathBuf,
+    name: String,
+    dataset: H5Dataset,
+    axes: Axes,
+    chosen: Vec<usize>,
+    frames: usize,
+    at: usize,
+}
+
+impl Stream for Rows {
+    fn take(&mut self, count: usize) -> Result<Vec<Samples>, MeasureError> {
+        let one = |channel: &usize| self.channel(*channel, count);
+        let taken: Result<Vec<Samples>, Hdf5Error> = self.chosen.iter().map(one).collect();
+        self.at += count;
+        taken.map_err(|error| refused(&self.file, &self.name, &error))
+    }
+}
+
+impl Rows {
+    /// The next samples of one channel.
+    fn channel(&self, channel: usize, count: usize) -> Result<Samples, Hdf5Error> {
+        let rank = self.dataset.shape().len();
+        let (mut starts, mut counts) = (vec![0; rank], vec![1; rank]);
+        for (axis, start, count) in [
+            (self.axes.shots, self.at / self.frames, 1),
+            (self.axes.channels, channel, 1),
+            (Some(self.axes.time), self.at % self.frames, count),
+        ] {
+            if let Some(axis) = axis {
+                (starts[axis], counts[axis]) = (start, count);
+            }
+        }
+        let (dataset, starts, counts) = (&self.dataset, &*starts, &*counts);
+        Ok(match dataset.datatype()? {
+            DatatypeMessage::FixedPoint {
+                size: 2,
+                signed: true,
+                ..
+            } => Samples::Counts {
+                counts: dataset.read_slice::<i16>(starts, counts)?,
+                volts_per_count: 1.0,
+                offset_v: 0.0,
+            },
+            DatatypeMessage::FixedPoint { .. } => {
+                let whole = dataset.read_numeric_slice_as::<i64>(starts, counts)?;
+                Samples::Volts(whole.into_iter().map(|number| number as f64).collect())
+            }
+            _ => Samples::Volts(dataset.read_numeric_slice_as::<f64>(starts, counts)?),
+        })
+    }
+}
+
+/// Columns of numbers with a text about them, as a file: for results that many processes write
+/// and one puts together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnFile {
+    /// What the numbers are; in the file a dataset of bytes, UTF-8.
+    pub about: String,
+    /// Columns of one length, by names whose endings are the units.
+    pub columns: Vec<(String, Vec<f64>)>,
+}
+
+impl ColumnFile {
+    /// Writes the table whole or not at all. Several processes may write one table at once; the
+    /// last one stays. The bytes follow from the table alone.
+    ///
+    /// # Errors
+    /// [`MeasureError::Unwritable`].
+    pub fn write(&self, path: &Path) -> Result<(), MeasureError> {
+        let failed =
+            |error: &dyn ToString| MeasureError::Unwritable(file_name(path), error.to_string());
+        let part = exclusive(path).map_err(|error| failed(&error))?;
+        self.put(part.path()).map_err(|error| failed(&error))?;
+        persist(part, path).map_err(|error| failed(&error))
+    }
+
+    fn put(&self, part: &Path) -> Result<(), Hdf5Error> {
+        let file = H5File::create(part)?;
+        let about = file.new_dataset::<u8>().shape([self.about.len()]);
+        about.create(ABOUT)?.write_raw(self.about.as_bytes())?;
+        for (name, values) in self.columns.iter().filter(|column| !column.1.is_empty()) {
+            let column = file
+                .new_dataset::<f64>()
+                .shape([values.len()])
+                .chunk(&[values.len().min(CHUNK)])
+                .shuffle_deflate(DEFLATE)
+                .create(name)?;
+            column.write_raw(values)?;
+            describe(&column, name, unit(name))?;
+        }
+        file.close()
+    }
+
+    /// Reads the text of a table and those of the columns that it has; columns without rows are
+    /// not in the file.
+    ///
+    /// # Errors
+    /// [`MeasureError::Format`] with what is damaged or missing.
+    pub fn read(path: &Path, columns: &[&str]) -> Result<Self, MeasureError> {
+        let found = || {
+            let open = H5File::open(path)?;
+            let about = dataset(&open, ABOUT)?.read_raw::<u8>()?;
+            let about = String::from_utf8(about)
+                .map_err(|_| Hdf5Error::InvalidState("its text is not UTF-8".to_owned()))?;
+            let there = open.dataset_names();
+            let mut read = Vec::new();
+            for name in columns.iter().copied() {
+                if there.iter().any(|known| known == name) {
+                    let rows = dataset(&open, name)?.shape().iter().product();
+                    read.push((name.to_owned(), column::<f64>(&open, name, rows)?));
+                }
+            }
+            Ok(Self {
+                about,
+                columns: read,
+            })
+        };
+        found().map_err(|e: Hdf5Error| MeasureError::malformed(path, "a table", damaged(&e)))
+    }
+}
