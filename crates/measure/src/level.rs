@@ -121,10 +121,9 @@ impl UnderWay {
         });
         Ok(Self {
             head: piece.without_samples(),
-            cutter: cutter.map_err(|cause| MeasureError::Shots(
-                piece.source.clone(),
-                format!("cannot be cut: {cause}"),
-            ))?,
+            cutter: cutter.map_err(|cause| {
+                MeasureError::Shots(piece.source.clone(), format!("cannot be cut: {cause}"))
+            })?,
             kept: VecDeque::new(),
             extremes_v: (f64::INFINITY, f64::NEG_INFINITY),
             found: false,

@@ -27,7 +27,8 @@ pub(crate) struct Entry {
 }
 
 fn no_titles() -> MeasureError {
-    let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error";
+    let detail =
+        "the first line must name the columns: file, and any of shot, case, speed, speed error";
     MeasureError::List(detail.to_owned())
 }
 

@@ -1,7 +1,7 @@
 //! Speeds that a file tells of its shots in order, dealt once all of them are cut out.
 
-use crate::records::{Parts, Record};
 use crate::error::{MeasureError, file_name};
+use crate::records::{Parts, Record};
 use crate::{Measurement, Options, Shot};
 use std::path::{Path, PathBuf};
 

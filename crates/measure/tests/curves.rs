@@ -3,9 +3,7 @@
 
 use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::signal::{Bandwidth, Doubt, Flight, Measuring, SignalError, alone};
-use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Options, Refused, ShotList, measure,
-};
+use hertzchain_measure::{Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::records::{Parts, ReadOptions};
-use hertzchain_measure::{Cut, Level, Measurement, Options, Refused, ShotList, measure};
+use hertzchain_measure::{Cut, Level, Measurement, Options, ShotList, measure};
 use rust_hdf5::H5File;
 use std::fs;
 use std::path::{Path, PathBuf};

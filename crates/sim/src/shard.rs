@@ -24,7 +24,7 @@ use crate::fingerprint::Fingerprint;
 use crate::result::{COLUMNS, Failed, Rows, WarningSummary};
 use crate::stop::stopped;
 use hertzchain_experiment::Units;
-use hertzchain_measure::records::Table;
+use hertzchain_measure::records::ColumnFile;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Display, Formatter, Result as Formatted};
@@ -218,7 +218,7 @@ impl Header {
         Fingerprint::of_bytes(&bytes).to_string()
     }
 
-    fn result(mut self, table: Table) -> Result<BatchResult, &'static str> {
+    fn result(mut self, table: ColumnFile) -> Result<BatchResult, &'static str> {
         if self.format != FORMAT {
             return Err("it is of another format");
         }
@@ -273,15 +273,14 @@ impl BatchResult {
         let mut header = Header::of(self);
         header.content = header.content(&self.rows);
         let columns = COLUMNS.iter().zip(&self.rows.columns);
-        let table = Table {
+        let table = ColumnFile {
             about: header.text(),
             columns: columns
                 .map(|(name, values)| ((*name).to_owned(), values.clone()))
                 .collect(),
         };
-        let unwritable = |error: hertzchain_measure::records::RecordError| {
-            StudyError::Unwritable(error.to_string())
-        };
+        let unwritable =
+            |error: hertzchain_measure::MeasureError| StudyError::Unwritable(error.to_string());
         table.write(&path).map_err(unwritable)?;
         Ok(path)
     }
@@ -292,7 +291,7 @@ impl BatchResult {
     /// What is wrong with the file.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let read = || {
-            let table = Table::read(path, &COLUMNS).map_err(|error| error.to_string())?;
+            let table = ColumnFile::read(path, &COLUMNS).map_err(|error| error.to_string())?;
             let header = serde_json::from_str::<Header>(&table.about);
             let header = header.map_err(|error| format!("its header is not ours ({error})"))?;
             header.result(table).map_err(str::to_owned)

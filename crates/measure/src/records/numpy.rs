@@ -222,8 +222,7 @@ struct Array {
 impl Array {
     fn open(place: Place, part: Option<String>) -> Result<Self, MeasureError> {
         let (header, bytes) = opened(&place)?;
-        let number =
-            number(&header.dtype()).map_err(|detail| malformed(&place.file, detail))?;
+        let number = number(&header.dtype()).map_err(|detail| malformed(&place.file, detail))?;
         let sizes = header.shape().iter();
         let shape: Option<Vec<usize>> = sizes.map(|size| usize::try_from(*size).ok()).collect();
         let shape = shape.ok_or_else(|| malformed(&place.file, "an axis is beyond all bounds"))?;
@@ -241,9 +240,9 @@ impl Array {
     fn values(self) -> Result<Vec<f64>, MeasureError> {
         let mut sizes = self.shape.iter();
         let count = sizes.try_fold(1, |n: usize, axis| n.checked_mul(*axis));
-        let count = count.filter(|count| *count <= MOST_SAMPLES).ok_or_else(|| {
-            MeasureError::too_long(file_name(&self.place.file), MOST_SAMPLES)
-        })?;
+        let count = count
+            .filter(|count| *count <= MOST_SAMPLES)
+            .ok_or_else(|| MeasureError::too_long(file_name(&self.place.file), MOST_SAMPLES))?;
         let samples = self.stream(vec![0], 1).take(count)?;
         Ok(samples.first().map(Samples::volts).unwrap_or_default())
     }
@@ -254,10 +253,7 @@ impl Array {
         let bytes = sizes.fold(self.number.width() as u64, u64::saturating_mul);
         let there = self.bytes.left().filter(|there| *there < bytes)?;
         let detail = format!("{there} of {bytes} bytes of numbers are there");
-        Some(MeasureError::truncated(
-            file_name(&self.place.file),
-            detail,
-        ))
+        Some(MeasureError::truncated(file_name(&self.place.file), detail))
     }
 
     /// The records of an array of samples.
@@ -399,12 +395,7 @@ impl Stream for Passes {
     fn take(&mut self, count: usize) -> Result<Vec<Samples>, MeasureError> {
         let mut shot = match self.current.take() {
             Some(shot) if !self.at.is_multiple_of(self.frames) => shot,
-            _ => numbers(
-                &self.place,
-                self.number,
-                self.at / self.frames,
-                self.shots,
-            )?,
+            _ => numbers(&self.place, self.number, self.at / self.frames, self.shots)?,
         };
         let block = (BLOCK / self.shots).max(1);
         let mut all: Option<Samples> = None;

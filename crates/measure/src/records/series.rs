@@ -14,7 +14,7 @@ use crate::records::read::Raw;
 use crate::records::record::{Channel, LowPass, Record, Samples};
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Attribute that marks a series, and its value.
 const FORMAT: (&str, &str) = ("format", "hertzchain series");
@@ -75,7 +75,8 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
         return Err(MeasureError::empty(file_name(file)));
     }
     let wanted = chosen(file, &names, options)?;
-    let positive = |name, least: f64| number_text(open, name).filter(|n| n.is_finite() && *n >= least);
+    let positive =
+        |name, least: f64| number_text(open, name).filter(|n| n.is_finite() && *n >= least);
     let series = Series {
         // What all its records share.
         head: Record {
@@ -175,9 +176,7 @@ fn named(
     open: &H5File,
     names: impl Iterator<Item = &'static str>,
 ) -> Result<Vec<(&'static str, H5Dataset)>, Hdf5Error> {
-    names
-        .map(|name| Ok((name, dataset(open, name)?)))
-        .collect()
+    names.map(|name| Ok((name, dataset(open, name)?))).collect()
 }
 
 /// Whether the trigger fired at each shot; empty of a file that does not state it.
@@ -218,7 +217,7 @@ pub fn untriggered(file: &Path) -> Result<usize, MeasureError> {
 /// # Errors
 /// Files that are not series of a virtual campaign.
 pub fn truth(file: &Path) -> Result<Vec<(String, Vec<f64>)>, MeasureError> {
-    let columns = || {
+    let columns = || -> Result<Vec<(String, Vec<f64>)>, Hdf5Error> {
         let open = H5File::open(file)?;
         let mut names = open.root_group().group(TRUTH)?.dataset_names()?;
         names.retain(|name| name != CONTACT);
@@ -228,7 +227,7 @@ pub fn truth(file: &Path) -> Result<Vec<(String, Vec<f64>)>, MeasureError> {
         };
         names.into_iter().map(column).collect()
     };
-    columns().map_err(|error: Hdf5Error| malformed(file, error))
+    columns().map_err(|error| malformed(file, error))
 }
 
 /// Opens a finished series and compares it with what a writer would write: every text of the

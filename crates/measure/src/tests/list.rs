@@ -4,7 +4,10 @@ use super::*;
 fn speeds_in_another_unit_are_refused_not_taken_for_metres_a_second() {
     for title in ["velocity [mm/s]", "speed (cm/s)", "speed error (%)"] {
         let list = ShotList::parse(&format!("file,{title}\na.csv,500\n"));
-        assert!(matches!(list, Err(MeasureError::List(ref why)) if why.contains("another unit")), "{title}");
+        assert!(
+            matches!(list, Err(MeasureError::List(ref why)) if why.contains("another unit")),
+            "{title}"
+        );
     }
     for title in ["speed (m/s)", "v0 [m s^-1]", "speed"] {
         let list = ShotList::parse(&format!("file,{title}\na.csv,0.5\n"));

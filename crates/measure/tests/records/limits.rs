@@ -98,7 +98,7 @@ fn an_interval_that_no_recorder_has_is_refused() {
             ..ReadOptions::default()
         };
         let error = read(&file, &options).next().unwrap().unwrap_err();
-        assert!(matches!(error, MeasureError::Rate(..)));
+        assert!(error.to_string().contains("impossible"), "{error}");
         assert!(error.to_string().len() < 200, "{error}");
     }
 }

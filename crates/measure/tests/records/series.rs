@@ -2,7 +2,10 @@
 
 use crate::common::{folder, python};
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::records::{Channels, ReadOptions, Record, Samples, SeriesInfo, SeriesWriter, ShotRow, read, truth, untriggered, verify};
+use hertzchain_measure::records::{
+    Channels, ReadOptions, Record, Samples, SeriesInfo, SeriesWriter, ShotRow, read, truth,
+    untriggered, verify,
+};
 use std::fs;
 use std::path::Path;
 

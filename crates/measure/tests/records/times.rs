@@ -1,7 +1,6 @@
 //! Times of few digits: what they leave open is told, and nothing is refused for it.
 
 use crate::common::folder;
-use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{ReadOptions, Record, read};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -126,7 +125,7 @@ fn digits_that_show_no_step_at_all_ask_for_a_rate() {
     let path = written(&folder, 1e-6, 0, 1, |time_s| format!("{time_s:.1}"));
     let told = read(&path, &ReadOptions::default()).next().unwrap();
     let told = told.unwrap_err();
-    assert!(matches!(told, MeasureError::Rate(..)), "{told}");
+    assert!(told.to_string().contains("too coarse"), "{told}");
     assert!(told.to_string().contains("--rate"), "{told}");
     let options = ReadOptions {
         rate_hz: Some(1e6),
@@ -177,7 +176,7 @@ fn times_that_go_to_and_fro_are_told_once() {
     let told: Vec<_> = read(&path, &ReadOptions::default()).collect();
     assert_eq!(told.len(), 1);
     let error = told.into_iter().next().unwrap().unwrap_err();
-    assert!(matches!(error, MeasureError::Rate(..)), "{error}");
+    assert!(error.to_string().contains("not evenly spaced"), "{error}");
     assert!(error.to_string().contains("--trust-rate"), "{error}");
 }
 

@@ -3,7 +3,7 @@
 use crate::StudyError;
 use crate::rig::striker::OutOfRange;
 use hertzchain_experiment::{Mistakes, PathError};
-use hertzchain_measure::records::RecordError;
+use hertzchain_measure::MeasureError;
 use std::io;
 use std::path::Path;
 
@@ -42,10 +42,10 @@ pub enum RigError {
     },
     /// A recording that can't be written.
     #[error("{0}; `campaign` with the same folder goes on from there")]
-    Record(#[from] RecordError),
+    Record(#[from] MeasureError),
     /// A file with the name of a recording that is another's, or damaged.
     #[error("{0}; move it away, and `campaign` makes it again")]
-    NotOurs(RecordError),
+    NotOurs(MeasureError),
     /// A folder that can't be used.
     #[error("cannot write into {path}: {error}")]
     Folder {

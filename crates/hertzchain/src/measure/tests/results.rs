@@ -1,5 +1,5 @@
 use super::*;
-use hertzchain_measure::Refused;
+use hertzchain_measure::MeasureError;
 use hertzchain_measure::signal::{Moved, Picks};
 use std::path::PathBuf;
 
@@ -37,11 +37,10 @@ fn measured(shots: usize) -> Measurement {
     };
     Measurement {
         shots: vec![shot; shots],
-        refused: vec![Refused::Speeds {
-            file: PathBuf::from("short.npz"),
-            told: 3,
-            found: 2,
-        }],
+        refused: vec![MeasureError::Shots(
+            "short.npz".to_owned(),
+            "has 3 speeds".to_owned(),
+        )],
         ..Measurement::default()
     }
 }

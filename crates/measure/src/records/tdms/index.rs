@@ -1,8 +1,8 @@
 //! Where each channel's samples are: all segments' metadata, no samples.
 
-use super::bytes::{Bytes, Property, TEXT, kind, width};
-use super::daqmx::{ANALOGUE, DIGITAL, Layout, cards};
-use super::lead::{LEAD, Lead};
+use super::metadata::{
+    ANALOGUE, Bytes, DIGITAL, LEAD, Layout, Lead, Property, TEXT, cards, kind, width,
+};
 use super::scaling::{Properties, polynomial};
 use crate::error::{MeasureError, file_name};
 use crate::records::stream::Number;
@@ -165,7 +165,7 @@ impl Index {
             }
             let end = end.unwrap_or(length);
             let raw = begin.saturating_add(lead.raw).min(end);
-            if lead.has_metadata() {
+            if lead.has_metadata {
                 let size = (raw - begin).min(MOST_METADATA);
                 let metadata = bytes(&mut opened, begin, size).map_err(reading)?;
                 if walk.metadata(&lead, &metadata).is_none() {
@@ -173,7 +173,7 @@ impl Index {
                     return Err(MeasureError::malformed(file, "TDMS", detail));
                 }
             }
-            if lead.has_samples() {
+            if lead.has_samples {
                 walk.samples(&lead, raw, end);
             }
             walk.seen = walk.seen.saturating_add(walk.objects.list.len());
@@ -214,9 +214,9 @@ impl Walk {
     fn metadata(&mut self, lead: &Lead, metadata: &[u8]) -> Option<()> {
         let mut bytes = Bytes {
             left: metadata,
-            big_endian: lead.is_big_endian(),
+            big_endian: lead.is_big_endian,
         };
-        if lead.has_new_list() {
+        if lead.has_new_list {
             self.objects = Objects::default();
         }
         for _ in 0..bytes.u32()? {
@@ -226,13 +226,17 @@ impl Walk {
             for _ in 0..bytes.u32()? {
                 properties.push(bytes.property()?);
             }
-            self.describe(&object, lead.is_big_endian(), properties);
-            self.list(object);
+            let code = object.raw.as_ref().map(Values::code);
+            if let Some(channel) = self.channel(&object.path, code, lead.is_big_endian) {
+                channel.properties.extend(properties);
+            }
+            self.objects.put(object.clone());
+            self.known.put(object);
         }
         Some(())
     }
 
-    /// Where an object's samples are: none, as before, or told now.
+    /// Where an object's samples are: none, as before, or stated now.
     fn object(&self, bytes: &mut Bytes<'_>, path: String) -> Option<Object> {
         let raw = match bytes.u32()? {
             u32::MAX => None,
@@ -253,19 +257,6 @@ impl Walk {
             }
         };
         Some(Object { path, raw })
-    }
-
-    fn list(&mut self, object: Object) {
-        self.objects.put(object.clone());
-        self.known.put(object);
-    }
-
-    /// Keeps what a channel's properties say.
-    fn describe(&mut self, object: &Object, big: bool, properties: Vec<(String, Property)>) {
-        let code = object.raw.as_ref().map(Values::code);
-        if let Some(channel) = self.channel(&object.path, code, big) {
-            channel.properties.extend(properties);
-        }
     }
 
     /// The channel of a path like `/'group'/'channel'`, if it has numbers.
@@ -306,9 +297,9 @@ impl Walk {
         let objects = self.objects.list.iter();
         let with = objects.filter_map(|object| Some((object.path.clone(), object.raw.clone()?)));
         let with: Vec<(String, Values)> = with.collect();
-        let (places, chunk_bytes) = match lead.is_of_cards() {
+        let (places, chunk_bytes) = match lead.is_of_cards {
             true => of_cards(&with),
-            false => of_objects(&with, lead.is_interleaved()),
+            false => of_objects(&with, lead.is_interleaved),
         };
         if chunk_bytes == 0 {
             return;
@@ -316,7 +307,7 @@ impl Walk {
         let room = usize::try_from(end - raw).unwrap_or(usize::MAX);
         for place in places.into_iter().filter(|place| place.count > 0) {
             let code = Some(place.code);
-            if let Some(channel) = self.channel(place.path, code, lead.is_big_endian()) {
+            if let Some(channel) = self.channel(place.path, code, lead.is_big_endian) {
                 channel.pieces.push(Piece {
                     offset: raw.saturating_add(place.begin as u64),
                     count: place.count,

@@ -1,10 +1,8 @@
-//! LabVIEW's TDMS. Written here: the crate there is reads neither interleaved
+//! LabVIEW's TDMS. Written here: tdms-rs reads neither interleaved
 //! channels nor several chunks a segment, which most of LabVIEW's files have.
 
-mod bytes;
-mod daqmx;
 mod index;
-mod lead;
+mod metadata;
 mod scaling;
 
 use crate::error::{MeasureError, file_name};

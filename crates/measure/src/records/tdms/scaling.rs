@@ -1,6 +1,6 @@
 //! From a channel's stored numbers to what they mean, by its properties.
 
-use super::bytes::Property;
+use super::metadata::Property;
 use std::collections::HashMap;
 
 /// Properties of a channel by name.
@@ -46,8 +46,8 @@ pub(super) fn polynomial(properties: &Properties) -> Result<Vec<f64>, String> {
 fn last(properties: &Properties) -> f64 {
     let there = |at: &usize| properties.contains_key(&format!("NI_Scale[{at}]_Scale_Type"));
     let found = || (0..MOST).rev().find(there).map(|at| at as f64);
-    let told = number(properties, "NI_Number_Of_Scales").map(|count| count - 1.0);
-    told.or_else(found).unwrap_or(STORED)
+    let stated = number(properties, "NI_Number_Of_Scales").map(|count| count - 1.0);
+    stated.or_else(found).unwrap_or(STORED)
 }
 
 /// Coefficients of a scale and the number of its input, if it is described.

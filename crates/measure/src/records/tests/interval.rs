@@ -63,10 +63,7 @@ fn a_rate_that_is_given_or_stated_counts_where_times_allow_it() {
         (1.03e6_f64.recip(), 0.0, None)
     );
     assert_eq!(of(None, Some(0.97e-6)).unwrap().s, 0.97e-6);
-    assert!(matches!(
-        of(Some(5e5), None),
-        Err(MeasureError::Rate(..))
-    ));
+    assert!(matches!(of(Some(5e5), None), Err(MeasureError::Rate(..))));
 }
 
 #[test]

@@ -296,8 +296,8 @@ pub(super) fn leading_number(text: &str, decimal_comma: bool) -> Option<(f64, &s
 }
 
 #[cfg(test)]
-#[path = "tests/dialect.rs"]
-mod tests;
-#[cfg(test)]
 #[path = "tests/field.rs"]
 mod field_tests;
+#[cfg(test)]
+#[path = "tests/dialect.rs"]
+mod tests;

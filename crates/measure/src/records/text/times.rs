@@ -93,7 +93,9 @@ fn uneven(source: &str, times: &[Printed]) -> MeasureError {
     let off_s = |pair: &[Printed]| (pair[1].s - pair[0].s - usual_s).abs();
     let off_s = times.windows(2).map(off_s).enumerate();
     let off_s = off_s.map(|(at, off)| (at, if off.is_nan() { f64::INFINITY } else { off }));
-    let at = off_s.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |of| of.0);
+    let at = off_s
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |of| of.0);
     // Without the last digits of double precision, which no file had.
     let time_s = times.get(at).map_or(f64::NAN, |time| time.s);
     let time_s: f64 = format!("{time_s:.11e}").parse().unwrap_or(time_s);
@@ -152,9 +154,8 @@ pub(super) fn even_interval(times: &[Printed]) -> Option<FromTimes> {
     };
     let off_s = |i: usize, time: &Printed| (time.s - first.s - i as f64 * mean_s).abs();
     let mut numbered = times.iter().enumerate();
-    let exact = |(i, time): (usize, &Printed)| {
-        off_s(i, time) <= first.rounding_s() + time.rounding_s()
-    };
+    let exact =
+        |(i, time): (usize, &Printed)| off_s(i, time) <= first.rounding_s() + time.rounding_s();
     if mean_s > 0.0 && numbered.all(exact) {
         return range(mean_s, mean_s, unit_s);
     }

@@ -42,10 +42,7 @@ with TdmsWriter("groups.tdms") as writer:
     let records: Vec<_> = read(&short, &ReadOptions::default()).collect();
     assert!(records[0].is_ok() && records[1].is_ok());
     let last = records.last().unwrap();
-    assert!(
-        matches!(last, Err(MeasureError::Truncated(..))),
-        "{last:?}"
-    );
+    assert!(matches!(last, Err(MeasureError::Truncated(..))), "{last:?}");
 }
 
 #[test]
