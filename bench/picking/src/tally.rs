@@ -3,7 +3,7 @@
 use crate::fault::{Fault, record, volts};
 use crate::row::Row;
 use hertzchain_measure::signal::{
-    Channels, Estimate, Measuring, PowerLaw, coverage, measure, power_law_both_errors,
+    Channels, Estimate, PowerLaw, SignalOptions, coverage, measure, power_law_both_errors,
 };
 use hertzchain_measure::{Curves, Grouping, Shot};
 use rand::SeedableRng;
@@ -208,13 +208,13 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         [sensor, wall] => Channels::Separate { sensor, wall },
         one => Channels::Summed(&one[0]),
     };
-    let measuring = Measuring {
+    let measuring = SignalOptions {
         bandwidth: fault.low_pass.filter(|_| fault.corrected),
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     let interval_s = fault.rate_hz.recip();
     let (flight, doubts) = match measure(channels, interval_s, &measuring) {
-        Ok(shot) => (shot.flight, shot.found.doubts),
+        Ok(shot) => (shot.flight, shot.found.flags),
         Err(error) => (Err(error), Vec::new()),
     };
     Shot {

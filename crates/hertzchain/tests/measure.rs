@@ -201,7 +201,7 @@ fn a_lost_passing_pulse_counts_in_no_mean() {
         &[&files[..], &["--beads", "40", "--sensor", "7"]].concat(),
     ));
     assert_eq!(
-        named["shots"][2]["flags"][0], "passing pulse missing",
+        named["shots"][2]["flags"][0], "incident pulse missing",
         "{named}"
     );
     assert!(named["shots"][2]["missing"].is_string());

@@ -12,14 +12,14 @@ mod dry;
 mod source;
 
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Finding, Flight, coverage, cramer_rao_of_samples_s, median, pick,
-    pulses,
+    Channels, Estimate, FindOptions, Flight, QualityFlag, coverage, cramer_rao_of_samples_s,
+    median, pick, pulses,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use source::{Source, bells, dry_shot, methods};
 
-/// Ratios of the passing pulse's height to the noise, in dB.
+/// Ratios of the incident pulse's height to the noise, in dB.
 const RATIOS_DB: [u32; 5] = [20, 30, 40, 50, 60];
 /// The same, of the tables of stated errors.
 const COVERED_DB: [u32; 5] = [14, 20, 26, 40, 60];
@@ -53,10 +53,10 @@ fn run(source: &Source, interval_s: f64, ratio_db: u32, shots: u64) -> [Errors; 
         rng.set_stream(shot);
         let samples = source.recorded(interval_s, noise, &mut rng);
         let channels = Channels::Summed(&samples);
-        let Ok(found) = pulses(channels, &Finding::default()) else {
+        let Ok(found) = pulses(channels, &FindOptions::default()) else {
             continue;
         };
-        let counts = !found.doubts.iter().any(Doubt::is_grave);
+        let counts = !found.flags.iter().any(QualityFlag::is_grave);
         for ((_, method), errors) in methods().iter().zip(&mut errors) {
             if let Ok(picks) = pick(channels, interval_s, &found, method, [None; 2]) {
                 errors.take(&picks.flight(), source.times_s, counts);

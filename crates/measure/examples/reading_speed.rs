@@ -23,7 +23,7 @@ type Anyhow = Result<(), Box<dyn Error>>;
 
 const SAMPLES_A_SHOT: usize = 100_000;
 const RATE_HZ: u32 = 1_000_000;
-/// Readings of the highest passing pulse.
+/// Readings of the highest incident pulse.
 const STEPS: f64 = 10_000.0;
 /// Shots that differ in noise; a recording repeats them.
 const DIFFERENT: usize = 20;

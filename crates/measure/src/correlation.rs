@@ -56,7 +56,7 @@ impl Pairs {
         correlation(scatter, errors)
     }
 
-    /// Two shots leave their correlation at ±1 whatever it is, many tell it: (n − 2)/(n − 1).
+    /// Two shots leave their correlation at ±1 whatever it is, many determine it: (n − 2)/(n − 1).
     fn certain(&self) -> f64 {
         let count = self.shots.0 as f64;
         ((count - 2.0) / (count - 1.0)).max(0.0)
@@ -75,8 +75,8 @@ pub(crate) fn correlation(covariance: f64, errors: [f64; 2]) -> Option<f64> {
 pub(crate) fn shared_s2(flights: &[&Flight]) -> f64 {
     let count = flights.len().max(1) as f64;
     let mean = |of: &dyn Fn(&Flight) -> f64| flights.iter().map(|f| of(f)).sum::<f64>() / count;
-    let under = mean(&|flight| flight.picks.wall.moved.under_s);
-    let shape = mean(&|flight| flight.picks.wall.moved.shape_s);
+    let under = mean(&|flight| flight.picks.wall.systematic.superposition_s);
+    let shape = mean(&|flight| flight.picks.wall.systematic.shape_s);
     let interval = |time: Option<Estimate>, flight: &Flight| {
         flight.interval_error * time.map_or(0.0, |time| time.value)
     };

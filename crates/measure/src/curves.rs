@@ -1,23 +1,24 @@
 //! Shots into curves: means a speed, ratios, power laws.
 
 use crate::Shot;
-use crate::alike::settled;
+use crate::ambiguous::resolve_ambiguous;
 use crate::correlation::{Pairs, correlation, of_ratios, shared_s2};
 use crate::lost::{At, Lost, lost};
 use crate::signal::{
-    Estimate, FitError, Flight, Moved, Point, PowerLaw, Ratio, Summary, alone, groups, power_law,
-    power_law_both_errors, ratios_at_common, shared, summary,
+    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, Systematic, groups,
+    mean_systematic, power_law, power_law_both_errors, ratios_at_common, summary,
+    without_systematic,
 };
 
-/// How shots are put together.
+/// How shots are grouped into curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grouping {
-    /// Speeds at most so far apart, in m/s, are one; shots whose programmed speed
-    /// is known go by that.
+    /// Largest difference, in m/s, of speeds that count as one; shots whose programmed speed is
+    /// known are grouped by that.
     pub gap_m_s: f64,
     /// The case that others are divided by.
     pub reference: String,
-    /// Whether clipped shots, those of doubtful order and those of which a pulse may be lost count.
+    /// Whether clipped shots, those of doubtful order and those that may miss a pulse count.
     pub keep_dubious: bool,
 }
 
@@ -31,7 +32,7 @@ impl Default for Grouping {
     }
 }
 
-/// All that shots of one case at one speed tell.
+/// Means over the shots of one case at one speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedRow {
     /// Mean speed in m/s. Its error is that of the measured speeds if it is
@@ -39,21 +40,21 @@ pub struct SpeedRow {
     pub speed_m_s: Estimate,
     /// Shots from whose scatter that error comes; 0 if it is that of measuring, and known.
     pub speed_error_shots: usize,
-    /// Shots that count, and shots of this speed that do not: doubtful ones, and those without a time
-    /// or a speed of their own.
+    /// Shots that count, and shots of this speed that do not: those with grave flags, and those
+    /// without a time or a speed of their own.
     pub shots: (usize, usize),
-    /// Of those that count, shots whose return has two maxima of which all of them together do
-    /// not tell the largest: their reflected times do not count.
+    /// Of those that count, shots whose reflected pulse has an ambiguous maximum: their reflected
+    /// times do not count.
     pub returns_undecided: usize,
-    /// Of those that count, shots without a return. Where fewer than half of them have one, it may be noise,
-    /// and none counts.
+    /// Of those that count, shots without a reflected pulse. Where fewer than half of them have one,
+    /// it may be noise, and none counts.
     pub returns_missing: usize,
     /// Incident time of flight in s.
     pub incident_s: Summary,
     /// Reflected time of flight in s.
     pub reflected_s: Option<Summary>,
-    /// Parts in s of the errors of both that all shots share, and that their standard
-    /// errors do not hold: what lies under pulses in a summed channel moves them alike.
+    /// Systematic parts in s of the errors of both, which their standard errors do not hold: what
+    /// lies under pulses in a summed channel shifts all shots by the same.
     pub shared_s: [f64; 2],
     /// Incident and reflected time of flight in s at the mean speed, each shot's
     /// taken there by its own measured speed, with all errors: what power laws and ratios are
@@ -63,11 +64,11 @@ pub struct SpeedRow {
     pub correlation: Option<f64>,
     /// Correlation of the errors of both times at the mean speed: they share the wall's pick.
     pub correlation_at_mean_speed: Option<f64>,
-    /// Wall's peak over passing peak.
-    pub wall_over_passing: Summary,
-    /// Returning peak over passing peak.
-    pub returning_over_passing: Option<Summary>,
-    /// Full widths at half maximum in s: passing, wall, returning.
+    /// Wall's peak over incident peak.
+    pub wall_over_incident: Summary,
+    /// Reflected peak over incident peak.
+    pub reflected_over_incident: Option<Summary>,
+    /// Full widths at half maximum in s: incident, wall, reflected.
     pub widths_s: [Option<Summary>; 3],
 }
 
@@ -83,7 +84,7 @@ pub struct Laws {
 /// The curve of one case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Its name; empty if nobody gave one.
+    /// Its name; empty if it has none.
     pub name: String,
     /// Rows by speed.
     pub rows: Vec<SpeedRow>,
@@ -104,7 +105,7 @@ pub struct WetOverDry {
     pub correlations: Vec<Option<f64>>,
 }
 
-/// Everything that shots with speeds tell.
+/// Curves of all cases and their ratios.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// Cases in the order in which they first came.
@@ -201,8 +202,7 @@ impl Case {
     }
 }
 
-/// A speed whose shots would count if their largest maxima were known; of others
-/// [`lost`] tells.
+/// A speed whose shots would count if their largest maxima were known; for others see [`lost`].
 fn nothing_decided(case: &str, group: &[&Timed<'_>]) -> Option<Lost> {
     let first = group.iter().find(|shot| shot.counts)?;
     Some(Lost {
@@ -212,7 +212,6 @@ fn nothing_decided(case: &str, group: &[&Timed<'_>]) -> Option<Lost> {
     })
 }
 
-/// Why nothing says whether a power law holds.
 const SPEEDS_UNKNOWN: &str = "errors of speeds are not known and were taken for 0";
 
 impl Case {
@@ -226,17 +225,17 @@ impl Case {
         let speeds_known = self.rows.iter().all(|row| row.speed_m_s.sigma > 0.0);
         match law.is_supported() {
             Some(false) if !speeds_known => Err(SPEEDS_UNKNOWN),
-            judged => Ok(judged),
+            supported => Ok(supported),
         }
     }
 }
 
 /// Shots of one programmed speed, then those that have none by their speeds.
 fn grouped<'a>(timed: &'a [Timed<'a>], gap_m_s: f64) -> Vec<Vec<&'a Timed<'a>>> {
-    let told = |shot: &&Timed<'_>| shot.programmed.is_some();
-    let (told, free): (Vec<&Timed<'_>>, Vec<&Timed<'_>>) = timed.iter().partition(told);
+    let (programmed, free): (Vec<&Timed<'_>>, Vec<&Timed<'_>>) =
+        timed.iter().partition(|shot| shot.programmed.is_some());
     let key = |shot: &&Timed<'_>| shot.programmed.unwrap_or(f64::NAN);
-    let mut all = by(&told, key, 0.0);
+    let mut all = by(&programmed, key, 0.0);
     all.extend(by(&free, |shot| shot.speed.value, gap_m_s));
     all
 }
@@ -255,19 +254,19 @@ fn by<'a>(
 fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
     let counted: Vec<&Timed<'_>> = group.iter().copied().filter(|shot| shot.counts).collect();
     let own: Vec<&Flight> = counted.iter().map(|shot| shot.flight).collect();
-    let mut settled = match keep_dubious {
+    let mut resolved = match keep_dubious {
         true => own.iter().map(|flight| Some(**flight)).collect(),
-        false => settled(&own),
+        false => resolve_ambiguous(&own),
     };
     let timed = |flight: &&Flight| flight.reflected_s.is_some();
-    let now = settled.iter().flatten();
+    let now = resolved.iter().flatten();
     let few = 2 * now.clone().filter(timed).count() < now.count();
-    let returns_undecided = undecided(&own, &settled);
+    let returns_undecided = undecided(&own, &resolved);
     if few && !keep_dubious {
-        let flights = settled.iter_mut().flatten();
+        let flights = resolved.iter_mut().flatten();
         flights.for_each(|flight| *flight = without_return(flight));
     }
-    let pairs = counted.iter().zip(&settled);
+    let pairs = counted.iter().zip(&resolved);
     let counted: Vec<Timed<'_>> = pairs
         .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
         .collect();
@@ -296,33 +295,33 @@ fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<Speed
         returns_missing: counted.len() - returns - returns_undecided,
         incident_s,
         reflected_s,
-        wall_over_passing: of(&|flight| Some(flight.wall_over_passing))?,
-        returning_over_passing: of(&|flight| flight.returning_over_passing),
+        wall_over_incident: of(&|flight| Some(flight.wall_over_incident))?,
+        reflected_over_incident: of(&|flight| flight.reflected_over_incident),
         widths_s: [
-            of(&|flight| Some(exact(flight.picks.passing.width_s))),
+            of(&|flight| Some(exact(flight.picks.incident.width_s))),
             of(&|flight| Some(exact(flight.picks.wall.width_s))),
-            of(&|flight| Some(exact(flight.picks.returning?.width_s))),
+            of(&|flight| Some(exact(flight.picks.reflected?.width_s))),
         ],
     })
 }
 
-/// How many flights have lost their returns because it is open which maximum is the largest.
-fn undecided(own: &[&Flight], settled: &[Option<Flight>]) -> usize {
-    let pairs = own.iter().zip(settled);
-    let lost = pairs.filter(|(own, now)| {
+/// Number of flights whose reflected pulse's maximum stays ambiguous.
+fn undecided(own: &[&Flight], resolved: &[Option<Flight>]) -> usize {
+    let pairs = own.iter().zip(resolved);
+    let ambiguous = pairs.filter(|(own, now)| {
         let now = now.is_some_and(|now| now.reflected_s.is_none());
         now && own.reflected_s.is_some()
     });
-    lost.count()
+    ambiguous.count()
 }
 
-/// The same shot as if nothing had come back.
+/// The same shot without its reflected pulse.
 fn without_return(flight: &Flight) -> Flight {
     let mut flight = *flight;
     flight.reflected_s = None;
     flight.covariance_s2 = 0.0;
-    flight.returning_over_passing = None;
-    flight.picks.returning = None;
+    flight.reflected_over_incident = None;
+    flight.picks.reflected = None;
     flight
 }
 
@@ -345,13 +344,12 @@ fn are_known(speeds: &[Estimate]) -> bool {
     speeds.iter().all(|speed| speed.sigma > 0.0)
 }
 
-/// What the errors of all shots that have this time share: of both its pulses, the mean of
-/// what may have moved them.
+/// Systematic error of the mean of this time over all shots that have it.
 fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
     let has = |shot: &&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
     let own = shots.iter().filter(has);
-    let own: Vec<[Moved; 2]> = own.map(|shot| shot.flight.moved()[time]).collect();
-    shared(&own)
+    let own: Vec<[Systematic; 2]> = own.map(|shot| shot.flight.systematic()[time]).collect();
+    mean_systematic(&own)
 }
 
 /// Mean of times that are taken to one speed, and the parts of its error.
@@ -392,7 +390,7 @@ fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtS
         let factor = to_speed(shot, speed_m_s);
         Some(Estimate {
             value: factor * of.value,
-            sigma: factor * alone(of.sigma, shot.flight.moved()[time]),
+            sigma: factor * without_systematic(of.sigma, shot.flight.systematic()[time]),
         })
     };
     let moved: Vec<Estimate> = shots.iter().filter_map(moved).collect();
@@ -416,7 +414,7 @@ fn both_times(shots: &[Timed<'_>], speed_m_s: Option<Estimate>) -> Pairs {
         let factor = speed_m_s.map_or(1.0, |speed_m_s| to_speed(shot, speed_m_s));
         let times = [shot.flight.incident_s, shot.flight.reflected_s?];
         let covariance = match speed_m_s {
-            Some(_) => shot.flight.covariance_alone_s2(),
+            Some(_) => shot.flight.random_covariance_s2(),
             None => shot.flight.covariance_s2,
         };
         let times = times.map(|time| factor * time.value);

@@ -4,12 +4,12 @@
 //! [`Curves::of`] reduces the shots to means a speed, ratios of wet to dry chains
 //! and power laws. [`ShotList`] gives shots the speeds that their files lack.
 //! Nothing here knows of chains: how many beads there are and where the sensor
-//! sits are plain numbers in [`hertzchain_measure::signal::Finding`].
+//! sits are plain numbers in [`hertzchain_measure::signal::FindOptions`].
 
 pub mod records;
 pub mod signal;
 
-mod alike;
+mod ambiguous;
 mod correlation;
 mod curves;
 mod error;
@@ -22,7 +22,7 @@ mod shot;
 mod speeds;
 mod table;
 
-pub use alike::settled;
+pub use ambiguous::resolve_ambiguous;
 pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, WetOverDry};
 pub use error::MeasureError;
 pub use level::Level;

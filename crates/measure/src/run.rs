@@ -3,7 +3,7 @@
 use crate::level::AtLevel;
 use crate::records::{Parts, ReadOptions, Record, read};
 use crate::several::{Content, content};
-use crate::signal::{Bandwidth, Doubt, Measuring, Method};
+use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
 use crate::speeds::Speeds;
 use crate::{Example, Level, MeasureError, Shot, ShotList};
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ pub struct Options {
     pub cutting: Cut,
     /// How pulses are found and picked. Without a high-pass of its own, that of which a
     /// recording tells is taken out of it.
-    pub measuring: Measuring,
+    pub measuring: SignalOptions,
     /// Whether the droop of such a high-pass stays in the recording.
     pub keep_droop: bool,
     /// Whether maxima stay as they are behind the low-pass that a recording states.
@@ -294,7 +294,7 @@ impl Measurement {
     fn note_spikes(&mut self) {
         let of = |shot: &Shot| {
             let counts = shot.doubts.iter().map(|doubt| match doubt {
-                Doubt::Spikes(samples) => *samples,
+                QualityFlag::Spikes(samples) => *samples,
                 _ => 0,
             });
             counts.sum::<usize>()

@@ -4,7 +4,8 @@ use crate::Options;
 use crate::records::Record;
 use crate::run::{stated_bandwidth, told_high_pass_hz};
 use crate::signal::{
-    Channels, Doubt, Estimate, Finding, Flight, Measured, Measuring, Rails, SignalError,
+    Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, QualityFlag, SignalError,
+    SignalOptions,
 };
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -30,7 +31,7 @@ pub struct Shot {
     /// Times of flight, heights, widths; or why there are none.
     pub flight: Result<Flight, SignalError>,
     /// What is doubtful.
-    pub doubts: Vec<Doubt>,
+    pub doubts: Vec<QualityFlag>,
     /// Whether its recorder waited for a trigger in vain.
     pub untriggered: bool,
     /// How many of its samples are no numbers and were filled, and the first, from 0.
@@ -50,11 +51,11 @@ impl Shot {
             [sensor, wall, ..] => Channels::Separate { sensor, wall },
             one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
         };
-        let measuring = Measuring {
-            finding: Finding {
-                rails: measuring.finding.rails.or_else(|| rails(record, 0)),
-                wall_rails: measuring.finding.wall_rails.or_else(|| rails(record, 1)),
-                ..measuring.finding
+        let measuring = SignalOptions {
+            find: FindOptions {
+                range: measuring.find.range.or_else(|| range(record, 0)),
+                wall_range: measuring.find.wall_range.or_else(|| range(record, 1)),
+                ..measuring.find
             },
             high_pass_s: measuring.high_pass_s.or(told_s),
             bandwidth: measuring
@@ -67,7 +68,7 @@ impl Shot {
             Ok(Measured { found, flight }) => {
                 let relative = record.interval_error_s / record.interval_s;
                 let widened = flight.map(|flight| flight.with_interval_error(relative));
-                (widened, found.doubts)
+                (widened, found.flags)
             }
             Err(error) => (Err(error), Vec::new()),
         };
@@ -122,7 +123,7 @@ impl Shot {
     /// or be of several shots.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
-        self.holds_several || self.gap_in_pulse || self.doubts.iter().any(Doubt::is_grave)
+        self.holds_several || self.gap_in_pulse || self.doubts.iter().any(QualityFlag::is_grave)
     }
 
     /// Its speed, if that is one: a photogate with a large error may tell speeds below zero.
@@ -200,7 +201,7 @@ impl Example {
 /// Whether a gap is within a width and a half of a pulse's time.
 fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
     let picks = &flight.picks;
-    let pulses = [Some(picks.passing), Some(picks.wall), picks.returning];
+    let pulses = [Some(picks.incident), Some(picks.wall), picks.reflected];
     pulses.into_iter().flatten().any(|pulse| {
         let (from, to) = (
             pulse.time_s - 1.5 * pulse.width_s,
@@ -211,7 +212,7 @@ fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
 }
 
 /// The converter's range, where the channel tells.
-fn rails(record: &Record, channel: usize) -> Option<Rails> {
+fn range(record: &Record, channel: usize) -> Option<DigitiserRange> {
     let (low, high) = record.channels.get(channel)?.samples.range_v()?;
-    Some(Rails { low, high })
+    Some(DigitiserRange { low, high })
 }

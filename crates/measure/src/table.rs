@@ -60,9 +60,9 @@ fn shot_line(shot: &Shot) -> String {
     let flight = shot.flight.as_ref().ok();
     let picks = flight.map(|flight| &flight.picks);
     let picked = [
-        picks.map(|picks| picks.passing),
+        picks.map(|picks| picks.incident),
         picks.map(|picks| picks.wall),
-        picks.and_then(|picks| picks.returning),
+        picks.and_then(|picks| picks.reflected),
     ];
     let each = |of: fn(&Picked) -> f64| picked.map(|picked| cell(picked.as_ref().map(of)));
     let name = [
@@ -76,9 +76,9 @@ fn shot_line(shot: &Shot) -> String {
         .chain(both(flight.map(|flight| flight.incident_s)))
         .chain(both(flight.and_then(|flight| flight.reflected_s)))
         .chain([cell(flight.and_then(Flight::correlation))])
-        .chain(both(flight.map(|flight| flight.wall_over_passing)))
+        .chain(both(flight.map(|flight| flight.wall_over_incident)))
         .chain(both(
-            flight.and_then(|flight| flight.returning_over_passing),
+            flight.and_then(|flight| flight.reflected_over_incident),
         ))
         .chain(each(|picked| picked.height))
         .chain(each(|picked| picked.width_s))
@@ -144,8 +144,8 @@ fn speed_line(case: &str, row: &SpeedRow) -> String {
         .chain([row.shots.0.to_string(), row.shots.1.to_string()])
         .chain(summarised(Some(row.incident_s)))
         .chain(summarised(row.reflected_s))
-        .chain(summarised(Some(row.wall_over_passing)))
-        .chain(summarised(row.returning_over_passing))
+        .chain(summarised(Some(row.wall_over_incident)))
+        .chain(summarised(row.reflected_over_incident))
         .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
         .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))))
         .chain(row.at_mean_speed_s.into_iter().flat_map(both))

@@ -6,7 +6,7 @@ use hertzchain_measure::{Measurement, Options, measure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From the passing pulse to the wall's, and back, in s.
+/// From the incident pulse to the wall's, and back, in s.
 const FLIGHTS_S: [f64; 2] = [700.3e-6, 781.1e-6];
 
 /// A recording whose times are printed to so many digits behind the point.

@@ -2,8 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
-use hertzchain_measure::signal::{Bandwidth, Doubt, Flight, Measuring, SignalError, alone};
-use hertzchain_measure::{Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure};
+use hertzchain_measure::signal::{
+    Bandwidth, Flight, QualityFlag, SignalError, SignalOptions, without_systematic,
+};
+use hertzchain_measure::{
+    Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -144,9 +148,9 @@ fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_opti
         (told, flights.collect::<Vec<Flight>>())
     };
     let given = |hz: f64| Options {
-        measuring: Measuring {
+        measuring: SignalOptions {
             high_pass_s: Some((std::f64::consts::TAU * hz).recip()),
-            ..Measuring::default()
+            ..SignalOptions::default()
         },
         ..Options::default()
     };
@@ -190,9 +194,9 @@ fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_
         (noted, measured.bandwidth, flights.collect::<Vec<Flight>>())
     };
     let given = |corner_hz: f64, order| Options {
-        measuring: Measuring {
+        measuring: SignalOptions {
             bandwidth: Some(Bandwidth { corner_hz, order }),
-            ..Measuring::default()
+            ..SignalOptions::default()
         },
         ..Options::default()
     };
@@ -253,7 +257,7 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
     let files = [series(&folder, "dry", 0.5, 30_000.0)];
     let measured = measured(&files);
     for shot in &measured.shots {
-        let clipped = |doubt: &Doubt| matches!(doubt, Doubt::Saturation(_));
+        let clipped = |doubt: &QualityFlag| matches!(doubt, QualityFlag::Saturation(_));
         assert!(shot.doubts.iter().any(clipped), "{}", shot.flags());
     }
     assert!(
@@ -306,7 +310,9 @@ fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
     // Errors that are a shot's own average out over five shots; what lies under their
     // pulses they share, and it stays.
     let flights = shots.iter().map(|shot| shot.flight.as_ref().unwrap());
-    let own = |flight: &Flight| alone(flight.incident_s.sigma, flight.moved()[0]).powi(2);
+    let own = |flight: &Flight| {
+        without_systematic(flight.incident_s.sigma, flight.systematic()[0]).powi(2)
+    };
     let own: f64 = flights.map(own).sum();
     let stated = (own.sqrt() / 5.0).hypot(row.shared_s[0]);
     assert!(row.shared_s[0] > 0.1 * stated);

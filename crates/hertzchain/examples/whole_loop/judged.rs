@@ -7,7 +7,7 @@ use hertzchain_chain::wave::{self, DormandPrince, Limits};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
 use hertzchain_measure::signal::{ChiSquare, Estimate, Flight, chi_square};
-use hertzchain_measure::{Curves, Grouping, Options, Shot, measure, settled};
+use hertzchain_measure::{Curves, Grouping, Options, Shot, measure, resolve_ambiguous};
 use hertzchain_sim::rig::{Case, Plan, Shard, campaign};
 use hertzchain_sim::{Batch, BatchOptions};
 use std::collections::HashMap;
@@ -130,7 +130,7 @@ fn of_mean(shots: &[&Judged], time: usize, curve: Curve) -> Option<Speed> {
         .filter_map(|shot| Some((*shot, shot.shot.flight.as_ref().ok()?)))
         .collect();
     let flights: Vec<&Flight> = counted.iter().map(|(_, flight)| *flight).collect();
-    let timed = settled(&flights).into_iter().zip(&counted);
+    let timed = resolve_ambiguous(&flights).into_iter().zip(&counted);
     let timed = timed.filter(|(flight, _)| {
         let has = |flight: &Flight| time == 0 || flight.reflected_s.is_some();
         flight.as_ref().is_some_and(has)

@@ -16,7 +16,7 @@ use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_infer::Data;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::signal::{
-    Bandwidth, Finding, LowPass, Measuring, Method, Polarity, Shape, SignalError, Template,
+    Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalError, SignalOptions, Template,
 };
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Shot, ShotList, speeds_csv,
@@ -210,7 +210,7 @@ fn measuring(
     picking: &Picking,
     rig: Option<&Experiment>,
     high_pass_hz: Option<f64>,
-) -> Result<Measuring, Failure> {
+) -> Result<SignalOptions, Failure> {
     let beads = picking
         .beads
         .zip(picking.sensor)
@@ -221,13 +221,12 @@ fn measuring(
         )));
     }
     let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
-    Ok(Measuring {
-        finding: Finding {
+    Ok(SignalOptions {
+        find: FindOptions {
             polarity: polarity(picking.polarity),
             wall_polarity: polarity(picking.wall_polarity),
             beads: beads.or_else(of_rig),
-            rails: None,
-            wall_rails: None,
+            ..FindOptions::default()
         },
         method: method(picking),
         high_pass_s: high_pass_hz
@@ -297,7 +296,7 @@ fn method(picking: &Picking) -> Method {
         MethodName::Onset => Method::Onset {
             fraction: picking.onset.0,
         },
-        MethodName::Correlation => Method::CrossCorrelation(Template::Passing),
+        MethodName::Correlation => Method::CrossCorrelation(Template::Incident),
         MethodName::Shape => Method::MatchedShape {
             shape: Shape::cos_power(POWER),
             width: FITTED_WIDTHS,

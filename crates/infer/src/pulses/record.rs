@@ -2,8 +2,8 @@
 
 use crate::InferError;
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Flight, Measuring, Polarity, SignalError, Upright, measure, upright,
-    without_spikes,
+    Channels, Estimate, Flight, Normalisation, Polarity, QualityFlag, SignalError, SignalOptions,
+    measure, normalisation, without_spikes,
 };
 
 /// Samples are used from so many incident times of flight before the passing
@@ -11,7 +11,7 @@ use hertzchain_measure::signal::{
 const BEFORE: f64 = 0.3;
 
 /// And to so many after it: one to the wall, a little more than one back, and
-/// the returning pulse's tail.
+/// the reflected pulse's tail.
 const AFTER: f64 = 2.5;
 
 /// Means of neighbouring samples are taken, so many in an incident time of
@@ -42,7 +42,7 @@ pub struct Pulses {
     pub means_v: Vec<Vec<f64>>,
     /// Standard error of each channel's means in V.
     pub sigma_v: Vec<f64>,
-    /// When the passing pulse is highest, in s from the record's beginning.
+    /// When the incident pulse is highest, in s from the record's beginning.
     pub passing_s: f64,
     /// Its height in V.
     pub height_v: f64,
@@ -62,7 +62,7 @@ impl Pulses {
         let speed_m_s = speed_m_s.ok_or_else(|| InferError::Input(format!("{source}: no speed of the striker: add a line of this record to the table of --shots")))?;
         let flight = flight(source, interval_s, volts)?;
         let incident = flight.incident_s.value / interval_s;
-        let passing = flight.picks.passing.time_s / interval_s;
+        let passing = flight.picks.incident.time_s / interval_s;
         let from = (passing - BEFORE * incident).max(0.0) as usize;
         let to = (passing + AFTER * incident) as usize;
         let width = ((incident / PER_FLIGHT) as usize).max(1);
@@ -80,12 +80,12 @@ impl Pulses {
             start_s: from as f64 * interval_s,
             means_v: Vec::new(),
             sigma_v: Vec::new(),
-            passing_s: flight.picks.passing.time_s,
-            height_v: flight.picks.passing.height,
+            passing_s: flight.picks.incident.time_s,
+            height_v: flight.picks.incident.height,
         };
         for samples in volts {
             let samples = &without_spikes(samples).0[..];
-            let up = upright(samples, Polarity::default()).map_err(|_| no_noise())?;
+            let up = normalisation(samples, Polarity::default()).map_err(|_| no_noise())?;
             let sigma_v = sigma(&up, width).ok_or_else(no_noise)?;
             let window = samples.get(from..to.min(samples.len())).unwrap_or(&[]);
             let mean = |chunk: &[f64]| {
@@ -100,7 +100,7 @@ impl Pulses {
         Ok(pulses)
     }
 
-    /// Time in s from the passing maximum to the last sample.
+    /// Time in s from the incident maximum to the last sample.
     pub(super) fn after_s(&self) -> f64 {
         let samples = self.means_v.first().map_or(0, Vec::len) * self.width;
         self.start_s + samples as f64 * self.interval_s - self.passing_s
@@ -130,18 +130,19 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, I
         one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
     };
     let named = |error: SignalError| InferError::Input(format!("{source}: {error}"));
-    let found = measure(channels, interval_s, &Measuring::default()).map_err(named)?;
-    if let Some(doubt) = found.found.doubts.iter().copied().find(Doubt::is_grave) {
-        return InferError::input(format!("{source}: {doubt}"));
+    let found = measure(channels, interval_s, &SignalOptions::default()).map_err(named)?;
+    let grave = found.found.flags.iter().copied().find(QualityFlag::is_grave);
+    if let Some(flag) = grave {
+        return InferError::input(format!("{source}: {flag}"));
     }
     found.flight.map_err(named)
 }
 
 /// Standard error of a mean of so many samples: their noise, as much correlated as
 /// it is before the pulses, and the digitiser's steps.
-fn sigma(up: &Upright, width: usize) -> Option<f64> {
-    let noise = up.level.noise;
-    let known = up.level.quiet_samples >= QUIET && noise > 0.0 && noise.is_finite();
-    let over = up.level.correlation.clamp(1.0, width as f64) / width as f64;
+fn sigma(up: &Normalisation, width: usize) -> Option<f64> {
+    let noise = up.baseline.noise;
+    let known = up.baseline.quiet_samples >= QUIET && noise > 0.0 && noise.is_finite();
+    let over = up.baseline.correlation.clamp(1.0, width as f64) / width as f64;
     known.then(|| noise * over.sqrt())
 }

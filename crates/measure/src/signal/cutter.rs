@@ -1,32 +1,30 @@
-//! Shots cut out of a recording that comes in pieces, where it passes a level.
+//! Shots cut out of a recording that is fed in pieces, where it passes a level.
 
 use crate::signal::error::SignalError;
 use std::ops::Range;
 
-/// When a level trigger fires.
+/// A level trigger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
-    /// Fires on the first sample on or beyond this, in the samples' unit.
+    /// Level in the samples' unit; the first sample on or beyond it fires.
     pub level: f64,
     /// Whether signals fall through it rather than rise.
     pub falling: bool,
-    /// How far the signal must have been back before it can fire again, in the samples' unit.
+    /// How far the signal must have returned before it can fire again, in the samples' unit.
     pub hysteresis: f64,
-    /// Samples of a shot before that which fires.
+    /// Samples of a shot before the one that fires.
     pub before: usize,
     /// Samples of a shot, those before included.
     pub length: usize,
-    /// Samples after one firing before which there is no other; at least the
-    /// shot's own samples are waited for in any case.
+    /// Samples after one firing before which there is no other; at least the shot's own.
     pub hold_off: u64,
 }
 
-/// A shot that was cut out.
+/// The range of a shot in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// Numbers of its samples in the recording, from 0: fewer than asked for at the
-    /// recording's end, and before a trigger that comes soon after its beginning or after
-    /// another shot.
+    /// Numbers of its samples in the recording, from 0: fewer than the trigger's length at the
+    /// recording's end, and soon after its beginning or another shot.
     pub samples: Range<u64>,
     /// Number of the sample that fired.
     pub trigger: u64,
@@ -34,10 +32,10 @@ pub struct Segment {
     pub complete: bool,
 }
 
-/// Tells where the shots of a recording are that is given piece by piece.
+/// Locates the shots of a recording that is fed piece by piece.
 ///
-/// What comes out does not depend on how the recording was divided into pieces. Holds no
-/// samples: who feeds it keeps those from [`Cutter::needed_from`] on.
+/// Results do not depend on how the recording was divided into pieces. Holds no samples: the caller
+/// keeps those from [`Cutter::needed_from`] on.
 #[derive(Clone, Debug)]
 pub struct Cutter {
     trigger: Trigger,
@@ -45,20 +43,19 @@ pub struct Cutter {
     position: u64,
     /// End of the last shot.
     free_from: u64,
-    state: State,
+    state: TriggerState,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
-    /// No firing before this sample, nor before the signal was back; looks for that.
+enum TriggerState {
+    /// Not armed before this sample, nor before the signal has returned.
     Resting(u64),
-    /// Fires at the level.
     Armed,
     /// In a shot that fired at this sample.
     Collecting(u64),
 }
 
-/// Samples looked at together: enough to keep the processor busy without a branch each.
+/// Samples tested together: enough to keep the processor busy without a branch each.
 const STRIDE: usize = 64;
 
 impl Cutter {
@@ -70,12 +67,12 @@ impl Cutter {
             trigger,
             position: 0,
             free_from: 0,
-            state: State::Resting(0),
+            state: TriggerState::Resting(0),
         })
     }
 
-    /// Takes the next piece of the recording, what its samples are worth in the trigger's
-    /// unit, and hands out the shots that end in it.
+    /// Processes the next piece of the recording, given what its samples are in the trigger's
+    /// unit, and passes the shots that end in it to `shot`.
     pub fn feed<T: Copy>(
         &mut self,
         piece: &[T],
@@ -85,17 +82,17 @@ impl Cutter {
         let mut left = piece;
         while !left.is_empty() {
             let used = match self.state {
-                State::Collecting(fired) => self.collect(left.len(), fired, &mut shot),
-                State::Resting(until) => self.rest(left, until, &value),
-                State::Armed => self.wait(left, &value),
+                TriggerState::Collecting(fired) => self.collect(left.len(), fired, &mut shot),
+                TriggerState::Resting(until) => self.rest(left, until, &value),
+                TriggerState::Armed => self.wait(left, &value),
             };
             left = left.get(used..).unwrap_or_default();
         }
     }
 
-    /// Hands out what the recording's end cut short, if anything, and begins anew.
+    /// Passes a shot that the recording's end cut short to `shot`, and resets.
     pub fn finish(&mut self, mut shot: impl FnMut(Segment)) {
-        if let State::Collecting(fired) = self.state {
+        if let TriggerState::Collecting(fired) = self.state {
             shot(Segment {
                 samples: self.begins(fired)..self.position,
                 trigger: fired,
@@ -104,25 +101,24 @@ impl Cutter {
         }
         self.position = 0;
         self.free_from = 0;
-        self.state = State::Resting(0);
+        self.state = TriggerState::Resting(0);
     }
 
     /// The first sample that a shot still to come may have.
     #[must_use]
     pub fn needed_from(&self) -> u64 {
         self.begins(match self.state {
-            State::Collecting(fired) => fired,
-            State::Resting(_) | State::Armed => self.position,
+            TriggerState::Collecting(fired) => fired,
+            TriggerState::Resting(_) | TriggerState::Armed => self.position,
         })
     }
 
-    /// First sample of a shot that fires at this one.
     fn begins(&self, fires: u64) -> u64 {
         let before = self.trigger.before as u64;
         fires.saturating_sub(before).max(self.free_from)
     }
 
-    /// Goes on in the shot under way; returns how many samples it took.
+    /// Continues the current shot; returns how many samples it took.
     fn collect(&mut self, left: usize, fired: u64, shot: &mut impl FnMut(Segment)) -> usize {
         let end = fired + (self.trigger.length - self.trigger.before) as u64;
         let wanted = end - self.position;
@@ -138,30 +134,28 @@ impl Cutter {
         self.position = end;
         self.free_from = end;
         let until = fired.saturating_add(self.trigger.hold_off);
-        self.state = State::Resting(end.max(until));
+        self.state = TriggerState::Resting(end.max(until));
         wanted as usize
     }
 
-    /// Waits for the signal to be back, `until` a sample at least.
     fn rest<T: Copy>(&mut self, left: &[T], until: u64, value: impl Fn(T) -> f64) -> usize {
         let waiting = until.saturating_sub(self.position);
         let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
         let back = first(&left[skip..], |x| self.trigger.is_back(value(x)));
         if back.is_some() {
-            self.state = State::Armed;
+            self.state = TriggerState::Armed;
         }
         let used = back.map_or(left.len(), |at| skip + at);
         self.position += used as u64;
         used
     }
 
-    /// Waits for the level.
     fn wait<T: Copy>(&mut self, left: &[T], value: impl Fn(T) -> f64) -> usize {
         let fires = first(left, |x| self.trigger.fires(value(x)));
         let used = fires.unwrap_or(left.len());
         self.position += used as u64;
         if fires.is_some() {
-            self.state = State::Collecting(self.position);
+            self.state = TriggerState::Collecting(self.position);
         }
         used
     }
@@ -169,20 +163,16 @@ impl Cutter {
 
 impl Trigger {
     fn check(&self) -> Result<(), SignalError> {
-        if !self.level.is_finite() {
-            return Err(SignalError::Option {
-                name: "level of the trigger",
-                value: self.level,
-                expected: "a finite number",
-            });
-        }
-        if !(self.hysteresis >= 0.0 && self.hysteresis.is_finite()) {
-            return Err(SignalError::Option {
-                name: "hysteresis of the trigger",
-                value: self.hysteresis,
-                expected: "0 or more",
-            });
-        }
+        let (level, hysteresis) = (self.level, self.hysteresis);
+        let name = "level of the trigger";
+        SignalError::require(level.is_finite(), name, level, "a finite number")?;
+        let accepted = hysteresis >= 0.0 && hysteresis.is_finite();
+        SignalError::require(
+            accepted,
+            "hysteresis of the trigger",
+            hysteresis,
+            "0 or more",
+        )?;
         let after = self.length as f64 - self.before as f64;
         SignalError::positive("number of samples of a shot after its trigger", after)
     }

@@ -1,8 +1,8 @@
-//! Why samples cannot be measured.
+//! Why samples cannot be measured and points cannot be fitted.
 
-use crate::signal::find::Place;
+use crate::signal::find::PulseKind;
 
-/// Why a slice of samples, or what was asked of it, cannot be used.
+/// Why samples, points or options cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SignalError {
@@ -19,92 +19,79 @@ pub enum SignalError {
         "sample {index} is {value}: not a finite number of sensible size; cut the record before it, or repair it"
     )]
     NotFinite {
-        /// Which sample, from 0.
+        /// Its number, from 0.
         index: usize,
         /// Its value.
         value: f64,
     },
     /// All samples are equal.
-    #[error("all samples equal {value}: nothing was recorded; is the channel connected?")]
-    Constant {
-        /// The value.
-        value: f64,
-    },
-    /// Nothing rises out of the noise.
-    #[error("no pulse: the largest swing is {swing_to_noise:.1} times the noise, 6 are needed")]
-    NoPulse {
-        /// Largest swing over noise, both after averaging over four samples.
-        swing_to_noise: f64,
-    },
-    /// Two channels of different lengths.
-    #[error(
-        "the sensor's channel has {sensor} samples and the wall's {wall}: they must be recorded together"
-    )]
-    Lengths {
-        /// Samples of the sensor's channel.
-        sensor: usize,
-        /// Samples of the wall's channel.
-        wall: usize,
-    },
-    /// A number that was asked for is out of its range.
+    #[error("all samples equal {0}: nothing was recorded; is the channel connected?")]
+    Constant(f64),
+    /// The largest swing over the noise is too small, both after averaging over four samples.
+    #[error("no pulse: the largest swing is {0:.1} times the noise, 6 are needed")]
+    NoPulse(f64),
+    /// Columns or channels of different lengths.
+    #[error("{0}")]
+    Lengths(String),
+    /// An option is out of its range.
     #[error("{name} is {value}: expected {expected}")]
     Option {
-        /// What it is.
+        /// Its name.
         name: &'static str,
-        /// What it was.
+        /// Its value.
         value: f64,
-        /// What it may be.
+        /// What is accepted.
         expected: &'static str,
     },
     /// A pulse that the computation needs was not found.
-    #[error("the {place} pulse was not found")]
-    Missing {
-        /// Which.
-        place: Place,
-    },
+    #[error("the {0} pulse was not found")]
+    Missing(PulseKind),
     /// The method found no maximum, or no crossing, where the pulse is.
-    #[error("the {place} pulse has no {what} where it was looked for")]
-    NoPick {
-        /// Which pulse.
-        place: Place,
-        /// What was looked for.
-        what: &'static str,
+    #[error("the {0} pulse has no {1} where it was looked for")]
+    NoPick(PulseKind, &'static str),
+    /// Fewer than two different abscissas.
+    #[error("a power law needs at least two different abscissas")]
+    TooFew,
+    /// A point, counted from 0, that has no logarithm.
+    #[error("point {index} is not positive and finite")]
+    NotPositive {
+        /// Its number, from 0.
+        index: usize,
     },
 }
 
 impl SignalError {
-    pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Self> {
-        let expected = "a positive, finite number";
-        let good = value > 0.0 && value.is_finite();
-        good.then_some(()).ok_or(Self::Option {
+    /// An error unless an option is `accepted`.
+    pub(crate) fn require(
+        accepted: bool,
+        name: &'static str,
+        value: f64,
+        expected: &'static str,
+    ) -> Result<(), Self> {
+        let error = Self::Option {
             name,
             value,
             expected,
-        })
+        };
+        accepted.then_some(()).ok_or(error)
+    }
+
+    pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Self> {
+        let accepted = value > 0.0 && value.is_finite();
+        Self::require(accepted, name, value, "a positive, finite number")
     }
 
     pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Self> {
-        (found >= needed)
-            .then_some(())
-            .ok_or(Self::TooShort { found, needed })
+        let error = Self::TooShort { found, needed };
+        (found >= needed).then_some(()).ok_or(error)
     }
 }
 
-/// Squares of larger numbers, summed, overflow.
-const LARGEST: f64 = 1e140;
-
-/// Refuses samples that are not finite numbers of sensible size.
+/// Rejects samples that are not finite numbers or whose squares, summed, would overflow.
 pub(crate) fn all_finite(samples: &[f64]) -> Result<(), SignalError> {
-    let bad = samples.iter().position(|x| !sensible(*x));
-    match bad {
-        Some(index) => Err(SignalError::NotFinite {
-            index,
-            value: samples[index],
-        }),
-        None => Ok(()),
-    }
-}
-
-fn sensible(x: f64) -> bool {
-    x.abs() < LARGEST
+    let bad = samples.iter().position(|x| x.is_nan() || x.abs() >= 1e140);
+    bad.map_or(Ok(()), |index| {
+        let value = samples[index];
+        Err(SignalError::NotFinite { index, value })
+    })
 }

@@ -1,17 +1,114 @@
-//! Times of flight of one shot.
+//! From a shot's samples to its times of flight.
 
-use crate::signal::{Moved, Picked, PickedRival, Picks, Place};
+use std::borrow::Cow;
 
-/// A number with its standard deviation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard deviation, in the same unit.
-    pub sigma: f64,
+use crate::signal::error::SignalError;
+use crate::signal::find::conditioned_pulses;
+use crate::signal::pick::pick_corrected;
+use crate::signal::{
+    Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
+    Picks, Polarity, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
+    without_spikes,
+};
+
+/// Conditioning of a shot's samples, and how its pulses are found and picked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SignalOptions {
+    /// What is known of the record and its pulses.
+    pub find: FindOptions,
+    /// How pulses' times are defined.
+    pub method: Method,
+    /// Time constant in s of the amplifier's high-pass, if AC coupling is to be corrected.
+    pub high_pass_s: Option<f64>,
+    /// A zero-phase low-pass to be applied.
+    pub low_pass: Option<LowPass>,
+    /// The amplifier's low-pass, if its effects on maxima are to be corrected.
+    pub bandwidth: Option<Bandwidth>,
 }
 
-/// What one shot tells.
+/// A measured shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its pulses and quality flags.
+    pub found: Found,
+    /// Times of flight, or why there are none.
+    pub flight: Result<Flight, SignalError>,
+}
+
+/// Finds and picks the pulses of one shot.
+///
+/// # Errors
+/// As [`pulses`](crate::signal::pulses), [`invert_high_pass`] and [`LowPass::apply`]. A shot whose
+/// pulses are found in part is no error: its `flight` is.
+pub fn measure(
+    channels: Channels<'_>,
+    interval_s: f64,
+    options: &SignalOptions,
+) -> Result<Measured, SignalError> {
+    SignalError::positive("sampling interval in s", interval_s)?;
+    let find = &options.find;
+    let polarities = [find.polarity, find.wall_polarity];
+    let raw = channels.both();
+    let count = if channels.is_summed() { 1 } else { 2 };
+    let repaired: Vec<_> = raw[..count].iter().map(|raw| without_spikes(raw)).collect();
+    let spikes: usize = repaired.iter().map(|(_, spikes)| spikes.len()).sum();
+    let conditioned: Vec<Cow<'_, [f64]>> = repaired
+        .iter()
+        .zip(polarities)
+        .map(|((samples, _), polarity)| options.condition(samples, interval_s, polarity))
+        .collect::<Result<_, _>>()?;
+    let recorded: Vec<&[f64]> = repaired.iter().map(|(samples, _)| &samples[..]).collect();
+    let conditioned: Vec<&[f64]> = conditioned.iter().map(|samples| &samples[..]).collect();
+    let [recorded, channels] = [&recorded, &conditioned].map(|of| match of[..] {
+        [sensor, wall] => Channels::Separate { sensor, wall },
+        _ => Channels::Summed(of[0]),
+    });
+    let mut found = conditioned_pulses(channels, recorded, find)?;
+    if let Some(low_pass) = options.low_pass {
+        // How far a clipped top's corners reach.
+        let reach = (0.5 / (low_pass.cutoff_hz * interval_s)).ceil() as usize;
+        for pulse in found.pulses_mut() {
+            *pulse = pulse.with_clipped_spread(reach);
+        }
+    }
+    let changed = options.high_pass_s.is_some() || options.low_pass.is_some();
+    let ranges = if changed {
+        [None; 2]
+    } else {
+        find.ranges(channels)
+    };
+    let corrections = (ranges, options.bandwidth);
+    let picks = pick_corrected(channels, interval_s, &found, &options.method, corrections);
+    let flight = picks.map(Picks::flight);
+    let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
+    let not_picked = none_reflected && found.reflected.is_some();
+    found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
+    found.flag((spikes > 0).then_some(QualityFlag::Spikes(spikes)));
+    Ok(Measured { found, flight })
+}
+
+impl SignalOptions {
+    fn condition<'a>(
+        &self,
+        samples: &'a [f64],
+        interval_s: f64,
+        polarity: Polarity,
+    ) -> Result<Cow<'a, [f64]>, SignalError> {
+        let mut samples = Cow::Borrowed(samples);
+        if let Some(time_constant_s) = self.high_pass_s {
+            let offset = normalisation(&samples, polarity)?.baseline.offset;
+            let samples = samples.to_mut();
+            samples.iter_mut().for_each(|x| *x -= offset);
+            invert_high_pass(samples, interval_s, time_constant_s)?;
+        }
+        if let Some(low_pass) = self.low_pass {
+            samples = Cow::Owned(low_pass.apply(&samples, interval_s)?);
+        }
+        Ok(samples)
+    }
+}
+
+/// Times of flight and height ratios of one shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
     /// From the sensor bead to the wall, in s.
@@ -19,12 +116,12 @@ pub struct Flight {
     /// From the wall back to the sensor bead, in s.
     pub reflected_s: Option<Estimate>,
     /// Covariance of both in s²: minus the variance of the wall's time, which
-    /// ends one and begins the other. 0 without a return.
+    /// ends one and begins the other. 0 without a reflected pulse.
     pub covariance_s2: f64,
-    /// Height of the wall's pulse over that of the passing one.
-    pub wall_over_passing: Estimate,
-    /// Height of the returning pulse over that of the passing one.
-    pub returning_over_passing: Option<Estimate>,
+    /// Height of the wall's pulse over that of the incident one.
+    pub wall_over_incident: Estimate,
+    /// Height of the reflected pulse over that of the incident one.
+    pub reflected_over_incident: Option<Estimate>,
     /// Relative standard error of the sampling interval, which is in both times' errors.
     pub interval_error: f64,
     /// The pulses.
@@ -32,28 +129,27 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Correlation of the errors of both times of flight; `None` without a return, or where an
-    /// error is 0.
+    /// Correlation of the errors of both times of flight; `None` without a reflected pulse, or where
+    /// an error is 0.
     #[must_use]
     pub fn correlation(&self) -> Option<f64> {
         let product = self.incident_s.sigma * self.reflected_s?.sigma;
         (product > 0.0).then(|| self.covariance_s2 / product)
     }
 
-    /// The part of the covariance in s² that repeated shots do not share: without what moved the
-    /// wall's pulse and the sampling interval in all of them.
-    #[must_use]
-    pub fn covariance_alone_s2(&self) -> f64 {
+    /// The part of the covariance in s² that repeated shots do not share: without systematic errors
+    /// of the wall's pulse and of the sampling interval.
+    pub(crate) fn random_covariance_s2(&self) -> f64 {
         let Some(reflected_s) = self.reflected_s else {
             return 0.0;
         };
         let of_interval = self.interval_error.powi(2) * self.incident_s.value * reflected_s.value;
-        let Moved { under_s, shape_s } = self.picks.wall.moved;
-        self.covariance_s2 - of_interval + under_s.powi(2) + shape_s.powi(2)
+        let wall = self.picks.wall.systematic;
+        self.covariance_s2 - of_interval + wall.superposition_s.powi(2) + wall.shape_s.powi(2)
     }
 
-    /// The same with a sampling interval whose relative standard error is this: times of
-    /// flight are wrong by as much, all of one recording alike.
+    /// The same with the relative standard error of the sampling interval added to both times: all
+    /// of one recording share it.
     #[must_use]
     pub fn with_interval_error(mut self, relative: f64) -> Self {
         self.interval_error = relative;
@@ -65,127 +161,106 @@ impl Flight {
         self
     }
 
-    /// What may have moved the two pulses of the incident and of the reflected time in all alike
-    /// shots. The interval's error counts with the pulse that no other time has.
+    /// Systematic errors of the two pulses of the incident and of the reflected time. The
+    /// interval's error counts with the pulse that no other time has.
     #[must_use]
-    pub fn moved(&self) -> [[Moved; 2]; 2] {
-        let [mut incident, mut reflected] = self.picks.moved();
-        let more = |of: Estimate| self.interval_error * of.value;
-        let widen = |moved: &mut Moved, more: f64| moved.shape_s = moved.shape_s.hypot(more);
-        widen(&mut incident[0], more(self.incident_s));
-        widen(&mut reflected[1], self.reflected_s.map_or(0.0, more));
-        [incident, reflected]
+    pub fn systematic(&self) -> [[Systematic; 2]; 2] {
+        let wall = self.picks.wall.systematic;
+        let back = self.picks.reflected.map(|back| back.systematic);
+        let widen = |mut of: Systematic, time: Option<Estimate>| {
+            let more = time.map_or(0.0, |time| self.interval_error * time.value);
+            of.shape_s = of.shape_s.hypot(more);
+            of
+        };
+        let incident = widen(self.picks.incident.systematic, Some(self.incident_s));
+        let back = widen(back.unwrap_or_default(), self.reflected_s);
+        [[incident, wall], [wall, back]]
     }
 
-    /// The same where more than this shot tells how much lower a pulse's rival is: below 0 the
-    /// rival is the pulse.
+    /// The same where more than this shot determines how much lower a pulse's competing maximum is:
+    /// below 0 that one is the pulse.
     #[must_use]
-    pub fn with_rival_lower(&self, place: Place, lower: Estimate) -> Self {
+    pub fn with_height_difference(&self, kind: PulseKind, lower: Estimate) -> Self {
         let mut picks = self.picks;
-        let (Some(pulse), Some(rival)) = (picks.pulse(place), picks.rival(place)) else {
+        let (Some(pulse), Some(other)) = (picks.pulse(kind), picks.competing[kind as usize]) else {
             return *self;
         };
-        let (most, next) = match lower.value >= 0.0 {
-            true => (pulse, rival.picked),
-            false => (rival.picked, pulse),
+        let (most, picked) = match lower.value >= 0.0 {
+            true => (pulse, other.picked),
+            false => (other.picked, pulse),
         };
-        match place {
-            Place::Passing => picks.passing = most,
-            Place::Wall => picks.wall = most,
-            Place::Returning => picks.returning = Some(most),
+        match kind {
+            PulseKind::Incident => picks.incident = most,
+            PulseKind::Wall => picks.wall = most,
+            PulseKind::Reflected => picks.reflected = Some(most),
         }
         let value = lower.value.abs();
-        picks.rivals[place as usize] = Some(PickedRival {
-            picked: next,
-            lower: Estimate { value, ..lower },
-        });
+        let lower = Estimate { value, ..lower };
+        picks.competing[kind as usize] = Some(CompetingPick { picked, lower });
         picks.flight().with_interval_error(self.interval_error)
     }
 }
 
-impl Estimate {
-    /// Adds a relative error.
-    fn widen(&mut self, relative: f64) {
-        self.sigma = self.sigma.hypot(relative * self.value);
-    }
-
-    /// Quotient of two independent numbers, errors to first order.
-    #[must_use]
-    pub fn over(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        let own = self.sigma / other.value;
-        let of_other = value * other.sigma / other.value;
-        Self {
-            value,
-            sigma: own.hypot(of_other),
-        }
-    }
-}
-
 impl Picks {
-    /// A pulse by its place.
-    #[must_use]
-    pub fn pulse(&self, place: Place) -> Option<Picked> {
-        match place {
-            Place::Passing => Some(self.passing),
-            Place::Wall => Some(self.wall),
-            Place::Returning => self.returning,
-        }
+    pub(crate) fn pulse(&self, kind: PulseKind) -> Option<Picked> {
+        [Some(self.incident), Some(self.wall), self.reflected][kind as usize]
     }
 
-    /// The rival of a pulse.
-    #[must_use]
-    pub fn rival(&self, place: Place) -> Option<PickedRival> {
-        self.rivals[place as usize]
-    }
-
-    /// What may have moved the two pulses of the incident and of the reflected time.
-    #[must_use]
-    pub fn moved(&self) -> [[Moved; 2]; 2] {
-        let wall = self.wall.moved;
-        let back = self.returning.map(|back| back.moved).unwrap_or_default();
-        [[self.passing.moved, wall], [wall, back]]
-    }
-
-    /// Times of flight and attenuation from the three pulses.
+    /// Times of flight and height ratios from the three pulses.
     #[must_use]
     pub fn flight(self) -> Flight {
-        let height = |picked: &Picked| Estimate {
+        let height = |picked: Picked| Estimate {
             value: picked.height,
             sigma: picked.height_sigma,
         };
-        let passing = height(&self.passing);
-        let back = self.returning.as_ref();
-        let passing_s = time(&self.passing, self.rivals[0].as_ref());
-        let wall_s = time(&self.wall, self.rivals[1].as_ref());
-        let back_s = back.map(|back| time(back, self.rivals[2].as_ref()));
+        // The error of having taken another maximum for the largest: as far as that lies off, with
+        // the root of its probability.
+        let time = |picked: Picked, kind: PulseKind| {
+            let of_other = self.competing[kind as usize].map_or(0.0, |other| {
+                other.p_value().sqrt() * (other.picked.time_s - picked.time_s)
+            });
+            Estimate {
+                value: picked.time_s,
+                sigma: picked.sigma_s.hypot(of_other),
+            }
+        };
+        let between = |from: Estimate, to: Estimate| Estimate {
+            value: to.value - from.value,
+            sigma: from.sigma.hypot(to.sigma),
+        };
+        let incident = height(self.incident);
+        let from = time(self.incident, PulseKind::Incident);
+        let wall = time(self.wall, PulseKind::Wall);
+        let back = self.reflected.map(|back| time(back, PulseKind::Reflected));
         Flight {
-            incident_s: between(passing_s, wall_s),
-            reflected_s: back_s.map(|back_s| between(wall_s, back_s)),
-            covariance_s2: back.map_or(0.0, |_| -wall_s.sigma.powi(2)),
+            incident_s: between(from, wall),
+            reflected_s: back.map(|back| between(wall, back)),
+            covariance_s2: back.map_or(0.0, |_| -wall.sigma.powi(2)),
             interval_error: 0.0,
-            wall_over_passing: height(&self.wall).over(passing),
-            returning_over_passing: back.map(|back| height(back).over(passing)),
+            wall_over_incident: height(self.wall).over(incident),
+            reflected_over_incident: self.reflected.map(|back| height(back).over(incident)),
             picks: self,
         }
     }
 }
 
-/// A pulse's time, with the error of having taken another maximum for the largest: as far as
-/// that lies off, with the root of its chance.
-fn time(picked: &Picked, rival: Option<&PickedRival>) -> Estimate {
-    let of_rival = rival.map_or(0.0, |rival| {
-        rival.chance().sqrt() * (rival.picked.time_s - picked.time_s)
-    });
-    Estimate {
-        value: picked.time_s,
-        sigma: picked.sigma_s.hypot(of_rival),
-    }
+/// Systematic error of the mean of times between two pulses, from those of the pulses, a pair a
+/// shot: noise among what lies under them, which has signs, averages out, what stands there in
+/// every shot and what is open of the shapes does not. 0 without shots.
+#[must_use]
+pub fn mean_systematic(pairs: &[[Systematic; 2]]) -> f64 {
+    let count = pairs.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&[Systematic; 2]) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let superposition = |pulse: usize| mean(&|both| both[pulse].superposition_s);
+    let shape = |pulse: usize| mean(&|both| both[pulse].shape_s);
+    let parts = [superposition(0), superposition(1), shape(0), shape(1)];
+    parts.into_iter().fold(0.0, f64::hypot)
 }
 
-fn between(from: Estimate, to: Estimate) -> Estimate {
-    Estimate {
-        value: to.value - from.value,
-        sigma: from.sigma.hypot(to.sigma),
-    }
+/// A shot's error without the systematic errors of its two pulses.
+#[must_use]
+pub fn without_systematic(sigma: f64, pair: [Systematic; 2]) -> f64 {
+    let of = |one: Systematic| one.superposition_s.powi(2) + one.shape_s.powi(2);
+    let squared = sigma.powi(2) - of(pair[0]) - of(pair[1]);
+    squared.max(0.0).sqrt()
 }

@@ -1,8 +1,8 @@
-//! Power laws by least squares in the logarithms.
+//! Power laws by York's weighted least squares in the logarithms \[York2004\].
 
-use crate::signal::reduce::{ChiSquare, Points, all_equal};
+use crate::signal::{ChiSquare, SignalError};
 
-/// y = `prefactor` · x^`exponent`, with how sure that is.
+/// y = `prefactor` · x^`exponent` with its errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerLaw {
     /// y at x = 1.
@@ -19,10 +19,13 @@ pub struct PowerLaw {
     pub r_squared: f64,
     /// ln y − ln(prefactor · x^exponent), one a point: relative deviations, nearly.
     pub residuals: Vec<f64>,
-    /// Of the points against the law, in their own errors; none where these are not
-    /// known, or two points leave nothing to judge.
+    /// Chi-square of the points in their own errors; `None` where these are unknown, or two points
+    /// leave no degree of freedom.
     pub chi_square: Option<ChiSquare>,
 }
+
+/// Error of a fit of a power law.
+pub type FitError = SignalError;
 
 /// Probability of chi-square below which points do not follow a law.
 const UNLIKELY: f64 = 0.01;
@@ -41,73 +44,35 @@ impl PowerLaw {
         relative.fold(0.0, f64::max)
     }
 
-    /// Whether the points follow the law within their errors: chance alone would
-    /// scatter them as widely once in a hundred times or more. `None` if nobody can tell.
+    /// Whether the points follow the law within their errors: p ≥ 0.01. `None` if their errors are
+    /// unknown.
     #[must_use]
     pub fn is_supported(&self) -> Option<bool> {
-        let judged = self.chi_square.as_ref();
-        judged.map(|chi_square| chi_square.probability >= UNLIKELY)
+        self.chi_square.map(|c| c.probability >= UNLIKELY)
     }
 
-    /// What the errors must be multiplied by to be as large as the points' scatter
-    /// about the law, √(χ²/degrees of freedom); 1 if they are large enough, or not judged.
+    /// Factor that makes the errors as large as the points' scatter about the law,
+    /// √(χ²/degrees of freedom); 1 if they are large enough, or chi-square is unknown.
     #[must_use]
     pub fn excess(&self) -> f64 {
-        let reduced = |c: &ChiSquare| c.value / c.freedom as f64;
-        self.chi_square
-            .as_ref()
-            .map_or(1.0, |c| reduced(c).sqrt().max(1.0))
+        let reduced = self.chi_square.map(|c| c.value / c.freedom as f64);
+        reduced.map_or(1.0, |reduced| reduced.sqrt().max(1.0))
     }
-
-    /// With errors of points that are `variance` times as large, squared, and found
-    /// from the points themselves.
-    fn scattered(self, variance: f64) -> Self {
-        Self {
-            prefactor_error: self.prefactor_error * variance.sqrt(),
-            exponent_error: self.exponent_error * variance.sqrt(),
-            covariance: self.covariance * variance,
-            chi_square: None,
-            ..self
-        }
-    }
-}
-
-/// Why no power law can be fitted.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// Slices of different lengths.
-    #[error("{abscissas} abscissas and {values} values or standard deviations do not pair up")]
-    Lengths {
-        /// Number of abscissas.
-        abscissas: usize,
-        /// Number of values or standard deviations.
-        values: usize,
-    },
-    /// Two parameters need points at three abscissas to have an error, two to exist.
-    #[error("a power law needs at least two different abscissas")]
-    TooFew,
-    /// Logarithms need positive numbers.
-    #[error("point {index} is not positive and finite")]
-    NotPositive {
-        /// Which point, from 0.
-        index: usize,
-    },
 }
 
 /// Fits y = a x^b by least squares in ln y against ln x.
 ///
-/// With `sigmas`, standard deviations of the values, points are weighted by
-/// (y/σ)² and errors follow from the σ alone; without, all weigh the same
-/// and errors follow from the scatter with n − 2 degrees of freedom (not a
-/// number when n = 2: two points lie on a line and tell no error).
+/// With `sigmas`, standard deviations of the values, points are weighted by (y/σ)² and errors
+/// follow from the σ alone; without, all weigh the same and errors follow from the scatter with
+/// n − 2 degrees of freedom (not a number when n = 2).
 ///
 /// # Errors
-/// See [`FitError`].
+/// As [`power_law_both_errors`].
 pub fn power_law(
     abscissas: &[f64],
     values: &[f64],
     sigmas: Option<&[f64]>,
-) -> Result<PowerLaw, FitError> {
+) -> Result<PowerLaw, SignalError> {
     let exact = vec![0.0; abscissas.len()];
     // Without sigmas relative errors of 1 give all points one weight.
     let law = power_law_both_errors(abscissas, &exact, values, sigmas.unwrap_or(values))?;
@@ -119,45 +84,150 @@ pub fn power_law(
         0 => f64::NAN,
         freedom => left / freedom as f64,
     };
-    Ok(law.scattered(variance))
+    Ok(PowerLaw {
+        prefactor_error: law.prefactor_error * variance.sqrt(),
+        exponent_error: law.exponent_error * variance.sqrt(),
+        covariance: law.covariance * variance,
+        chi_square: None,
+        ..law
+    })
 }
 
 /// Fits y = a x^b with standard deviations of both x and y.
 ///
-/// York's method for a straight line through points with independent errors
-/// \[York2004\], in ln y against ln x with errors σ_y/y and σ_x/x: it makes
-/// Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²) least. That sum is the fit's
-/// chi-square. Errors follow from the σ alone; `r_squared` and residuals are
-/// those of ln y. Errors of x may be 0.
+/// York's method for a straight line through points with independent errors \[York2004\], in ln y
+/// against ln x with errors σ_y/y and σ_x/x, minimises
+/// Σ (ln y − ln a − b ln x)²/((σ_y/y)² + b² (σ_x/x)²), the fit's chi-square. Errors follow from the
+/// σ alone; `r_squared` and residuals are those of ln y. Errors of x may be 0.
 ///
 /// # Errors
-/// See [`FitError`].
+/// [`SignalError::Lengths`], [`SignalError::NotPositive`], [`SignalError::TooFew`].
 pub fn power_law_both_errors(
     abscissas: &[f64],
     abscissa_sigmas: &[f64],
     values: &[f64],
     sigmas: &[f64],
-) -> Result<PowerLaw, FitError> {
-    check(abscissas, values, Some(sigmas))?;
-    check_not_negative(abscissas, abscissa_sigmas)?;
-    let variances = |of: &[f64], sigmas: &[f64]| -> Vec<f64> {
-        let pairs = of.iter().zip(sigmas);
-        pairs.map(|(x, s)| (s / x).powi(2)).collect()
+) -> Result<PowerLaw, SignalError> {
+    check(abscissas, &[values, sigmas], Some(abscissa_sigmas))?;
+    let variances = |of: &[f64], sigmas: &[f64]| {
+        let relative = of.iter().zip(sigmas).map(|(x, s)| s / x);
+        relative.map(|relative: f64| relative.powi(2)).collect()
     };
-    let points = Points {
-        x: logarithms(abscissas),
-        y: logarithms(values),
+    let points = LogPoints {
+        x: abscissas.iter().map(|x| x.ln()).collect(),
+        y: values.iter().map(|y| y.ln()).collect(),
         x_variance: variances(abscissas, abscissa_sigmas),
         y_variance: variances(values, sigmas),
     };
-    points.fit().ok_or(FitError::TooFew)
+    points.fit().ok_or(SignalError::TooFew)
 }
 
-fn logarithms(of: &[f64]) -> Vec<f64> {
-    of.iter().map(|x| x.ln()).collect()
+/// Logarithms of points with their variances.
+struct LogPoints {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    x_variance: Vec<f64>,
+    y_variance: Vec<f64>,
 }
 
-/// How far a fitted law can be off because of errors of its values alone.
+/// Weights, weighted means and York's adjusted departures for one slope.
+struct YorkWeights {
+    weights: Vec<f64>,
+    total: f64,
+    mean_x: f64,
+    mean_y: f64,
+    /// Adjusted abscissas, less their mean: where on the line each point belongs.
+    adjusted: Vec<f64>,
+}
+
+impl LogPoints {
+    fn weigh(&self, slope: f64) -> YorkWeights {
+        let variances = self.x_variance.iter().zip(&self.y_variance);
+        let weights = variances.map(|(x, y)| (y + slope * slope * x).recip());
+        let weights: Vec<f64> = weights.collect();
+        let total: f64 = weights.iter().sum();
+        let mean_x = dot(&weights, &self.x) / total;
+        let mean_y = dot(&weights, &self.y) / total;
+        let adjusted = (0..self.x.len()).map(|i| {
+            let (u, v) = (self.x[i] - mean_x, self.y[i] - mean_y);
+            weights[i] * (u * self.y_variance[i] + slope * v * self.x_variance[i])
+        });
+        YorkWeights {
+            adjusted: adjusted.collect(),
+            weights,
+            total,
+            mean_x,
+            mean_y,
+        }
+    }
+
+    /// Σ W β V / Σ W β U.
+    fn next_slope(&self, at: &YorkWeights) -> f64 {
+        let (mut above, mut below) = (0.0, 0.0);
+        for (i, beta) in at.adjusted.iter().enumerate() {
+            let part = at.weights[i] * beta;
+            above += part * (self.y[i] - at.mean_y);
+            below += part * (self.x[i] - at.mean_x);
+        }
+        above / below
+    }
+
+    /// `None` without two abscissas.
+    fn fit(&self) -> Option<PowerLaw> {
+        if all_equal(&self.x) {
+            return None;
+        }
+        // Without errors of x the first step is ordinary weighted least squares.
+        let mut slope = 0.0;
+        for _ in 0..200 {
+            let next = self.next_slope(&self.weigh(slope));
+            let done = (next - slope).abs() <= 1e-15 * next.abs();
+            slope = next;
+            if done || !slope.is_finite() {
+                break;
+            }
+        }
+        slope.is_finite().then(|| self.law(slope))
+    }
+
+    fn law(&self, slope: f64) -> PowerLaw {
+        let at = self.weigh(slope);
+        let level = at.mean_y - slope * at.mean_x;
+        let shift = dot(&at.weights, &at.adjusted) / at.total;
+        let spread = at.adjusted.iter().map(|beta| (beta - shift).powi(2));
+        let spread: f64 = spread.zip(&at.weights).map(|(s, w)| s * w).sum();
+        let centre = at.mean_x + shift;
+        let level_variance = at.total.recip() + centre * centre / spread;
+        let pairs = self.x.iter().zip(&self.y);
+        let residual = |(x, y): (&f64, &f64)| (y - at.mean_y) - slope * (x - at.mean_x);
+        let residuals: Vec<f64> = pairs.map(residual).collect();
+        let squares = |of: &mut dyn Iterator<Item = f64>| -> f64 {
+            of.zip(&at.weights).map(|(d, w)| w * d * d).sum()
+        };
+        let left = squares(&mut residuals.iter().copied());
+        let total = squares(&mut self.y.iter().map(|y| y - at.mean_y));
+        PowerLaw {
+            prefactor: level.exp(),
+            exponent: slope,
+            prefactor_error: level.exp() * level_variance.sqrt(),
+            exponent_error: spread.recip().sqrt(),
+            covariance: -centre / spread,
+            r_squared: if total > 0.0 { 1.0 - left / total } else { 1.0 },
+            chi_square: ChiSquare::of(left, residuals.len() - 2),
+            residuals,
+        }
+    }
+}
+
+fn dot(weights: &[f64], of: &[f64]) -> f64 {
+    weights.iter().zip(of).map(|(w, x)| w * x).sum()
+}
+
+fn all_equal(x: &[f64]) -> bool {
+    x.iter().all(|other| *other == x[0])
+}
+
+/// Bounds on the errors of an unweighted power law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Largest relative error of the prefactor.
@@ -166,25 +236,23 @@ pub struct Uncertainty {
     pub exponent: f64,
 }
 
-/// What values that are right to `relative` errors leave open in an unweighted
-/// [`power_law`].
+/// Bounds on the errors of an unweighted [`power_law`] through values that are right to `relative`
+/// errors.
 ///
-/// A bound, not a standard error: ln a = Σ cᵢ ln yᵢ and b = Σ dᵢ ln yᵢ, so it is
-/// Σ |cᵢ| εᵢ and Σ |dᵢ| εᵢ. Errors of one method mostly have one sign and do not
-/// average out.
+/// Not standard errors: ln a = Σ cᵢ ln yᵢ and b = Σ dᵢ ln yᵢ, so the bounds are Σ |cᵢ| εᵢ and
+/// Σ |dᵢ| εᵢ. Errors of one method mostly have one sign and do not average out.
 ///
 /// # Errors
-/// See [`FitError`]; relative errors may be 0.
-pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, FitError> {
-    check(abscissas, abscissas, None)?;
-    check_not_negative(abscissas, relative)?;
-    let x = logarithms(abscissas);
+/// As [`power_law_both_errors`]; relative errors may be 0.
+pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, SignalError> {
+    check(abscissas, &[], Some(relative))?;
+    let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
+    if all_equal(&x) {
+        return Err(SignalError::TooFew);
+    }
     let n = x.len() as f64;
     let mean = x.iter().sum::<f64>() / n;
     let spread: f64 = x.iter().map(|x| (x - mean).powi(2)).sum();
-    if all_equal(&x) {
-        return Err(FitError::TooFew);
-    }
     let slope = |x: &f64| (x - mean) / spread;
     let level = |x: &f64| n.recip() - mean * slope(x);
     let bound = |part: &dyn Fn(&f64) -> f64| {
@@ -197,35 +265,22 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, F
     })
 }
 
-fn check(abscissas: &[f64], values: &[f64], sigmas: Option<&[f64]>) -> Result<(), FitError> {
-    for slice in [Some(values), sigmas].into_iter().flatten() {
-        if slice.len() != abscissas.len() {
-            return Err(FitError::Lengths {
-                abscissas: abscissas.len(),
-                values: slice.len(),
-            });
+/// Requires positive abscissas and values, errors of 0 or more, all of one length.
+fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result<(), SignalError> {
+    for slice in values.iter().copied().chain(errors) {
+        let (n, found) = (abscissas.len(), slice.len());
+        if found != n {
+            return Err(SignalError::Lengths(format!(
+                "{n} abscissas and {found} values or standard deviations do not pair up"
+            )));
         }
     }
-    for slice in [Some(abscissas), Some(values), sigmas]
-        .into_iter()
-        .flatten()
-    {
-        let bad = slice.iter().position(|n| !(*n > 0.0 && n.is_finite()));
-        if let Some(index) = bad {
-            return Err(FitError::NotPositive { index });
-        }
-    }
-    Ok(())
-}
-
-/// Errors that may be 0, one an abscissa.
-fn check_not_negative(abscissas: &[f64], errors: &[f64]) -> Result<(), FitError> {
-    if errors.len() != abscissas.len() {
-        return Err(FitError::Lengths {
-            abscissas: abscissas.len(),
-            values: errors.len(),
-        });
-    }
-    let bad = errors.iter().position(|s| !(*s >= 0.0 && s.is_finite()));
-    bad.map_or(Ok(()), |index| Err(FitError::NotPositive { index }))
+    let bad = |slice: &[f64], least_is_good: bool| {
+        let good = |n: &f64| n.is_finite() && (*n > 0.0 || least_is_good && *n == 0.0);
+        slice.iter().position(|n| !good(n))
+    };
+    let all = std::iter::once(abscissas).chain(values.iter().copied());
+    let index = all.map(|slice| bad(slice, false)).find_map(|found| found);
+    let index = index.or_else(|| bad(errors?, true));
+    index.map_or(Ok(()), |index| Err(SignalError::NotPositive { index }))
 }

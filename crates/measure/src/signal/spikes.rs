@@ -1,32 +1,31 @@
 //! Spikes: one or two samples that stand out of a signal that is smooth for its noise.
 
-use crate::signal::level::{NORMAL_MAD, median};
-use crate::signal::picks::normal::{MOST, Normal};
-use crate::signal::picks::polynomial::powers;
+use crate::signal::linear::{NormalEquations, Row, powers};
+use crate::signal::statistics::{NORMAL_MAD, median};
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-/// Samples that are looked at closely, beside one in a hundred.
+/// Candidates that are fitted, beside one sample in a hundred.
 const MOST_CANDIDATES: usize = 1000;
-/// Samples on either side that say what a sample should be: many average noise, few follow pulses
+/// Samples on either side that a sample is interpolated from: many average noise, few follow pulses
 /// of few samples.
 const REACHES: [usize; 3] = [12, 8, 5];
 /// Degree of the polynomial through them.
 const DEGREE: usize = 4;
 /// Standard errors by which a spike stands out: by chance once in 10¹⁰ samples.
 const STANDS_OUT: f64 = 6.5;
-/// The same of the screen, which looks closer at one sample of noise in 50,000.
+/// The same of the screen, which selects one sample of noise in 50,000.
 const SCREEN: f64 = 4.5;
 /// Neighbours that may be spikes as well.
 const MOST_BESIDE: usize = 3;
-/// Fewer degrees of freedom leave too little of narrow tops to tell them from spikes.
+/// Fewer degrees of freedom leave too little of narrow tops to distinguish them from spikes.
 const LEAST_FREEDOM: usize = 5;
 /// Noise, as a share of the record's range, below which a sample that stands out moves nothing.
 const LEAST_NOISE: f64 = 1e-5;
 /// A digitiser rounds by up to half a step, its standard deviation is 0.29.
 const ROUNDING: f64 = 0.3;
 
-/// Samples in which spikes are replaced by what their neighbours say, and which these are.
+/// Samples in which spikes are replaced by interpolation, and the spikes' numbers.
 ///
 /// A spike has one or two samples; three in a row are left, as a pulse of few samples has. A
 /// polynomial is fitted to the neighbours alone, without such as stand out themselves; a
@@ -105,30 +104,30 @@ fn least_noise(samples: &[f64], stride: usize) -> f64 {
 
 /// What a sample should be, if it is a spike.
 fn expected(samples: &[f64], at: usize, noise: f64) -> Option<f64> {
-    let guesses = REACHES
+    let tries = REACHES
         .iter()
-        .filter_map(|reach| guess(samples, at, *reach, noise));
-    let best = guesses.min_by(|a, b| a.error.total_cmp(&b.error))?;
+        .filter_map(|reach| interpolated(samples, at, *reach, noise));
+    let best = tries.min_by(|a, b| a.error.total_cmp(&b.error))?;
     let off = (samples[at] - best.value).abs();
     (off > STANDS_OUT * best.error).then_some(best.value)
 }
 
-/// What neighbours say of a sample, and the standard error of its difference from that.
-struct Guess {
+/// A sample interpolated from its neighbours, and the standard error of its difference from that.
+struct Interpolated {
     value: f64,
     error: f64,
 }
 
 /// By the neighbours within reach, without those that stand out themselves.
-fn guess(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<Guess> {
+fn interpolated(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<Interpolated> {
     let window = at.saturating_sub(reach)..(at + reach + 1).min(samples.len());
     let mut members: Vec<usize> = window.filter(|sample| *sample != at).collect();
     for _ in 0..=MOST_BESIDE {
-        let (guess, worst) = fitted(samples, &members, (at, reach), noise)?;
+        let (interpolated, worst) = fitted(samples, &members, (at, reach), noise)?;
         let Some(worst) = worst else {
             // A sample whose neighbours both stand out is no spike of one or two samples.
             let beside = |member: &usize| member.abs_diff(at) == 1;
-            return members.iter().any(beside).then_some(guess);
+            return members.iter().any(beside).then_some(interpolated);
         };
         members.remove(worst);
     }
@@ -141,16 +140,16 @@ fn fitted(
     members: &[usize],
     (at, reach): (usize, usize),
     noise: f64,
-) -> Option<(Guess, Option<usize>)> {
+) -> Option<(Interpolated, Option<usize>)> {
     let freedom = members.len().checked_sub(DEGREE + 1)?;
     let freedom = Some(freedom).filter(|freedom| *freedom >= LEAST_FREEDOM)? as f64;
     let row = |sample: usize| powers((sample as f64 - at as f64) / reach as f64);
-    let mut normal = Normal::new(DEGREE + 1);
+    let mut normal = NormalEquations::new(DEGREE + 1);
     for member in members {
         normal.add(&row(*member), samples[*member]);
     }
     let fit = normal.solve()?;
-    let value = |row: &[f64; MOST]| -> f64 {
+    let value = |row: &Row| -> f64 {
         let terms = row.iter().zip(&fit.values).take(DEGREE + 1);
         terms.map(|(power, coefficient)| power * coefficient).sum()
     };
@@ -165,9 +164,12 @@ fn fitted(
     let (worst, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own = row(at);
     let deviation = (squares / freedom).sqrt().max(noise);
-    let guess = Guess {
+    let interpolated = Interpolated {
         value: value(&own),
         error: deviation * (1.0 + fit.variance(&own)).sqrt(),
     };
-    Some((guess, (ratio > STANDS_OUT * STANDS_OUT).then_some(worst)))
+    Some((
+        interpolated,
+        (ratio > STANDS_OUT * STANDS_OUT).then_some(worst),
+    ))
 }

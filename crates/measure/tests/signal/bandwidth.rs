@@ -1,7 +1,7 @@
 //! Maxima as they were before an amplifier's low-pass.
 
 use crate::dry::Dry;
-use hertzchain_measure::signal::{Bandwidth, Channels, Measuring, SignalError, measure};
+use hertzchain_measure::signal::{Bandwidth, Channels, SignalError, SignalOptions, measure};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// A computed shot behind a low-pass, by Euler's method in steps of 10 ns.
@@ -27,9 +27,9 @@ fn recorded(low_pass: Bandwidth) -> Vec<f64> {
 }
 
 fn times_s(samples: &[f64], bandwidth: Option<Bandwidth>) -> [f64; 2] {
-    let measuring = Measuring {
+    let measuring = SignalOptions {
         bandwidth,
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     let shot = measure(Channels::Summed(samples), 1e-6, &measuring).unwrap();
     let flight = shot.flight.unwrap();
@@ -63,12 +63,12 @@ fn a_low_pass_of_another_order_is_refused() {
         corner_hz: 50e3,
         order: 1,
     });
-    let measuring = Measuring {
+    let measuring = SignalOptions {
         bandwidth: Some(Bandwidth {
             corner_hz: 50e3,
             order: 3,
         }),
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
     assert!(matches!(shot.flight, Err(SignalError::Option { .. })));

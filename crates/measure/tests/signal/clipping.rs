@@ -3,7 +3,8 @@
 use crate::common::{Scene, normal};
 use crate::dry::Dry;
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Measured, Measuring, Method, Place, Shape, coverage, measure,
+    Channels, Estimate, Measured, Method, PulseKind, QualityFlag, Shape, SignalOptions, coverage,
+    measure,
 };
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -56,9 +57,9 @@ impl Source {
 }
 
 fn measured(samples: &[f64], method: &Method) -> Measured {
-    let by = Measuring {
+    let by = SignalOptions {
         method: method.clone(),
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     measure(Channels::Summed(samples), 1e-6, &by).unwrap()
 }
@@ -71,7 +72,11 @@ fn pulls(source: &Source, share: f64, noise: f64) -> Vec<(f64, f64)> {
     let pull = |_| {
         let (_, samples) = source.recorded(noise, share * source.highest, &mut rng);
         let shot = measured(&samples, &Method::default());
-        assert!(shot.found.doubts.contains(&Doubt::Saturation(Place::Wall)));
+        assert!(
+            shot.found
+                .flags
+                .contains(&QualityFlag::Saturation(PulseKind::Wall))
+        );
         let Estimate { value, sigma } = shot.flight.ok()?.incident_s;
         Some(((value - true_s) / sigma, 1e9 * sigma))
     };
@@ -126,7 +131,10 @@ fn clipped_before_noise(
             *volts = amplifier(*volts, share * source.highest) + noise * normal(&mut rng);
         }
         let shot = measured(&samples, &Method::default());
-        let saturated = shot.found.doubts.contains(&Doubt::Saturation(Place::Wall));
+        let saturated = shot
+            .found
+            .flags
+            .contains(&QualityFlag::Saturation(PulseKind::Wall));
         flagged += usize::from(saturated);
         let inside = |t: Estimate| (t.value - true_s).abs() < 1.96 * t.sigma;
         within += usize::from(shot.flight.is_ok_and(|flight| inside(flight.incident_s)));
@@ -160,8 +168,10 @@ fn whole_tops_are_not_taken_for_clipped_ones() {
         for noise in [1e-4, 1e-3, 1e-2, 3e-2] {
             for _ in 0..20 {
                 let (_, samples) = source.recorded(noise, f64::INFINITY, &mut rng);
-                let doubts = measured(&samples, &Method::default()).found.doubts;
-                let saturated = doubts.iter().any(|d| matches!(d, Doubt::Saturation(_)));
+                let doubts = measured(&samples, &Method::default()).found.flags;
+                let saturated = doubts
+                    .iter()
+                    .any(|d| matches!(d, QualityFlag::Saturation(_)));
                 assert!(!saturated, "{noise}: {doubts:?}");
             }
         }
@@ -193,7 +203,7 @@ fn other_methods_use_the_flanks_or_say_why_they_cannot() {
     );
     let told = onset(0.8).unwrap_err().to_string();
     assert!(told.contains("clipped"), "{told}");
-    let correlation = Method::CrossCorrelation(hertzchain_measure::signal::Template::Passing);
+    let correlation = Method::CrossCorrelation(hertzchain_measure::signal::Template::Incident);
     let told = measured(&samples, &correlation)
         .flight
         .unwrap_err()
@@ -217,8 +227,11 @@ fn tops_with_wide_rounded_corners_are_seen() {
             .iter()
             .map(|volt| knee(*volt, end) + noise * normal(&mut rng))
             .collect();
-        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-        let seen = shot.found.doubts.contains(&Doubt::Saturation(Place::Wall));
-        assert!(seen, "{share} {noise}: {:?}", shot.found.doubts);
+        let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+        let seen = shot
+            .found
+            .flags
+            .contains(&QualityFlag::Saturation(PulseKind::Wall));
+        assert!(seen, "{share} {noise}: {:?}", shot.found.flags);
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::common::normal;
 use crate::dry::Dry;
-use hertzchain_measure::signal::{Channels, Doubt, Finding, Measured, Measuring, measure};
+use hertzchain_measure::signal::{
+    Channels, FindOptions, Measured, QualityFlag, SignalOptions, measure,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -25,18 +27,18 @@ fn shot(into_bead: f64, into_wall: f64, back: f64, noise: f64, seed: u64) -> Mea
         sensor: &sensor,
         wall: &wall,
     };
-    let measuring = Measuring {
-        finding: Finding {
+    let measuring = SignalOptions {
+        find: FindOptions {
             beads: seed.is_multiple_of(2).then_some((40, 7)),
-            ..Finding::default()
+            ..FindOptions::default()
         },
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     measure(channels, 1e-6, &measuring).unwrap()
 }
 
 fn is_grave(measured: &Measured) -> bool {
-    measured.found.doubts.iter().any(Doubt::is_grave)
+    measured.found.flags.iter().any(QualityFlag::is_grave)
 }
 
 #[test]
@@ -59,7 +61,7 @@ fn crosstalk_of_the_wall_is_no_return() {
             assert!(
                 !is_grave(&measured),
                 "{into_bead}, {seed}: {:?}",
-                measured.found.doubts
+                measured.found.flags
             );
         }
     }

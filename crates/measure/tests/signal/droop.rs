@@ -1,7 +1,7 @@
 //! What a high-pass does to times of flight, and taking it back.
 
 use crate::common::Scene;
-use hertzchain_measure::signal::{Channels, Measuring, Shape, measure, undroop};
+use hertzchain_measure::signal::{Channels, Shape, SignalOptions, invert_high_pass, measure};
 
 /// Samples after a first-order high-pass, τ y' + y = τ x', from rest, by the trapezoidal rule:
 /// y_n (1 + k) = y_{n−1} (1 − k) + x_n − x_{n−1} with k = interval/(2τ).
@@ -23,7 +23,7 @@ fn the_inverse_gives_back_what_the_high_pass_took() {
     let clean: Vec<f64> = (0..2000).map(bell).collect();
     let mut samples = drooped(&clean, 1e-6, 2e-3);
     assert!(samples[1200] < -0.02, "an undershoot follows the pulse");
-    undroop(&mut samples, 1e-6, 2e-3).unwrap();
+    invert_high_pass(&mut samples, 1e-6, 2e-3).unwrap();
     for (back, clean) in samples.iter().zip(&clean) {
         // Rounding, summed over 2,000 steps.
         assert!((back - clean).abs() < 1e-12);
@@ -38,9 +38,9 @@ fn times_of_flight_are_put_right_when_the_time_constant_is_given() {
     };
     let samples = drooped(&scene.summed(), 1e-6, 2e-3);
     let off = |high_pass_s| {
-        let measuring = Measuring {
+        let measuring = SignalOptions {
             high_pass_s,
-            ..Measuring::default()
+            ..SignalOptions::default()
         };
         let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
         shot.flight.unwrap().incident_s.value - scene.incident_s()
@@ -54,7 +54,7 @@ fn times_of_flight_are_put_right_when_the_time_constant_is_given() {
 
 #[test]
 fn a_time_constant_of_nothing_is_refused() {
-    assert!(undroop(&mut [0.0; 4], 1e-6, 0.0).is_err());
-    assert!(undroop(&mut [0.0; 4], f64::NAN, 1.0).is_err());
-    assert!(undroop(&mut [f64::INFINITY; 4], 1e-6, 1.0).is_err());
+    assert!(invert_high_pass(&mut [0.0; 4], 1e-6, 0.0).is_err());
+    assert!(invert_high_pass(&mut [0.0; 4], f64::NAN, 1.0).is_err());
+    assert!(invert_high_pass(&mut [f64::INFINITY; 4], 1e-6, 1.0).is_err());
 }

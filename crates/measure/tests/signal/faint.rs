@@ -3,7 +3,7 @@
 
 use crate::source::{Source, bells, dry_shot, methods};
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Measuring, Method, coverage, measure, median,
+    Channels, Estimate, Method, QualityFlag, SignalOptions, coverage, measure, median,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -14,16 +14,16 @@ const SHOTS: u64 = 400;
 fn errors(source: &Source, method: &Method, interval_s: f64, ratio_db: f64) -> [Vec<Estimate>; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(2026);
     let noise = 10_f64.powf(-ratio_db / 20.0);
-    let measuring = Measuring {
+    let measuring = SignalOptions {
         method: method.clone(),
-        ..Measuring::default()
+        ..SignalOptions::default()
     };
     let [passing, wall, returning] = source.times_s;
     let mut errors = [const { Vec::new() }; 2];
     for _ in 0..SHOTS {
         let samples = source.recorded(interval_s, noise, &mut rng);
         let shot = measure(Channels::Summed(&samples), interval_s, &measuring).unwrap();
-        let counts = !shot.found.doubts.iter().any(Doubt::is_grave);
+        let counts = !shot.found.flags.iter().any(QualityFlag::is_grave);
         let Some(flight) = shot.flight.ok().filter(|_| counts) else {
             continue;
         };
@@ -76,7 +76,7 @@ fn stated_errors_of_the_default_cover_true_times_of_faint_pulses() {
 
 #[test]
 fn stated_errors_of_the_default_are_not_widened_where_pulses_are_plain() {
-    // What they were with the fitted bend alone, 40 dB: medians in ns, to 3 %. They may be less: what is
+    // What they were with the fitted bend without_systematic, 40 dB: medians in ns, to 3 %. They may be less: what is
     // known of pulses' shapes since makes those of returns a third less.
     for (source, were) in [(bells(), [316.0, 588.0]), (dry_shot(), [375.0, 746.0])] {
         let found = errors(&source, &Method::default(), 1e-6, 40.0);

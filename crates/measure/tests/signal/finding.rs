@@ -7,17 +7,17 @@
 
 use crate::common::{Scene, channels};
 use hertzchain_measure::signal::{
-    Channels, Doubt, Finding, Found, Measuring, Place, Polarity, Rails, SignalError, measure,
-    pulses,
+    Channels, DigitiserRange, FindOptions, Found, Polarity, PulseKind, QualityFlag, SignalError,
+    SignalOptions, measure, pulses,
 };
 
 fn find(samples: &[f64]) -> Found {
-    pulses(Channels::Summed(samples), &Finding::default()).unwrap()
+    pulses(Channels::Summed(samples), &FindOptions::default()).unwrap()
 }
 
 /// Every pulse within `widths` of its width of where it is.
 fn assert_found(scene: &Scene, found: &Found, widths: f64) {
-    for (pulse, (at, _, width)) in [found.passing, found.wall, found.returning]
+    for (pulse, (at, _, width)) in [found.incident, found.wall, found.reflected]
         .into_iter()
         .zip(scene.pulses)
     {
@@ -39,11 +39,11 @@ fn clean_pulses_are_found_to_a_sample_and_without_doubt() {
         let found = find(&scene.summed());
         // Half a sample, and rounding of equal neighbours.
         assert_found(&scene, &found, 0.02);
-        assert_eq!(found.doubts, []);
+        assert_eq!(found.flags, []);
         let pair = scene.separate();
-        let found = pulses(channels(&pair), &Finding::default()).unwrap();
+        let found = pulses(channels(&pair), &FindOptions::default()).unwrap();
         assert_found(&scene, &found, 0.02);
-        assert_eq!(found.doubts, []);
+        assert_eq!(found.flags, []);
         assert_eq!(found.sensor.sign, sign);
     }
 }
@@ -76,10 +76,14 @@ fn pulses_are_found_at_20_db() {
             // The flat top in noise of a tenth.
             assert_found(&scene, &found, 0.4);
             let pair = scene.separate();
-            let found = pulses(channels(&pair), &Finding::default()).unwrap();
+            let found = pulses(channels(&pair), &FindOptions::default()).unwrap();
             assert_found(&scene, &found, 0.4);
-            // The returning pulse is 13 dB above the noise, and said to be low.
-            assert!(found.doubts.contains(&Doubt::LowSignal(Place::Returning)));
+            // The reflected pulse is 13 dB above the noise, and said to be low.
+            assert!(
+                found
+                    .flags
+                    .contains(&QualityFlag::LowSignal(PulseKind::Reflected))
+            );
         }
     }
 }
@@ -101,7 +105,7 @@ fn narrow_pulses_are_found_at_20_db_in_long_records() {
             ..Scene::default()
         };
         let found = find(&scene.summed());
-        let strong = [found.passing, found.wall];
+        let strong = [found.incident, found.wall];
         for (pulse, (at, _, width)) in strong.iter().zip(scene.pulses) {
             let off = (pulse.unwrap().at as f64 * 2e-6 - at).abs();
             // The flat top in noise of a tenth.
@@ -121,7 +125,7 @@ fn a_spike_before_the_first_pulse_is_passed_over() {
         samples[300] += 3.0 * sign;
         let found = find(&samples);
         assert_found(&scene, &found, 0.05);
-        assert_eq!(found.doubts, []);
+        assert_eq!(found.flags, []);
     }
 }
 
@@ -139,7 +143,7 @@ fn a_short_lead_is_doubted_but_the_pulses_are_found() {
     };
     let found = find(&scene.summed());
     assert_found(&scene, &found, 0.1);
-    assert!(found.doubts.contains(&Doubt::FewQuietSamples));
+    assert!(found.flags.contains(&QualityFlag::FewQuietSamples));
 }
 
 #[test]
@@ -150,16 +154,16 @@ fn saturation_is_seen_with_and_without_known_rails() {
     };
     let clipped: Vec<f64> = scene.summed().iter().map(|x| x.min(1.2)).collect();
     let found = find(&clipped);
-    assert_eq!(found.doubts, [Doubt::Saturation(Place::Wall)]);
-    let finding = Finding {
-        rails: Some(Rails {
+    assert_eq!(found.flags, [QualityFlag::Saturation(PulseKind::Wall)]);
+    let finding = FindOptions {
+        range: Some(DigitiserRange {
             low: -1.2,
             high: 1.2,
         }),
-        ..Finding::default()
+        ..FindOptions::default()
     };
     let found = pulses(Channels::Summed(&clipped), &finding).unwrap();
-    assert_eq!(found.doubts, [Doubt::Saturation(Place::Wall)]);
+    assert_eq!(found.flags, [QualityFlag::Saturation(PulseKind::Wall)]);
 }
 
 #[test]
@@ -170,15 +174,15 @@ fn each_channel_is_held_against_its_own_rails() {
     clipped.1.iter_mut().for_each(|x| *x = x.min(1.2));
     let up_to = |volts: f64| {
         let (low, high) = (-volts, volts);
-        Some(Rails { low, high })
+        Some(DigitiserRange { low, high })
     };
-    let within = |sensor, wall| Finding {
-        rails: up_to(sensor),
-        wall_rails: up_to(wall),
-        ..Finding::default()
+    let within = |sensor, wall| FindOptions {
+        range: up_to(sensor),
+        wall_range: up_to(wall),
+        ..FindOptions::default()
     };
-    let doubts = |pair, finding| pulses(channels(pair), &finding).unwrap().doubts;
-    let saturated = [Doubt::Saturation(Place::Wall)];
+    let doubts = |pair, finding| pulses(channels(pair), &finding).unwrap().flags;
+    let saturated = [QualityFlag::Saturation(PulseKind::Wall)];
     assert_eq!(doubts(&clipped, within(10.0, 1.2)), saturated);
     // The wall's pulse is higher than the sensor's range, not than its own.
     assert_eq!(doubts(&whole, within(1.1, 10.0)), []);
@@ -192,7 +196,7 @@ fn a_coarse_digitiser_does_not_look_saturated() {
         .iter()
         .map(|x| (x * 125.0).round())
         .collect();
-    assert_eq!(find(&samples).doubts, []);
+    assert_eq!(find(&samples).flags, []);
 }
 
 #[test]
@@ -203,21 +207,21 @@ fn missing_pulses_are_named() {
     };
     scene.pulses[2].1 = 0.0;
     let found = of_row(&scene);
-    assert_eq!(found.doubts, [Doubt::Missing(Place::Returning)]);
+    assert_eq!(found.flags, [QualityFlag::Missing(PulseKind::Reflected)]);
     scene.pulses[1].1 = 0.0;
     let found = find(&scene.summed());
     let both = [
-        Doubt::Missing(Place::Wall),
-        Doubt::Missing(Place::Returning),
+        QualityFlag::Missing(PulseKind::Wall),
+        QualityFlag::Missing(PulseKind::Reflected),
     ];
-    assert_eq!(found.doubts, both);
+    assert_eq!(found.flags, both);
 }
 
 /// With the paper's row known.
 fn of_row(scene: &Scene) -> Found {
-    let finding = Finding {
+    let finding = FindOptions {
         beads: Some((40, 7)),
-        ..Finding::default()
+        ..FindOptions::default()
     };
     pulses(Channels::Summed(&scene.summed()), &finding).unwrap()
 }
@@ -232,15 +236,23 @@ fn a_lost_passing_pulse_is_named_where_the_row_is_known_and_doubted_where_not() 
         };
         scene.pulses[0].1 = 0.0;
         let found = of_row(&scene);
-        assert!(found.doubts.contains(&Doubt::Missing(Place::Passing)));
-        assert!(found.passing.is_none());
-        let at = [found.wall, found.returning].map(|pulse| pulse.unwrap().at.abs_diff(0));
+        assert!(
+            found
+                .flags
+                .contains(&QualityFlag::Missing(PulseKind::Incident))
+        );
+        assert!(found.incident.is_none());
+        let at = [found.wall, found.reflected].map(|pulse| pulse.unwrap().at.abs_diff(0));
         assert!(
             at[0].abs_diff(1500) < 3 && at[1].abs_diff(2281) < 3,
             "{at:?}"
         );
         let found = find(&scene.summed());
-        assert!(found.doubts.contains(&Doubt::Lost), "{:?}", found.doubts);
+        assert!(
+            found.flags.contains(&QualityFlag::Unidentified),
+            "{:?}",
+            found.flags
+        );
     }
 }
 
@@ -255,7 +267,9 @@ fn a_return_much_lower_than_the_first_pulse_is_still_found() {
         scene.pulses[2].1 = height;
         let found = of_row(&scene);
         assert!(
-            found.doubts.contains(&Doubt::Missing(Place::Passing)),
+            found
+                .flags
+                .contains(&QualityFlag::Missing(PulseKind::Incident)),
             "{height}"
         );
     }
@@ -276,11 +290,15 @@ fn a_lost_pulse_of_the_wall_is_told_from_a_lost_passing_one() {
     ];
     let found = of_row(&scene);
     assert!(
-        found.doubts.contains(&Doubt::Missing(Place::Wall)),
+        found.flags.contains(&QualityFlag::Missing(PulseKind::Wall)),
         "{:?}",
-        found.doubts
+        found.flags
     );
-    assert!(find(&scene.summed()).doubts.contains(&Doubt::Lost));
+    assert!(
+        find(&scene.summed())
+            .flags
+            .contains(&QualityFlag::Unidentified)
+    );
 }
 
 #[test]
@@ -297,11 +315,15 @@ fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() 
         (2680e-6, 0.4, 55e-6),
     ];
     for found in [find(&scene.summed()), of_row(&scene)] {
-        assert!(found.doubts.contains(&Doubt::Order), "{:?}", found.doubts);
+        assert!(
+            found.flags.contains(&QualityFlag::Order),
+            "{:?}",
+            found.flags
+        );
     }
     // Without the low second pulse, the ways' times alone tell in a known row.
     scene.pulses[1].1 = 1.2;
-    assert!(of_row(&scene).doubts.contains(&Doubt::Order));
+    assert!(of_row(&scene).flags.contains(&QualityFlag::Order));
 }
 
 #[test]
@@ -312,8 +334,8 @@ fn pulses_of_few_samples_are_doubted() {
         noise: 1e-3,
         ..Scene::default()
     };
-    let doubts = find(&scene.summed()).doubts;
-    let few = |doubt: &Doubt| matches!(doubt, Doubt::FewSamples(_));
+    let doubts = find(&scene.summed()).flags;
+    let few = |doubt: &QualityFlag| matches!(doubt, QualityFlag::FewSamples(_));
     assert!(doubts.iter().any(few), "{doubts:?}");
 }
 
@@ -324,10 +346,10 @@ fn two_pulses_without_a_third_are_no_shot_unless_the_record_ends_before_it() {
         ..Scene::default()
     };
     scene.pulses[2].1 = 0.0;
-    assert_eq!(find(&scene.summed()).doubts, [Doubt::Lost]);
+    assert_eq!(find(&scene.summed()).flags, [QualityFlag::Unidentified]);
     scene.samples = 2000;
-    let doubts = find(&scene.summed()).doubts;
-    assert!(!doubts.iter().any(Doubt::is_grave), "{doubts:?}");
+    let doubts = find(&scene.summed()).flags;
+    assert!(!doubts.iter().any(QualityFlag::is_grave), "{doubts:?}");
 }
 
 #[test]
@@ -338,8 +360,12 @@ fn a_record_that_ends_early_is_too_short() {
         ..Scene::default()
     };
     let found = find(&scene.summed());
-    assert!(found.doubts.contains(&Doubt::RecordTooShort));
-    assert!(found.doubts.contains(&Doubt::Missing(Place::Returning)));
+    assert!(found.flags.contains(&QualityFlag::RecordTooShort));
+    assert!(
+        found
+            .flags
+            .contains(&QualityFlag::Missing(PulseKind::Reflected))
+    );
 }
 
 #[test]
@@ -355,7 +381,10 @@ fn a_fragment_beside_a_pulse_splits_it() {
         .zip(fragment.summed())
         .map(|(a, b)| a + b)
         .collect();
-    assert_eq!(find(&both).doubts, [Doubt::Split(Place::Returning)]);
+    assert_eq!(
+        find(&both).flags,
+        [QualityFlag::Split(PulseKind::Reflected)]
+    );
 }
 
 #[test]
@@ -371,8 +400,8 @@ fn pulses_that_run_into_each_other_overlap() {
     let found = find(&scene.summed());
     assert!(
         found
-            .doubts
-            .contains(&Doubt::Overlap(Place::Passing, Place::Wall))
+            .flags
+            .contains(&QualityFlag::Overlap(PulseKind::Incident, PulseKind::Wall))
     );
 }
 
@@ -388,19 +417,19 @@ fn a_weak_pulse_of_the_wall_is_told_from_the_return() {
         noise: 1e-3,
         ..Scene::default()
     };
-    let finding = Finding {
+    let finding = FindOptions {
         beads: Some((40, 7)),
-        ..Finding::default()
+        ..FindOptions::default()
     };
     let found = pulses(Channels::Summed(&scene.summed()), &finding).unwrap();
     assert_found(&scene, &found, 0.1);
-    assert!(found.doubts.contains(&Doubt::Order));
+    assert!(found.flags.contains(&QualityFlag::Order));
     // Without it a pulse half way must be half as high, and is doubted too.
     let mut strong = scene;
     strong.pulses[1].1 = 0.3;
     let found = find(&strong.summed());
     assert_found(&strong, &found, 0.1);
-    assert!(found.doubts.contains(&Doubt::Order));
+    assert!(found.flags.contains(&QualityFlag::Order));
 }
 
 #[test]
@@ -410,9 +439,9 @@ fn a_stated_polarity_is_obeyed() {
         noise: 0.01,
         ..Scene::default()
     };
-    let finding = |polarity| Finding {
+    let finding = |polarity| FindOptions {
         polarity,
-        ..Finding::default()
+        ..FindOptions::default()
     };
     let samples = scene.summed();
     let found = pulses(Channels::Summed(&samples), &finding(Polarity::Negative)).unwrap();
@@ -434,7 +463,7 @@ fn noise_alone_is_no_pulse() {
             seed,
             ..Scene::default()
         };
-        let found = pulses(Channels::Summed(&scene.summed()), &Finding::default());
+        let found = pulses(Channels::Summed(&scene.summed()), &FindOptions::default());
         assert!(
             matches!(found, Err(SignalError::NoPulse { .. })),
             "{found:?}"
@@ -444,18 +473,19 @@ fn noise_alone_is_no_pulse() {
 
 #[test]
 fn records_that_hold_nothing_say_why() {
-    let on = |samples: &[f64]| pulses(Channels::Summed(samples), &Finding::default()).unwrap_err();
+    let on =
+        |samples: &[f64]| pulses(Channels::Summed(samples), &FindOptions::default()).unwrap_err();
     assert!(matches!(on(&[]), SignalError::TooShort { found: 0, .. }));
     assert!(matches!(on(&[3.0; 500]), SignalError::Constant { .. }));
     let mut bad = Scene::default().summed();
     bad[77] = f64::INFINITY;
     assert!(matches!(on(&bad), SignalError::NotFinite { index: 77, .. }));
     let pair = (vec![0.0; 100], vec![0.0; 99]);
-    let lengths = pulses(channels(&pair), &Finding::default());
+    let lengths = pulses(channels(&pair), &FindOptions::default());
     assert!(matches!(lengths, Err(SignalError::Lengths { .. })));
-    let finding = Finding {
+    let finding = FindOptions {
         beads: Some((7, 7)),
-        ..Finding::default()
+        ..FindOptions::default()
     };
     let beads = pulses(Channels::Summed(&Scene::default().summed()), &finding);
     assert!(matches!(beads, Err(SignalError::Option { .. })));
@@ -475,9 +505,9 @@ fn trailing() -> (Vec<f64>, Vec<f64>) {
 fn a_pulse_that_trails_is_doubted_in_a_summed_channel_alone() {
     let pair = trailing();
     let sum: Vec<f64> = pair.0.iter().zip(&pair.1).map(|(a, b)| a + b).collect();
-    assert_eq!(find(&sum).doubts, [Doubt::Trailing(Place::Wall)]);
-    let found = pulses(channels(&pair), &Finding::default()).unwrap();
-    assert_eq!(found.doubts, []);
+    assert_eq!(find(&sum).flags, [QualityFlag::Asymmetric(PulseKind::Wall)]);
+    let found = pulses(channels(&pair), &FindOptions::default()).unwrap();
+    assert_eq!(found.flags, []);
 }
 
 #[test]
@@ -489,7 +519,7 @@ fn what_lies_under_a_pulse_that_trails_is_in_its_error() {
     let under = sum.iter().enumerate().map(|(i, volt)| volt - swing(i));
     let under: Vec<f64> = under.collect();
     let wall_s = |samples: &[f64]| {
-        let shot = measure(Channels::Summed(samples), 1e-6, &Measuring::default());
+        let shot = measure(Channels::Summed(samples), 1e-6, &SignalOptions::default());
         shot.unwrap().flight.unwrap().incident_s
     };
     let (alone, beneath) = (wall_s(&sum), wall_s(&under));

@@ -4,6 +4,7 @@
 mod bandwidth;
 mod clipping;
 mod common;
+mod competing;
 mod crosstalk;
 mod cutting;
 mod droop;
@@ -17,7 +18,6 @@ mod power_law;
 mod quiet;
 mod reduction;
 mod returns;
-mod rivals;
 mod shared;
 #[path = "common/source.rs"]
 mod source;

@@ -2,9 +2,9 @@
 
 use crate::common::Scene;
 use hertzchain_measure::signal::{
-    Channels, Cutter, Estimate, Finding, LowPass, Measuring, Method, Polarity, Rails, Shape,
-    Template, Trigger, chi_square, coverage, groups, level, measure, power_law_both_errors,
-    summary, undroop,
+    Channels, Cutter, DigitiserRange, Estimate, FindOptions, LowPass, Method, Polarity, Shape,
+    SignalOptions, Template, Trigger, baseline, chi_square, coverage, groups, invert_high_pass,
+    measure, power_law_both_errors, summary,
 };
 use proptest::prelude::*;
 
@@ -28,7 +28,7 @@ fn methods() -> Vec<Method> {
             width: 0.2,
         },
         Method::Onset { fraction: 0.1 },
-        Method::CrossCorrelation(Template::Passing),
+        Method::CrossCorrelation(Template::Incident),
         Method::CrossCorrelation(Template::Shape(Shape::sech_power(2.0))),
         Method::CrossCorrelation(Template::Fixed(Shape::sech_power(2.0), 30e-6)),
         Method::MatchedShape {
@@ -48,18 +48,19 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
             },
         ] {
             for beads in [None, Some((40, 7))] {
-                let finding = Finding {
+                let find = FindOptions {
                     beads,
                     polarity: Polarity::Auto,
                     wall_polarity: Polarity::Negative,
-                    rails: Some(Rails {
+                    range: Some(DigitiserRange {
                         low: -1.0,
                         high: 1.0,
                     }),
-                    wall_rails: None,
+                    limits: hertzchain_measure::signal::PulseLimits::default(),
+                    wall_range: None,
                 };
-                let measuring = Measuring {
-                    finding,
+                let measuring = SignalOptions {
+                    find,
                     method: method.clone(),
                     high_pass_s: beads.map(|_| 1e-3),
                     low_pass: None,
@@ -81,8 +82,8 @@ proptest! {
         interval in number(),
     ) {
         measure_all(&samples, &wall, interval);
-        let _ = level(&samples);
-        let _ = undroop(&mut samples.clone(), interval, 1e-3);
+        let _ = baseline(&samples);
+        let _ = invert_high_pass(&mut samples.clone(), interval, 1e-3);
         let _ = LowPass { cutoff_hz: interval, order: 4 }.apply(&samples, 1e-6);
         let _ = Shape::sampled(&samples);
         let _ = groups(&samples, interval);

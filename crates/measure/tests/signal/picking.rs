@@ -8,8 +8,8 @@
 use crate::common::{Scene, channels, normal};
 use crate::dry::Dry;
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Flight, LowPass, Measuring, Method, Place, Rails, Shape,
-    SignalError, Template, coverage, cramer_rao_s, measure,
+    Channels, DigitiserRange, Estimate, Flight, LowPass, Method, PulseKind, QualityFlag, Shape,
+    SignalError, SignalOptions, Template, coverage, cramer_rao_s, measure,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -32,10 +32,10 @@ fn local() -> Method {
     }
 }
 
-fn by(method: &Method) -> Measuring {
-    Measuring {
+fn by(method: &Method) -> SignalOptions {
+    SignalOptions {
         method: method.clone(),
-        ..Measuring::default()
+        ..SignalOptions::default()
     }
 }
 
@@ -71,7 +71,7 @@ fn on_clean_signals_fits_are_unbiased_to_10_ns_at_1_ms_s() {
         matched(),
         Method::default(),
         local(),
-        Method::CrossCorrelation(Template::Passing),
+        Method::CrossCorrelation(Template::Incident),
     ];
     for method in methods {
         for scene in scenes(1e-6) {
@@ -110,8 +110,8 @@ fn either_polarity_and_two_channels_pick_alike() {
     let found = shot.flight.unwrap();
     // Rounding.
     assert!((found.incident_s.value - scene.incident_s()).abs() < 1e-12);
-    assert!((found.wall_over_passing.value - 1.6).abs() < 1e-9);
-    assert!((found.returning_over_passing.unwrap().value - 0.45).abs() < 1e-9);
+    assert!((found.wall_over_incident.value - 1.6).abs() < 1e-9);
+    assert!((found.reflected_over_incident.unwrap().value - 0.45).abs() < 1e-9);
     assert!((found.picks.wall.width_s - 52e-6).abs() < 1e-12);
 }
 
@@ -141,7 +141,7 @@ fn stated_errors_cover_what_they_say_at_40_db() {
         Method::default(),
         local(),
         Method::Onset { fraction: 0.5 },
-        Method::CrossCorrelation(Template::Passing),
+        Method::CrossCorrelation(Template::Incident),
         Method::CrossCorrelation(Template::Shape(bell())),
     ];
     for method in methods {
@@ -187,8 +187,8 @@ fn rounding_by_a_digitiser_is_part_of_the_stated_error() {
 }
 
 /// Doubts, and pulls of incident and of reflected times, of the default method on bells without
-/// noise, in steps of so many to the passing pulse's height.
-fn in_steps(steps: f64) -> (Vec<Doubt>, [Vec<f64>; 2]) {
+/// noise, in steps of so many to the incident pulse's height.
+fn in_steps(steps: f64) -> (Vec<QualityFlag>, [Vec<f64>; 2]) {
     let (mut doubts, mut pulls) = (Vec::new(), [const { Vec::new() }; 2]);
     for k in 0..100 {
         let part = |prime: f64| (f64::from(k) * prime).fract();
@@ -202,8 +202,8 @@ fn in_steps(steps: f64) -> (Vec<Doubt>, [Vec<f64>; 2]) {
         scene.pulses[2].0 += 1e-6 * part(0.236_068);
         let digits = |x: &f64| (x * steps).round() / steps;
         let samples: Vec<f64> = scene.summed().iter().map(digits).collect();
-        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-        doubts.extend(shot.found.doubts);
+        let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+        doubts.extend(shot.found.flags);
         let found = shot.flight.unwrap();
         let pull = |of: Estimate, truth: f64| (of.value - truth) / of.sigma;
         pulls[0].push(pull(found.incident_s, scene.incident_s()));
@@ -216,7 +216,7 @@ fn in_steps(steps: f64) -> (Vec<Doubt>, [Vec<f64>; 2]) {
 fn coarse_steps_without_noise_are_doubted_and_within_the_stated_error() {
     for steps in [12.0, 20.0, 50.0, 64.0, 200.0] {
         let (doubts, pulls) = in_steps(steps);
-        let doubted = doubts.contains(&Doubt::CoarseSteps(Place::Passing));
+        let doubted = doubts.contains(&QualityFlag::CoarseSteps(PulseKind::Incident));
         assert_eq!(doubted, steps < 32.0, "{steps}");
         for (pulls, (factor, least)) in pulls
             .iter()
@@ -239,7 +239,7 @@ fn pulls_on_a_dry_shot(noise: f64) -> [Vec<f64>; 2] {
         let lead_s = 0.5e-3 + 1e-6 * (seed as f64 * 0.618_034).fract();
         let sample = |i: i32| dry.summed(f64::from(i) * 1e-6 - lead_s) + noise * normal(&mut rng);
         let samples: Vec<f64> = (0..2600).map(sample).collect();
-        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+        let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
         let found = shot.flight.unwrap();
         let pull = |of: Estimate, truth: f64| (of.value - truth) / of.sigma;
         incident.push(pull(found.incident_s, wall - passing));
@@ -258,7 +258,7 @@ fn stated_errors_cover_what_skewness_does_at_30_and_at_60_db() {
             // Four standard deviations of chance.
             let off = (found.share - found.expected).abs();
             assert!(off < chance, "{noise}: {found:?}");
-            // What lies under the returning pulse is stated as its largest shift.
+            // What lies under the reflected pulse is stated as its largest shift.
             let found = coverage(&reflected, factor).unwrap();
             assert!(found.share > found.expected - chance, "{noise}: {found:?}");
         }
@@ -294,7 +294,7 @@ fn saturated_samples_are_left_out_of_a_fit_of_the_shape() {
     let scene = Scene::default();
     let clipped: Vec<f64> = scene.summed().iter().map(|x| x.min(1.2)).collect();
     let mut measuring = by(&matched());
-    measuring.finding.rails = Some(Rails {
+    measuring.find.range = Some(DigitiserRange {
         low: -10.0,
         high: 1.2,
     });
@@ -355,7 +355,7 @@ fn methods_out_of_range_are_refused() {
         let refused = matches!(shot.flight, Err(SignalError::Option { .. }));
         assert!(refused, "{method:?}");
     }
-    assert!(measure(Channels::Summed(&samples), 0.0, &Measuring::default()).is_err());
+    assert!(measure(Channels::Summed(&samples), 0.0, &SignalOptions::default()).is_err());
 }
 
 /// Incident and reflected error of a method on a computed, skewed shot, in s.
@@ -382,7 +382,7 @@ fn the_local_model_times_maxima_of_skewed_pulses_to_60_ns() {
     for k in 0..10 {
         let off = off_on_a_dry_shot(&local(), 0.5e-3 + 0.1e-6 * f64::from(k));
         // What degree 6 leaves of the skewness, and what trails the wall's pulse
-        // under the returning one.
+        // under the reflected one.
         assert!(off.iter().all(|off| off.abs() < 60e-9), "{off:?}");
     }
 }
@@ -413,7 +413,7 @@ fn on_clean_skewed_pulses_in_two_channels_the_default_times_both_maxima_to_10_ns
             sensor: &sensor,
             wall: &wall,
         };
-        let shot = measure(channels, 1e-6, &Measuring::default()).unwrap();
+        let shot = measure(channels, 1e-6, &SignalOptions::default()).unwrap();
         let off = off(&shot.flight.unwrap());
         assert!(off.iter().all(|off| off.abs() < 10e-9), "{off:?}");
     }
@@ -421,7 +421,7 @@ fn on_clean_skewed_pulses_in_two_channels_the_default_times_both_maxima_to_10_ns
 
 #[test]
 fn fits_of_symmetric_shapes_are_biased_on_skewed_pulses() {
-    let methods = [matched(), Method::CrossCorrelation(Template::Passing)];
+    let methods = [matched(), Method::CrossCorrelation(Template::Incident)];
     for method in methods {
         let [incident, _] = off_on_a_dry_shot(&method, 0.5e-3);
         // As docs/measuring.md says: a two-hundredth of a width.

@@ -80,11 +80,8 @@ fn two_points_lie_on_their_law() {
 
 #[test]
 fn what_cannot_be_fitted_is_refused() {
-    let lengths = FitError::Lengths {
-        abscissas: 2,
-        values: 1,
-    };
-    assert_eq!(power_law(&[1.0, 2.0], &[1.0], None), Err(lengths));
+    let lengths = power_law(&[1.0, 2.0], &[1.0], None).unwrap_err();
+    assert!(lengths.to_string().starts_with("2 abscissas and 1 values"));
     assert_eq!(
         power_law(&[1.0, 1.0], &[1.0, 2.0], None),
         Err(FitError::TooFew)

@@ -1,7 +1,7 @@
 //! Small pulses before the first one are no noise.
 
 use crate::common::{Scene, channels};
-use hertzchain_measure::signal::{Measuring, measure};
+use hertzchain_measure::signal::{SignalOptions, measure};
 
 /// Stated error of the incident time, with so much of each channel in the other one.
 fn stated(crosstalk: f64) -> f64 {
@@ -15,7 +15,7 @@ fn stated(crosstalk: f64) -> f64 {
         pairs.map(|(own, other)| own + crosstalk * other).collect()
     };
     let pair = (mixed(&sensor, &wall), mixed(&wall, &sensor));
-    let shot = measure(channels(&pair), 1e-6, &Measuring::default()).unwrap();
+    let shot = measure(channels(&pair), 1e-6, &SignalOptions::default()).unwrap();
     shot.flight.unwrap().incident_s.sigma
 }
 

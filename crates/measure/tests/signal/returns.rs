@@ -1,7 +1,7 @@
 //! A return is a pulse that stands out of the noise on what falls beneath it.
 
 use crate::common::{Scene, normal};
-use hertzchain_measure::signal::{Channels, Doubt, Measuring, Place, measure};
+use hertzchain_measure::signal::{Channels, PulseKind, QualityFlag, SignalOptions, measure};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -24,8 +24,8 @@ fn shot(noise: f64, back: f64, seed: u64) -> Vec<f64> {
 fn found(noise: f64, back: f64, shots: u64) -> usize {
     let has = |seed: &u64| {
         let samples = shot(noise, back, *seed);
-        let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-        shot.found.returning.is_some()
+        let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+        shot.found.reflected.is_some()
     };
     (0..shots).filter(has).count()
 }
@@ -49,12 +49,11 @@ fn low_returns_on_a_smooth_decay_are_found() {
 #[test]
 fn a_missing_return_is_reported() {
     let samples = shot(1e-3, 0.0, 1);
-    let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-    let missing = [Doubt::Missing(Place::Returning), Doubt::Lost];
-    assert!(
-        missing
-            .iter()
-            .any(|doubt| shot.found.doubts.contains(doubt))
-    );
+    let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+    let missing = [
+        QualityFlag::Missing(PulseKind::Reflected),
+        QualityFlag::Unidentified,
+    ];
+    assert!(missing.iter().any(|doubt| shot.found.flags.contains(doubt)));
     assert!(shot.flight.unwrap().reflected_s.is_none());
 }

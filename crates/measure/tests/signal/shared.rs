@@ -4,14 +4,15 @@
 use crate::common::{Scene, normal};
 use crate::dry::Dry;
 use hertzchain_measure::signal::{
-    Channels, Doubt, Estimate, Flight, Measuring, Moved, Place, alone, measure, shared,
+    Channels, Estimate, Flight, PulseKind, QualityFlag, SignalOptions, Systematic, mean_systematic,
+    measure, without_systematic,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-fn under(under_s: f64) -> Moved {
-    Moved {
-        under_s,
+fn under(superposition_s: f64) -> Systematic {
+    Systematic {
+        superposition_s,
         shape_s: 0.0,
     }
 }
@@ -19,21 +20,24 @@ fn under(under_s: f64) -> Moved {
 #[test]
 fn what_moves_all_shots_alike_stays_in_a_mean_and_noise_does_not() {
     let pair = |a, b| [under(a), under(b)];
-    assert_eq!(shared(&[pair(3.0, 4.0), pair(3.0, 4.0)]), 5.0);
-    assert_eq!(shared(&[pair(1.0, 2.0), pair(-1.0, 2.0)]), 2.0);
-    assert_eq!(shared(&[]), 0.0);
-    assert_eq!(alone(5.0, pair(3.0, 0.0)), 4.0);
-    assert_eq!(alone(1.0, pair(3.0, 0.0)), 0.0);
-    let open = Moved {
-        under_s: -3.0,
+    assert_eq!(mean_systematic(&[pair(3.0, 4.0), pair(3.0, 4.0)]), 5.0);
+    assert_eq!(mean_systematic(&[pair(1.0, 2.0), pair(-1.0, 2.0)]), 2.0);
+    assert_eq!(mean_systematic(&[]), 0.0);
+    assert_eq!(without_systematic(5.0, pair(3.0, 0.0)), 4.0);
+    assert_eq!(without_systematic(1.0, pair(3.0, 0.0)), 0.0);
+    let open = Systematic {
+        superposition_s: -3.0,
         shape_s: 4.0,
     };
-    assert_eq!(shared(&[[open, under(0.0)], [open, under(0.0)]]), 5.0);
-    assert_eq!(alone(13.0, [open, under(0.0)]), 12.0);
+    assert_eq!(
+        mean_systematic(&[[open, under(0.0)], [open, under(0.0)]]),
+        5.0
+    );
+    assert_eq!(without_systematic(13.0, [open, under(0.0)]), 12.0);
 }
 
 fn of(samples: &[f64]) -> Flight {
-    let shot = measure(Channels::Summed(samples), 1e-6, &Measuring::default());
+    let shot = measure(Channels::Summed(samples), 1e-6, &SignalOptions::default());
     shot.unwrap().flight.unwrap()
 }
 
@@ -46,14 +50,14 @@ fn with(added: impl Fn(f64) -> f64) -> Flight {
     of(&samples)
 }
 
-/// Times of the wall's and of the returning pulse of that scene in s.
+/// Times of the wall's and of the reflected pulse of that scene in s.
 const WALL_S: f64 = 1.500_457e-3;
 const BACK_S: f64 = 2.280_789e-3;
 
 /// How far in s the return was moved, and how far it may have been.
 fn moved(flight: &Flight) -> (f64, f64) {
-    let back = flight.picks.returning.unwrap();
-    (back.time_s - BACK_S, back.moved.under_s)
+    let back = flight.picks.reflected.unwrap();
+    (back.time_s - BACK_S, back.systematic.superposition_s)
 }
 
 #[test]
@@ -90,7 +94,7 @@ fn a_wall_that_has_let_go_moves_nothing_and_nothing_is_stated() {
 }
 
 /// Errors of the incident time of noisy dry shots: all alike, their places between samples not.
-fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Moved; 2]>) {
+fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Systematic; 2]>) {
     let dry = Dry::load();
     let truth_s = Dry::MAXIMA_S[1] - Dry::MAXIMA_S[0];
     let shot = |seed: u64| {
@@ -103,7 +107,7 @@ fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Moved; 2]>) {
             value: flight.incident_s.value - truth_s,
             ..flight.incident_s
         };
-        (error, flight.moved()[0])
+        (error, flight.systematic()[0])
     };
     (0..shots).map(shot).unzip()
 }
@@ -114,9 +118,9 @@ fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows()
     let count = errors.len() as f64;
     let mean = errors.iter().map(|error| error.value).sum::<f64>() / count;
     let squares = errors.iter().zip(&moved);
-    let squares = squares.map(|(error, moved)| alone(error.sigma, *moved).powi(2));
+    let squares = squares.map(|(error, moved)| without_systematic(error.sigma, *moved).powi(2));
     let alone_s = squares.sum::<f64>().sqrt() / count;
-    let shared_s = shared(&moved);
+    let shared_s = mean_systematic(&moved);
     assert!(
         mean.abs() < 1.96 * alone_s.hypot(shared_s),
         "{mean:e} {shared_s:e}"
@@ -137,8 +141,11 @@ fn beneath_a_fall(ratio: f64) -> (f64, bool) {
     for (i, volt) in samples.iter_mut().enumerate() {
         *volt -= 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
     }
-    let shot = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-    let told = shot.found.doubts.contains(&Doubt::Trailing(Place::Wall));
+    let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+    let told = shot
+        .found
+        .flags
+        .contains(&QualityFlag::Asymmetric(PulseKind::Wall));
     (shot.flight.unwrap().incident_s.sigma, told)
 }
 

@@ -3,7 +3,7 @@
 use crate::common::normal;
 use crate::dry::Dry;
 use hertzchain_measure::signal::{
-    Channels, Doubt, Measured, Measuring, Shape, measure, without_spikes,
+    Channels, Measured, QualityFlag, Shape, SignalOptions, measure, without_spikes,
 };
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -134,20 +134,20 @@ fn times_of_shots_with_spikes_are_as_right_as_stated_and_the_spikes_are_counted(
             let (samples, _) = spiked(3e-3, height, seed);
             let channels = Channels::Summed(&samples);
             let Measured { found, flight } =
-                measure(channels, 1e-6, &Measuring::default()).unwrap();
+                measure(channels, 1e-6, &SignalOptions::default()).unwrap();
             let incident = flight.unwrap().incident_s;
             let pull = (incident.value - exact) / incident.sigma;
             assert!(pull.abs() < 4.5, "height {height}, seed {seed}: {pull}");
             squares += pull * pull;
             count += 1.0;
             let spikes = found
-                .doubts
+                .flags
                 .iter()
-                .any(|doubt| matches!(doubt, Doubt::Spikes(2..=4)));
+                .any(|doubt| matches!(doubt, QualityFlag::Spikes(2..=4)));
             assert!(
                 spikes || height < 0.04,
                 "height {height}, seed {seed}: {:?}",
-                found.doubts
+                found.flags
             );
         }
     }

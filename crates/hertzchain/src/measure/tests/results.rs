@@ -1,13 +1,13 @@
 use super::*;
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{Moved, Picks};
+use hertzchain_measure::signal::{Picks, Systematic};
 use std::path::PathBuf;
 
 fn measured(shots: usize) -> Measurement {
     let picked = Picked {
         time_s: 1e-3,
         sigma_s: 1e-9,
-        moved: Moved::default(),
+        systematic: Systematic::default(),
         height: 1.0,
         height_sigma: 1e-3,
         width_s: 46e-6,
@@ -15,10 +15,10 @@ fn measured(shots: usize) -> Measurement {
     };
     let at = |time_s| Picked { time_s, ..picked };
     let picks = Picks {
-        passing: picked,
+        incident: picked,
         wall: at(1.7e-3),
-        returning: Some(at(2.5e-3)),
-        rivals: [None; 3],
+        reflected: Some(at(2.5e-3)),
+        competing: [None; 3],
     };
     let shot = Shot {
         source: "long.npy, shot 12345 at 123.4567 s".to_owned(),

@@ -1,99 +1,94 @@
-//! What a finder found, and what it doubts.
+//! The pulses of a record, and quality flags about them.
 
 use std::fmt;
 
-use crate::signal::{Estimate, Level};
-
-/// Steps of the digitiser below which a pulse without noise is coarse.
-const COARSE: f64 = 32.0;
+use crate::signal::{Baseline, Estimate};
 
 /// One of the three pulses of a shot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Place {
-    /// At the sensor bead, on the way in.
-    Passing,
+pub enum PulseKind {
+    /// At the sensor bead, on the way to the wall.
+    Incident,
     /// At the wall.
     Wall,
     /// At the sensor bead, on the way back.
-    Returning,
+    Reflected,
 }
 
-impl fmt::Display for Place {
+impl PulseKind {
+    pub(crate) const ALL: [Self; 3] = [Self::Incident, Self::Wall, Self::Reflected];
+}
+
+impl fmt::Display for PulseKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Passing => "passing",
-            Self::Wall => "wall",
-            Self::Returning => "returning",
-        })
+        f.write_str(["incident", "wall", "reflected"][*self as usize])
     }
 }
 
-/// What is doubtful about a record or its pulses.
+/// A quality flag of a record or a pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
-pub enum Doubt {
-    /// A pulse stands on an end of the digitiser's range.
-    Saturation(Place),
+pub enum QualityFlag {
+    /// A pulse is clipped by the digitiser's range or an amplifier.
+    Saturation(PulseKind),
     /// A pulse was not found.
-    Missing(Place),
-    /// Another maximum of at least a quarter of its height stands near a pulse.
-    Split(Place),
+    Missing(PulseKind),
+    /// Another maximum of at least a quarter of its height is near a pulse.
+    Split(PulseKind),
     /// Noise leaves open which of a pulse's maxima is the largest.
-    Alike(Place),
+    AmbiguousMaximum(PulseKind),
     /// A pulse in a summed channel falls much more slowly than it rises.
-    Trailing(Place),
+    Asymmetric(PulseKind),
     /// Between two pulses the signal does not fall to a tenth of the lower one.
-    Overlap(Place, Place),
+    Overlap(PulseKind, PulseKind),
     /// A pulse is less than ten times as high as the noise.
-    LowSignal(Place),
-    /// The record begins or ends within a pulse, or before the returning pulse was due.
+    LowSignal(PulseKind),
+    /// The record begins or ends within a pulse, or before the reflected pulse was due.
     RecordTooShort,
     /// Pulses may have been taken for one another.
     Order,
-    /// One of the three pulses is lost, and it is not plain which: of those found the first may
-    /// be the passing or the wall's.
-    Lost,
-    /// A pulse was found, but the method could not tell its time.
-    NotPicked(Place),
-    /// A pulse is few steps of the digitiser high, and no noise shakes them.
-    CoarseSteps(Place),
+    /// One of the three pulses is missing, and the first found may be the incident or the wall's.
+    Unidentified,
+    /// A pulse was found, but the method found no time for it.
+    NotPicked(PulseKind),
+    /// A pulse is few steps of the digitiser high, without noise to dither them.
+    CoarseSteps(PulseKind),
     /// Fewer than five samples lie across a pulse's half maximum.
-    FewSamples(Place),
-    /// So many samples of spikes were replaced by what their neighbours say.
+    FewSamples(PulseKind),
+    /// Number of samples of spikes that were replaced by interpolation.
     Spikes(usize),
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
 
-impl Doubt {
-    /// Whether times may be of something else than the wave: of a clipped or hardly
-    /// sampled pulse, or of pulses taken for one another. Which of maxima alike is the largest the
-    /// shots of a speed tell together.
+impl QualityFlag {
+    /// Whether times may be of something else than the wave: of a clipped or hardly sampled pulse,
+    /// or of pulses taken for one another.
     #[must_use]
     pub fn is_grave(&self) -> bool {
         matches!(
             self,
-            Self::Saturation(_) | Self::Order | Self::Lost | Self::FewSamples(_)
+            Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_)
         )
     }
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for QualityFlag {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Saturation(place) => write!(f, "{place} pulse saturated"),
-            Self::Missing(place) => write!(f, "{place} pulse missing"),
-            Self::Split(place) => write!(f, "{place} pulse split"),
-            Self::Alike(place) => write!(f, "{place} pulse of maxima alike but for noise"),
-            Self::Trailing(place) => write!(f, "{place} pulse trails"),
+            Self::Saturation(kind) => write!(f, "{kind} pulse saturated"),
+            Self::Missing(kind) => write!(f, "{kind} pulse missing"),
+            Self::Split(kind) => write!(f, "{kind} pulse split"),
+            Self::AmbiguousMaximum(kind) => write!(f, "{kind} pulse with ambiguous maximum"),
+            Self::Asymmetric(kind) => write!(f, "{kind} pulse asymmetric"),
             Self::Overlap(one, other) => write!(f, "{one} and {other} pulse overlap"),
-            Self::LowSignal(place) => write!(f, "{place} pulse low"),
+            Self::LowSignal(kind) => write!(f, "{kind} pulse low"),
             Self::RecordTooShort => f.write_str("record too short"),
             Self::Order => f.write_str("order of pulses doubtful"),
-            Self::Lost => f.write_str("one pulse missing, perhaps the passing one"),
-            Self::NotPicked(place) => write!(f, "{place} pulse not picked"),
-            Self::CoarseSteps(place) => write!(f, "{place} pulse in coarse steps"),
-            Self::FewSamples(place) => write!(f, "{place} pulse of few samples"),
+            Self::Unidentified => f.write_str("one pulse missing, perhaps the incident one"),
+            Self::NotPicked(kind) => write!(f, "{kind} pulse not picked"),
+            Self::CoarseSteps(kind) => write!(f, "{kind} pulse in coarse steps"),
+            Self::FewSamples(kind) => write!(f, "{kind} pulse of few samples"),
             Self::Spikes(1) => f.write_str("1 sample of a spike replaced"),
             Self::Spikes(samples) => write!(f, "{samples} samples of spikes replaced"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
@@ -101,32 +96,32 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// A channel's offset, noise and direction: what turns its samples upright.
+/// Polarity, baseline and resolution of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Upright {
+pub struct Normalisation {
     /// 1 when pulses point up, −1 when down.
     pub sign: f64,
     /// Offset and noise.
-    pub level: Level,
+    pub baseline: Baseline,
     /// The digitiser's step: the least difference of neighbouring samples of pulses as recorded.
     pub step: f64,
 }
 
-impl Upright {
+impl Normalisation {
     /// A sample as height above the baseline, pulses up.
     #[must_use]
     pub fn height(&self, sample: f64) -> f64 {
-        self.sign * (sample - self.level.offset)
+        self.sign * (sample - self.baseline.offset)
     }
 
-    /// Whether a height is few steps of the digitiser. Noise of half a step shakes
+    /// Whether a height is less than 32 steps of the digitiser. Noise of half a step spreads
     /// samples over steps, and then rounding is noise too.
     pub(crate) fn is_coarse(&self, height: f64) -> bool {
-        height < COARSE * self.step && self.level.noise < 0.5 * self.step
+        height < 32.0 * self.step && self.baseline.noise < 0.5 * self.step
     }
 
-    /// Standard deviation of rounding to the digitiser's steps in a pulse so high;
-    /// all of half a step in coarse ones, where neighbours are rounded alike.
+    /// Standard deviation of rounding to the digitiser's steps in a pulse of this height;
+    /// all of half a step in coarse ones, where neighbours are rounded the same way.
     pub(crate) fn rounding(&self, height: f64) -> f64 {
         match self.is_coarse(height) {
             true => 0.5 * self.step,
@@ -135,11 +130,11 @@ impl Upright {
     }
 }
 
-/// A pulse, roughly: good enough to know where to pick.
+/// A pulse located to about a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pulse {
-    /// Which.
-    pub place: Place,
+    /// Which of the three.
+    pub kind: PulseKind,
     /// Sample of its largest maximum, from 0.
     pub at: usize,
     /// Height of that above the baseline, in the samples' unit.
@@ -150,28 +145,25 @@ pub struct Pulse {
     pub sides_samples: (f64, f64),
     /// First and last sample above a tenth of the height.
     pub extent: (usize, usize),
-    /// First and last sample of its top that stand on an end of the digitiser's range: what
-    /// lies between is not known.
+    /// First and last sample of a clipped top.
     pub clipped: Option<(usize, usize)>,
 }
 
-/// From so many times as slow a fall as rise on, at half the height, a pulse trails: those of
-/// dry chains have 0.9 to 1.2.
-const TRAILS: f64 = 2.0;
-/// From so many times on it begins to.
-const BEGINS: f64 = 1.2;
+/// Fall over rise, at half the height, from which on a pulse is asymmetric, and from which on it
+/// begins to be: those of dry chains have 0.9 to 1.2.
+const ASYMMETRIC: f64 = 2.0;
+const SYMMETRIC: f64 = 1.2;
 
 impl Pulse {
     /// Whether it falls so much more slowly than it rises that its top is flat.
-    #[must_use]
-    pub fn trails(&self) -> bool {
-        self.sides_samples.1 > TRAILS * self.sides_samples.0
+    pub(crate) fn is_asymmetric(&self) -> bool {
+        self.sides_samples.1 > ASYMMETRIC * self.sides_samples.0
     }
 
-    /// How near it comes to that: 0 for a fall like those of dry chains, 1 for one that trails.
-    pub(crate) fn trailing(&self) -> f64 {
+    /// Degree of asymmetry: 0 for a fall like those of dry chains, 1 for an asymmetric pulse.
+    pub(crate) fn asymmetry(&self) -> f64 {
         let (rise, fall) = self.sides_samples;
-        ((fall / rise - BEGINS) / (TRAILS - BEGINS)).clamp(0.0, 1.0)
+        ((fall / rise - SYMMETRIC) / (ASYMMETRIC - SYMMETRIC)).clamp(0.0, 1.0)
     }
 
     /// The same with so many samples on either side of a clipped top counted as clipped, too.
@@ -186,84 +178,69 @@ impl Pulse {
 
     /// Whether a sample is clipped, or next to one that is: recorders round the corner.
     pub(crate) fn is_clipped(&self, sample: usize) -> bool {
-        self.clipped
-            .is_some_and(|(first, last)| sample + 1 >= first && sample <= last + 1)
+        let beside = |(first, last)| sample + 1 >= first && sample <= last + 1;
+        self.clipped.is_some_and(beside)
     }
 
-    /// Twice the shorter side: the width of a bell as steep as the steeper flank.
-    /// What a pulse trails behind does not widen it.
-    #[must_use]
-    pub fn steep_width_samples(&self) -> f64 {
+    /// Twice the shorter side: the width of a symmetric pulse with the steeper flank.
+    pub(crate) fn steep_width_samples(&self) -> f64 {
         2.0 * self.sides_samples.0.min(self.sides_samples.1)
     }
 }
 
-/// Another maximum of a pulse, the highest but the largest: noise may have made it the lower.
+/// The second highest maximum of a pulse, which noise may have made lower than the highest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rival {
-    /// The maximum, with the pulse about it; its place is that of the pulse.
+pub struct CompetingMaximum {
+    /// The maximum, with the pulse about it.
     pub pulse: Pulse,
-    /// How much lower it is than the largest, in the samples' unit, by fits to the samples about both.
+    /// How much lower it is than the largest, in the samples' unit, by fits about both.
     pub lower: Estimate,
 }
 
 /// The pulses of a shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// At the sensor bead, on the way in.
-    pub passing: Option<Pulse>,
+    /// At the sensor bead, on the way to the wall.
+    pub incident: Option<Pulse>,
     /// At the wall.
     pub wall: Option<Pulse>,
     /// At the sensor bead, on the way back.
-    pub returning: Option<Pulse>,
+    pub reflected: Option<Pulse>,
     /// Other maxima of these that are nearly as high, at most one a pulse.
-    pub rivals: Vec<Rival>,
-    /// What is doubtful; empty for a clean record. In order, none twice.
-    pub doubts: Vec<Doubt>,
+    pub competing: Vec<CompetingMaximum>,
+    /// Quality flags, in order, none twice; empty for a clean record.
+    pub flags: Vec<QualityFlag>,
     /// The sensor's, or the summed, channel.
-    pub sensor: Upright,
+    pub sensor: Normalisation,
     /// The wall's channel; the same as the sensor's if both are summed.
-    pub wall_channel: Upright,
+    pub wall_channel: Normalisation,
 }
 
 impl Found {
     /// The pulses found, in order.
     pub fn pulses(&self) -> impl Iterator<Item = &Pulse> {
-        [&self.passing, &self.wall, &self.returning]
-            .into_iter()
-            .flatten()
+        let all = [&self.incident, &self.wall, &self.reflected];
+        all.into_iter().flatten()
     }
 
-    /// Counts so many samples on either side of clipped tops as clipped: a filter has
-    /// spread them.
-    pub(crate) fn spread_clipped(&mut self, samples: usize) {
-        let pulses = [&mut self.passing, &mut self.wall, &mut self.returning];
-        for pulse in pulses.into_iter().flatten() {
-            *pulse = pulse.with_clipped_spread(samples);
-        }
+    pub(crate) fn pulses_mut(&mut self) -> impl Iterator<Item = &mut Pulse> {
+        let all = [&mut self.incident, &mut self.wall, &mut self.reflected];
+        all.into_iter().flatten()
     }
 
-    pub(super) fn slot(&mut self, place: Place) -> &mut Option<Pulse> {
-        match place {
-            Place::Passing => &mut self.passing,
-            Place::Wall => &mut self.wall,
-            Place::Returning => &mut self.returning,
-        }
+    /// Adds quality flags, kept in order and none twice.
+    pub(crate) fn flag(&mut self, more: impl IntoIterator<Item = QualityFlag>) {
+        self.flags.extend(more);
+        self.flags.sort_unstable();
+        self.flags.dedup();
     }
 
-    /// Adds doubts, kept in order and none twice.
-    pub(crate) fn doubt(&mut self, more: Vec<Doubt>) {
-        self.doubts.extend(more);
-        self.doubts.sort_unstable();
-        self.doubts.dedup();
-    }
-
-    /// What turns the channel of this pulse upright.
+    /// Normalisation of the channel that holds this pulse.
     #[must_use]
-    pub fn upright(&self, place: Place) -> &Upright {
-        match place {
-            Place::Wall => &self.wall_channel,
-            Place::Passing | Place::Returning => &self.sensor,
+    pub fn normalisation(&self, kind: PulseKind) -> &Normalisation {
+        match kind {
+            PulseKind::Wall => &self.wall_channel,
+            PulseKind::Incident | PulseKind::Reflected => &self.sensor,
         }
     }
 }

@@ -10,7 +10,7 @@ pub struct Dry {
 const STEP_S: f64 = 1.9e-3 / 3000.0;
 
 impl Dry {
-    /// Maxima of the passing, the wall's and the returning pulse in s.
+    /// Maxima of the passing, the wall's and the reflected pulse in s.
     pub const MAXIMA_S: [f64; 3] = [
         0.000_163_206_845_155_876_9,
         0.000_925_110_869_017_615,
@@ -30,7 +30,7 @@ impl Dry {
         Self { sensor, wall }
     }
 
-    /// Both forces, as shares of the passing pulse's maximum, summed, at a time after the impact.
+    /// Both forces, as shares of the incident pulse's maximum, summed, at a time after the impact.
     pub fn summed(&self, time_s: f64) -> f64 {
         self.separate(time_s).iter().sum()
     }

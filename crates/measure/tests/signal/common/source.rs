@@ -6,14 +6,14 @@ use hertzchain_measure::signal::{Method, Shape, Template};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-/// From the record's start to the passing pulse's maximum.
+/// From the record's start to the incident pulse's maximum.
 const LEAD_S: f64 = 0.5e-3;
 const DURATION_S: f64 = 2.6e-3;
 
-/// A shot without noise, and when its maxima are after the passing one.
+/// A shot without noise, and when its maxima are after the incident one.
 pub struct Source {
     pub name: &'static str,
-    /// Signal at a time after the passing maximum, that maximum being 1 high.
+    /// Signal at a time after the incident maximum, that maximum being 1 high.
     pub signal: Box<dyn Fn(f64) -> f64>,
     pub times_s: [f64; 3],
 }
@@ -52,7 +52,7 @@ pub fn methods() -> [(&'static str, Method); 4] {
     [
         ("local", Method::default()),
         ("onset", Method::Onset { fraction: 0.5 }),
-        ("correlation", Method::CrossCorrelation(Template::Passing)),
+        ("correlation", Method::CrossCorrelation(Template::Incident)),
         (
             "shape",
             Method::MatchedShape {

@@ -23,10 +23,10 @@ fn signal(example: &Example) -> Option<Chart> {
     let flight = shot.flight.as_ref().ok()?;
     let picks = &flight.picks;
     let last = picks
-        .returning
+        .reflected
         .map_or(picks.wall.time_s, |back| back.time_s);
     let margin_s = MARGIN * flight.incident_s.value;
-    let (from, to) = (picks.passing.time_s - margin_s, last + margin_s);
+    let (from, to) = (picks.incident.time_s - margin_s, last + margin_s);
     let at = |time_s: f64| (time_s / shot.interval_s).max(0.0) as usize;
     let (first, end) = (at(from), at(to));
     let time_us = |index: usize| 1e6 * index as f64 * shot.interval_s;
@@ -38,9 +38,9 @@ fn signal(example: &Example) -> Option<Chart> {
         chart = chart.with(Series::line(name, &times, shown).dash(Dash::Solid));
     }
     chart = chart
-        .v_line(1e6 * picks.passing.time_s, "passing")
+        .v_line(1e6 * picks.incident.time_s, "passing")
         .v_line(1e6 * picks.wall.time_s, "wall");
-    Some(match picks.returning {
+    Some(match picks.reflected {
         Some(back) => chart.v_line(1e6 * back.time_s, "returning"),
         None => chart,
     })

@@ -160,8 +160,8 @@ fn curve(case: &Case) -> String {
             deviation(Some(row.incident_s)),
             mean(row.reflected_s, row.shared_s[1]),
             deviation(row.reflected_s),
-            share(Some(row.wall_over_passing)),
-            share(row.returning_over_passing),
+            share(Some(row.wall_over_incident)),
+            share(row.reflected_over_incident),
         ]
     });
     let rows: Vec<Vec<String>> = rows.collect();

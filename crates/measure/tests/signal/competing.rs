@@ -1,20 +1,22 @@
 //! A split return of which noise leaves open which fragment is the largest.
 
 use crate::common::Scene;
-use hertzchain_measure::signal::{Channels, Doubt, Flight, Measuring, Place, measure};
+use hertzchain_measure::signal::{
+    Channels, Flight, PulseKind, QualityFlag, SignalOptions, measure,
+};
 
 /// Time of the later fragment in s, and how long before it the other comes.
 const LATER_S: f64 = 2.280_789e-3;
 const APART_S: f64 = 66e-6;
 const WALL_S: f64 = 1.500_457e-3;
-/// Height of the largest fragment, the passing pulse having 1.
+/// Height of the largest fragment, the incident pulse having 1.
 const LARGEST: f64 = 0.1;
 const WIDTH_S: f64 = 40e-6;
 /// A return of 24 dB; the first look leaves it as it is, since the wall's pulse is clear.
 const NOISE: f64 = 0.006;
 
 /// A shot of which the earlier fragment is lower by this much.
-fn shot(lower: f64, seed: u64) -> (Flight, Vec<Doubt>) {
+fn shot(lower: f64, seed: u64) -> (Flight, Vec<QualityFlag>) {
     let scene = |heights: [f64; 3], back_s: f64, noise: f64| Scene {
         pulses: [
             (0.800_123e-3, heights[0], 60e-6),
@@ -28,8 +30,8 @@ fn shot(lower: f64, seed: u64) -> (Flight, Vec<Doubt>) {
     let whole = scene([1.0, 1.6, LARGEST], LATER_S, NOISE).summed();
     let earlier = scene([0.0, 0.0, LARGEST - lower], LATER_S - APART_S, 0.0).summed();
     let samples: Vec<f64> = whole.iter().zip(earlier).map(|(a, b)| a + b).collect();
-    let measured = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
-    (measured.flight.unwrap(), measured.found.doubts)
+    let measured = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+    (measured.flight.unwrap(), measured.found.flags)
 }
 
 const SEEDS: u64 = 300;
@@ -61,7 +63,7 @@ fn a_return_of_fragments_alike_says_so_and_states_how_far_it_may_be_off() {
         if error_s.abs() > 0.5 * APART_S {
             wrong += 1;
             assert!(
-                doubts.contains(&Doubt::Alike(Place::Returning)),
+                doubts.contains(&QualityFlag::AmbiguousMaximum(PulseKind::Reflected)),
                 "{seed}: {doubts:?}"
             );
         }
@@ -80,7 +82,7 @@ fn fragments_apart_are_no_rivals() {
         for seed in 0..20 {
             let (flight, doubts) = shot(lower, seed);
             assert!(
-                !doubts.contains(&Doubt::Alike(Place::Returning)),
+                !doubts.contains(&QualityFlag::AmbiguousMaximum(PulseKind::Reflected)),
                 "{doubts:?}"
             );
             assert!(flight.reflected_s.unwrap().sigma < 4e-6, "{flight:?}");
@@ -93,18 +95,18 @@ fn fragments_apart_are_no_rivals() {
 fn a_rival_told_to_be_the_higher_is_the_return() {
     let flight = (0..SEEDS)
         .map(|seed| shot(0.002, seed).0.with_interval_error(1e-5))
-        .find(|flight| flight.picks.rivals[2].is_some())
+        .find(|flight| flight.picks.competing[2].is_some())
         .unwrap();
-    let rival = flight.picks.rivals[2].unwrap();
+    let rival = flight.picks.competing[2].unwrap();
     let mut lower = rival.lower;
     lower.value = -30.0 * lower.sigma;
-    let other = flight.with_rival_lower(Place::Returning, lower);
+    let other = flight.with_height_difference(PulseKind::Reflected, lower);
     let moved_s = other.reflected_s.unwrap().value - flight.reflected_s.unwrap().value;
     assert!((moved_s.abs() - APART_S).abs() < 0.1 * APART_S, "{moved_s}");
     assert_eq!(other.incident_s, flight.incident_s);
     // By all evidence there is no doubt any more.
     assert!(other.reflected_s.unwrap().sigma < flight.reflected_s.unwrap().sigma);
-    let back = other.with_rival_lower(Place::Returning, lower);
+    let back = other.with_height_difference(PulseKind::Reflected, lower);
     assert_eq!(
         back.reflected_s.unwrap().value,
         flight.reflected_s.unwrap().value
@@ -134,11 +136,15 @@ fn maxima_on_one_top_are_no_fragments_of_it() {
             .map(|pair| 2.0 * pair[1] - pair[0])
             .collect();
         for samples in [steps, blue] {
-            let shot = measure(Channels::Summed(&samples), 1e-7, &Measuring::default()).unwrap();
-            let doubts = shot.found.doubts;
-            let alike = doubts
-                .iter()
-                .any(|d| matches!(d, Doubt::Alike(_) | Doubt::Saturation(_)));
+            let shot =
+                measure(Channels::Summed(&samples), 1e-7, &SignalOptions::default()).unwrap();
+            let doubts = shot.found.flags;
+            let alike = doubts.iter().any(|d| {
+                matches!(
+                    d,
+                    QualityFlag::AmbiguousMaximum(_) | QualityFlag::Saturation(_)
+                )
+            });
             assert!(!alike, "{seed}: {doubts:?}");
         }
     }

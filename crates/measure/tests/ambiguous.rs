@@ -1,7 +1,7 @@
 //! Shots of one speed tell together which fragment of their returns is the largest.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use hertzchain_measure::signal::{Channels, Flight, Measuring, Shape, measure};
+use hertzchain_measure::signal::{Channels, Flight, Shape, SignalOptions, measure};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -32,7 +32,7 @@ fn shot(later_higher: f64, seed: u64) -> Flight {
         clean.sum::<f64>() + NOISE * normal(&mut rng)
     };
     let samples: Vec<f64> = (0..4000).map(sample).collect();
-    let measured = measure(Channels::Summed(&samples), 1e-6, &Measuring::default()).unwrap();
+    let measured = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
     measured.flight.unwrap()
 }
 
@@ -43,8 +43,8 @@ fn twenty(later_higher: f64, first: u64) -> Vec<Flight> {
 }
 
 /// As they enter the mean; no shot is left out for its passing or wall's pulse.
-fn settled(flights: &[Flight]) -> Vec<Flight> {
-    let all = hertzchain_measure::settled(&flights.iter().collect::<Vec<_>>());
+fn resolve_ambiguous(flights: &[Flight]) -> Vec<Flight> {
+    let all = hertzchain_measure::resolve_ambiguous(&flights.iter().collect::<Vec<_>>());
     all.into_iter().map(Option::unwrap).collect()
 }
 
@@ -64,7 +64,7 @@ fn one_fragment_is_chosen_for_all_shots_of_a_speed() {
                 .iter()
                 .filter(|flight| is_later(flight) != later)
                 .count();
-            let all = settled(&own);
+            let all = resolve_ambiguous(&own);
             for flight in &all {
                 assert!(is_later(flight) == later, "{flight:?}");
                 // No error of a wrong choice is left.
@@ -83,11 +83,11 @@ fn returns_of_equal_fragments_have_no_time() {
     for first in [100, 120, 140] {
         let own = twenty(0.0, first);
         assert!(own.iter().all(|flight| flight.reflected_s.is_some()));
-        let all = settled(&own);
+        let all = resolve_ambiguous(&own);
         let timed = all.iter().filter(|flight| flight.reflected_s.is_some());
         assert!(timed.count() <= 2);
-        for (own, settled) in own.iter().zip(&all) {
-            assert_eq!(own.incident_s, settled.incident_s);
+        for (own, resolved) in own.iter().zip(&all) {
+            assert_eq!(own.incident_s, resolved.incident_s);
         }
     }
 }
@@ -98,7 +98,7 @@ fn shots_that_differ_keep_their_own_fragments() {
     let own: Vec<Flight> = (0..20)
         .map(|seed| shot(if seed % 2 == 0 { 0.02 } else { -0.02 }, 200 + seed))
         .collect();
-    let all = settled(&own);
+    let all = resolve_ambiguous(&own);
     for (seed, flight) in all.iter().enumerate() {
         if flight.reflected_s.is_some() {
             assert_eq!(is_later(flight), seed % 2 == 0, "{seed}");

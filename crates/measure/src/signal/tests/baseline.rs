@@ -1,4 +1,5 @@
 use super::*;
+use crate::signal::statistics::median;
 
 #[test]
 fn a_median_ignores_what_lies_far_out() {
@@ -14,7 +15,7 @@ fn a_spike_moves_neither_offset_nor_noise() {
         .map(|i| 40.0 + f64::from(i % 2) * 2.0 - 1.0)
         .collect();
     quiet[17] = 5e3;
-    let level = level(&quiet).unwrap();
+    let level = baseline(&quiet).unwrap();
     // One of a hundred samples is left out: 1/99 of a deviation.
     assert!((level.offset - 40.0).abs() < 0.011, "{level:?}");
     assert!((level.noise - 1.0).abs() < 0.011, "{level:?}");
@@ -26,7 +27,7 @@ fn noise_below_a_digitiser_step_is_still_seen() {
     let quiet: Vec<f64> = (0..500)
         .map(|i| if i % 5 == 0 { 1.0 } else { 0.0 })
         .collect();
-    let level = level(&quiet).unwrap();
+    let level = baseline(&quiet).unwrap();
     // n − 1 in place of n.
     assert!((level.offset - 0.2).abs() < 1e-12);
     assert!((level.noise - 0.4).abs() < 1e-3);
@@ -34,20 +35,20 @@ fn noise_below_a_digitiser_step_is_still_seen() {
 
 #[test]
 fn a_constant_has_no_noise() {
-    let level = level(&[2.5; 50]).unwrap();
+    let level = baseline(&[2.5; 50]).unwrap();
     assert_eq!((level.offset, level.noise), (2.5, 0.0));
 }
 
 #[test]
 fn too_little_or_nonsense_is_refused() {
     assert!(matches!(
-        level(&[1.0; 7]),
+        baseline(&[1.0; 7]),
         Err(SignalError::TooShort { .. })
     ));
     let mut bad = [1.0; 20];
     bad[3] = f64::NAN;
     assert!(matches!(
-        level(&bad),
+        baseline(&bad),
         Err(SignalError::NotFinite { index: 3, .. })
     ));
 }

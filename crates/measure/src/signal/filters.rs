@@ -1,0 +1,181 @@
+//! Filters of a record: inverse high-pass, zero-phase low-pass, running means, amplifier's low-pass.
+
+use crate::signal::error::{SignalError, all_finite};
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+/// Corrects a record for AC coupling: the exact inverse of a first-order high-pass
+/// τ y' + y = τ x' from rest by the trapezoidal rule,
+/// x_n = y_n + (1/τ) · (trapezoidal integral of y up to n).
+///
+/// A high-pass moves the maximum of a pulse of height h and second derivative x'' < 0 by h/(τ x''),
+/// earlier. Take the offset away first: the inverse makes a ramp of it, offset/τ a second. White
+/// noise of deviation σ gains a random walk of deviation σ √n · interval/τ after n samples.
+///
+/// # Errors
+/// Interval or time constant not positive; samples not finite.
+pub fn invert_high_pass(
+    samples: &mut [f64],
+    interval_s: f64,
+    time_constant_s: f64,
+) -> Result<(), SignalError> {
+    SignalError::positive("sampling interval in s", interval_s)?;
+    SignalError::positive("time constant of the high-pass in s", time_constant_s)?;
+    all_finite(samples)?;
+    let k = 0.5 * interval_s / time_constant_s;
+    let (mut integral, mut before) = (0.0, 0.0);
+    for sample in samples {
+        let y = *sample;
+        integral += k * (y + before);
+        *sample = y + integral;
+        before = y;
+    }
+    Ok(())
+}
+
+/// A Butterworth low-pass run forward and backward, without delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPass {
+    /// Frequency at which one run has lost 3 dB; both together lose 6 dB there.
+    pub cutoff_hz: f64,
+    /// Order of one run: 2 or 4.
+    pub order: usize,
+}
+
+/// A second-order section with gain 1 at rest, transposed direct form II.
+struct Biquad {
+    b: [f64; 3],
+    a: [f64; 2],
+}
+
+impl LowPass {
+    /// Returns the filtered samples, as many as were given.
+    ///
+    /// Sections by the bilinear transform with prewarped frequency run forward, then backward, over
+    /// samples that are continued beyond either end by 3 (order + 1) samples turned about the end
+    /// one. Noise is correlated afterwards.
+    ///
+    /// # Errors
+    /// Order not 2 or 4; cutoff not between 0 and half the sampling rate; too few or not finite
+    /// samples.
+    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>, SignalError> {
+        let sections = self.sections(interval_s)?;
+        let edge = 3 * (self.order + 1);
+        SignalError::enough(samples.len(), edge + 1)?;
+        all_finite(samples)?;
+        let n = samples.len();
+        let turned = |end: f64, at: usize| 2.0 * end - samples[at];
+        let before = (0..edge).map(|i| turned(samples[0], edge - i));
+        let after = (0..edge).map(|i| turned(samples[n - 1], n - 2 - i));
+        let all = before.chain(samples.iter().copied()).chain(after);
+        let mut all: Vec<f64> = all.collect();
+        for _direction in 0..2 {
+            for section in &sections {
+                section.run(&mut all);
+            }
+            all.reverse();
+        }
+        all.truncate(edge + n);
+        all.drain(..edge);
+        Ok(all)
+    }
+
+    fn sections(&self, interval_s: f64) -> Result<Vec<Biquad>, SignalError> {
+        SignalError::positive("sampling interval in s", interval_s)?;
+        let turns = self.cutoff_hz * interval_s;
+        let expected = "a number between 0 and half the sampling rate";
+        let accepted = turns > 0.0 && turns < 0.5;
+        SignalError::require(
+            accepted,
+            "cutoff of the low-pass in Hz",
+            self.cutoff_hz,
+            expected,
+        )?;
+        let order = self.order as f64;
+        let accepted = self.order == 2 || self.order == 4;
+        SignalError::require(accepted, "order of the low-pass", order, "2 or 4")?;
+        let angle = |i: usize| PI * (2 * i + 1) as f64 / (2.0 * order);
+        let pairs = 0..self.order / 2;
+        Ok(pairs.map(|i| Biquad::new(turns, angle(i).sin())).collect())
+    }
+}
+
+impl Biquad {
+    /// Poles at `damping` = −cos of their angle on the unit circle of the analogue filter.
+    fn new(turns: f64, damping: f64) -> Self {
+        let k = (PI * turns).tan();
+        let norm = (1.0 + 2.0 * damping * k + k * k).recip();
+        let b0 = k * k * norm;
+        let a2 = (1.0 - 2.0 * damping * k + k * k) * norm;
+        Self {
+            b: [b0, 2.0 * b0, b0],
+            a: [2.0 * (k * k - 1.0) * norm, a2],
+        }
+    }
+
+    /// Filters in place, as if the first sample had lasted for ever before.
+    fn run(&self, samples: &mut [f64]) {
+        let first = samples.first().copied().unwrap_or(0.0);
+        let mut z1 = first * (1.0 - self.b[0]);
+        let mut z2 = first * (self.b[2] - self.a[1]);
+        for sample in samples {
+            let x = *sample;
+            let y = self.b[0] * x + z1;
+            z1 = self.b[1] * x - self.a[0] * y + z2;
+            z2 = self.b[2] * x - self.a[1] * y;
+            *sample = y;
+        }
+    }
+}
+
+/// Centred running means over an odd number of samples; over fewer near the ends.
+fn running_mean(values: &[f64], length: usize) -> Vec<f64> {
+    if length < 2 {
+        return values.to_vec();
+    }
+    let half = length / 2;
+    let mut sums = vec![0.0];
+    sums.reserve(values.len());
+    let mut sum = 0.0;
+    sums.extend(values.iter().map(|value| {
+        sum += value;
+        sum
+    }));
+    let mean = |i: usize| {
+        let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
+        (sums[to] - sums[from]) / (to - from) as f64
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+/// Two running means, one after the other: triangular weights.
+pub(crate) fn triangular_mean(values: &[f64], length: usize) -> Vec<f64> {
+    running_mean(&running_mean(values, length), length)
+}
+
+/// An amplifier's low-pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bandwidth {
+    /// Its corner in Hz, where 3 dB are missing.
+    pub corner_hz: f64,
+    /// 1: one pole. 2: a Butterworth filter's two.
+    pub order: usize,
+}
+
+impl Bandwidth {
+    /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples.
+    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2], SignalError> {
+        SignalError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
+        let name = "order of the amplifier's low-pass";
+        let accepted = self.order == 1 || self.order == 2;
+        SignalError::require(accepted, name, self.order as f64, "1 or 2")?;
+        let samples = (TAU * self.corner_hz * interval_s).recip();
+        Ok(match self.order {
+            1 => [samples, 0.0],
+            _ => [SQRT_2 * samples, samples * samples],
+        })
+    }
+}
+
+#[cfg(test)]
+#[path = "tests/running.rs"]
+mod tests;

@@ -1,0 +1,388 @@
+//! Times of the pulses found, by four methods, each with its uncertainty.
+
+mod clipping;
+mod correlation;
+mod log_polynomial;
+mod polynomial;
+mod shape;
+mod superposition;
+
+pub(crate) use clipping::clipped_top;
+pub use correlation::delay_by_cross_correlation;
+pub use shape::{Shape, cramer_rao_of_samples_s, cramer_rao_s};
+
+use crate::signal::error::SignalError;
+use crate::signal::{
+    Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
+};
+
+/// How a pulse's time is defined. Bias and spread of each: docs/measuring.md.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Time of the maximum of a bell whose logarithm is a polynomial of degree 10, fitted over 1.1
+    /// widths of the steeper flank. Coefficients beyond a Gaussian's have those of computed rows,
+    /// ± 0.2, as prior, so noise does not bend it.
+    ///
+    /// *Bias:* none for symmetric pulses; of skewed ones, less than the stated error, which holds
+    /// what the shape leaves open. Where noise hides the maximum, as [`Method::LocalModel`].
+    #[default]
+    Maximum,
+    /// Time of the maximum of a polynomial fitted about the largest sample.
+    ///
+    /// *Bias:* none for symmetric pulses; of a skewed one, what the polynomial leaves over: less
+    /// with higher degree or smaller width. Where noise leaves this fit no maximum, degree 4 over
+    /// 1.2 widths is tried, then a parabola over 0.8.
+    LocalModel {
+        /// Degree of the polynomial, 2 to 8.
+        degree: usize,
+        /// Full width of the fit, in full widths at half maximum of the pulse.
+        width: f64,
+    },
+    /// Time at which the rising flank passes a share of the maximum.
+    ///
+    /// *Bias:* against maxima, the difference of the two pulses' rise times from that share: first
+    /// order in a difference of widths. A drifting baseline shifts it.
+    Onset {
+        /// Share of the maximum, between 0 and 1.
+        fraction: f64,
+    },
+    /// Time at which a template fits best, by its correlation with the signal.
+    ///
+    /// *Bias:* none for pulses that differ in height alone, nor for symmetric ones of different
+    /// widths; for pulses of different skewness a share of the width.
+    CrossCorrelation(Template),
+    /// Time of a shape fitted with its height, width and offset free.
+    ///
+    /// *Bias:* none if both pulses have the shape, whatever their widths; for skewed pulses a share
+    /// of the width that is the same for both only if their skewness is.
+    MatchedShape {
+        /// The shape.
+        shape: Shape,
+        /// Full width of the fit, in full widths at half maximum of the pulse.
+        width: f64,
+    },
+}
+
+/// Template of a cross-correlation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Template {
+    /// The incident pulse itself.
+    Incident,
+    /// A shape, as wide at half maximum as the incident pulse is.
+    Shape(Shape),
+    /// A shape of a given full width at half maximum in s.
+    Fixed(Shape, f64),
+}
+
+/// A picked pulse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picked {
+    /// Its time, in s after the first sample.
+    pub time_s: f64,
+    /// Standard deviation of that: by the record's noise and, of maxima, by what a shape leaves open
+    /// and what lies under a pulse. Other biases are not in it.
+    pub sigma_s: f64,
+    /// The part of that which equal shots share.
+    pub systematic: Systematic,
+    /// Height above the baseline, or above the fit's own offset, in the samples' unit.
+    pub height: f64,
+    /// Standard deviation of that by the record's noise.
+    pub height_sigma: f64,
+    /// Full width at half maximum in s.
+    pub width_s: f64,
+    /// Residuals of the fit over noise: near 1 if the model describes the pulse. `None` if nothing
+    /// was fitted or there is no noise.
+    pub misfit: Option<f64>,
+}
+
+/// Errors of a maximum's time that equal shots share, so that no mean over them makes them smaller.
+/// 0 of other methods.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Systematic {
+    /// Shift in s, with its sign, by what lies under the pulse in a summed channel.
+    pub superposition_s: f64,
+    /// Error in s by what the samples leave open of the pulse's shape, and of the interval between
+    /// them.
+    pub shape_s: f64,
+}
+
+/// Another maximum of a pulse as picked, which could be the largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompetingPick {
+    /// The maximum.
+    pub picked: Picked,
+    /// How much lower it is than the one that was picked, in the samples' unit.
+    pub lower: Estimate,
+}
+
+impl CompetingPick {
+    /// Probability that noise alone made it the lower: the normal distribution's tail.
+    pub(crate) fn p_value(&self) -> f64 {
+        let Estimate { value, sigma } = self.lower;
+        match value == 0.0 {
+            true => 0.5,
+            false => 0.5 * libm::erfc(value / sigma / std::f64::consts::SQRT_2),
+        }
+    }
+}
+
+/// The three pulses of a shot as picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picks {
+    /// At the sensor bead, on the way to the wall.
+    pub incident: Picked,
+    /// At the wall.
+    pub wall: Picked,
+    /// At the sensor bead, on the way back, if it was found and could be picked.
+    pub reflected: Option<Picked>,
+    /// Other maxima of the three, in this order, that are nearly as high.
+    pub competing: [Option<CompetingPick>; 3],
+}
+
+/// A normalised channel with what a picker knows of it.
+pub(crate) struct ChannelView<'a> {
+    samples: &'a [f64],
+    normalisation: Normalisation,
+    range: Option<DigitiserRange>,
+    /// Whether both sensors are in this channel.
+    summed: bool,
+    /// Sample of the wall's maximum, for the reflected pulse.
+    wall: Option<usize>,
+    /// Coefficients of the inverse of the amplifier's low-pass; 0 where none is corrected.
+    inverse: [f64; 2],
+}
+
+impl<'a> ChannelView<'a> {
+    pub(crate) fn new(
+        channels: Channels<'a>,
+        kind: PulseKind,
+        normalisation: Normalisation,
+    ) -> Self {
+        Self {
+            samples: channels.of(kind),
+            normalisation,
+            range: None,
+            summed: channels.is_summed(),
+            wall: None,
+            inverse: [0.0; 2],
+        }
+    }
+
+    fn height(&self, sample: usize) -> Option<f64> {
+        let sample = self.samples.get(sample);
+        sample.map(|x| self.normalisation.height(*x))
+    }
+
+    /// Heights from sample `from` to `to`, clipped to the record, and the first's number.
+    fn window(&self, from: f64, to: f64) -> (usize, Vec<f64>) {
+        let end = self.samples.len();
+        let first = (from.floor().max(0.0) as usize).min(end);
+        let last = ((to.ceil().max(0.0) as usize).saturating_add(1)).clamp(first, end);
+        let heights = self.samples[first..last].iter();
+        let heights = heights.map(|x| self.normalisation.height(*x)).collect();
+        (first, heights)
+    }
+
+    /// First and last sample about a pulse's maximum above a height, single ones below it aside.
+    fn run_above(&self, pulse: &Pulse, height: f64) -> (usize, usize) {
+        let is_above = |at: usize| self.height(at).is_some_and(|x| x > height);
+        let (mut first, mut last) = (pulse.at, pulse.at);
+        while first > 1 && (is_above(first - 1) || is_above(first - 2)) {
+            first -= 1;
+        }
+        while is_above(last + 1) || is_above(last + 2) {
+            last += 1;
+        }
+        (first, last)
+    }
+
+    /// Noise of one sample; at least a digitiser's rounding, which a quiet stretch between two of
+    /// its steps does not show.
+    fn noise(&self, pulse: &Pulse) -> f64 {
+        let rounding = self.normalisation.rounding(pulse.height);
+        self.normalisation.baseline.noise.max(rounding)
+    }
+
+    /// As [`Self::noise`], for averages over many samples.
+    fn broad_noise(&self, pulse: &Pulse) -> f64 {
+        let broad = self.normalisation.baseline.broad_noise();
+        broad.max(self.normalisation.rounding(pulse.height))
+    }
+
+    /// Residual over the noise, if there is noise.
+    fn misfit(&self, pulse: &Pulse, residual: f64) -> Option<f64> {
+        let noise = self.noise(pulse);
+        (noise > 0.0).then(|| residual / noise)
+    }
+}
+
+/// Picks the pulses that were found, given the digitiser's range, where it is known, in the
+/// channels that hold the sensor's and the wall's pulses.
+///
+/// # Errors
+/// No incident or no wall's pulse; no maximum or crossing where one of these is; options out of
+/// range. A reflected pulse that cannot be picked is left out.
+pub fn pick(
+    channels: Channels<'_>,
+    interval_s: f64,
+    found: &Found,
+    method: &Method,
+    ranges: [Option<DigitiserRange>; 2],
+) -> Result<Picks, SignalError> {
+    pick_corrected(channels, interval_s, found, method, (ranges, None))
+}
+
+/// As [`pick`], with maxima corrected for an amplifier's low-pass; times of other methods are not.
+pub(crate) fn pick_corrected(
+    channels: Channels<'_>,
+    interval_s: f64,
+    found: &Found,
+    method: &Method,
+    (ranges, amplifier): ([Option<DigitiserRange>; 2], Option<Bandwidth>),
+) -> Result<Picks, SignalError> {
+    SignalError::positive("sampling interval in s", interval_s)?;
+    method.check()?;
+    let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(SignalError::Missing(kind));
+    let incident = need(&found.incident, PulseKind::Incident)?;
+    let wall = need(&found.wall, PulseKind::Wall)?;
+    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s));
+    let inverse = inverse.transpose()?.filter(|_| *method == Method::Maximum);
+    let view = |kind: PulseKind| ChannelView {
+        range: ranges[usize::from(kind == PulseKind::Wall)],
+        wall: (kind == PulseKind::Reflected).then_some(wall.at),
+        inverse: inverse.unwrap_or_default(),
+        ..ChannelView::new(channels, kind, *found.normalisation(kind))
+    };
+    let views = PulseKind::ALL.map(view);
+    let picker = Picker::new(method, &views[0], &incident, interval_s)?;
+    let pick = |pulse: &Pulse| {
+        let picked = picker.pick(&views[pulse.kind as usize], pulse)?;
+        Ok::<Picked, SignalError>(picked.in_seconds(interval_s))
+    };
+    let reflected = found.reflected.and_then(|pulse| pick(&pulse).ok());
+    let competing = |kind| {
+        let all = &found.competing;
+        let other = all.iter().find(|other| other.pulse.kind == kind)?;
+        Some(CompetingPick {
+            picked: pick(&other.pulse).ok()?,
+            lower: other.lower,
+        })
+    };
+    let mut competing = PulseKind::ALL.map(competing);
+    competing[2] = competing[2].filter(|_| reflected.is_some());
+    Ok(Picks {
+        incident: pick(&incident)?,
+        wall: pick(&wall)?,
+        reflected,
+        competing,
+    })
+}
+
+/// A pulse's maximum by a fit to the samples about it, in samples.
+pub(crate) fn fitted_maximum(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
+    Picker::Maximum.pick(view, pulse).ok()
+}
+
+impl Picked {
+    /// From samples to s.
+    fn in_seconds(self, interval_s: f64) -> Self {
+        Self {
+            time_s: self.time_s * interval_s,
+            sigma_s: self.sigma_s * interval_s,
+            systematic: Systematic {
+                superposition_s: self.systematic.superposition_s * interval_s,
+                shape_s: self.systematic.shape_s * interval_s,
+            },
+            width_s: self.width_s * interval_s,
+            ..self
+        }
+    }
+}
+
+impl Method {
+    fn check(&self) -> Result<(), SignalError> {
+        let within = |name, value: f64, low: f64, high: f64, expected| {
+            SignalError::require(value >= low && value <= high, name, value, expected)
+        };
+        let wide = "a number from 0.2 to 4";
+        match self {
+            Self::LocalModel { degree, width } => {
+                let degree = *degree as f64;
+                within("degree of the local model", degree, 2.0, 8.0, "2 to 8")?;
+                within("width of the local model", *width, 0.2, 4.0, wide)
+            }
+            Self::Onset { fraction } => {
+                let expected = "a share of the maximum from 0.02 to 0.95";
+                within("threshold", *fraction, 0.02, 0.95, expected)
+            }
+            Self::CrossCorrelation(Template::Fixed(_, width_s)) => {
+                SignalError::positive("width of the template in s", *width_s)
+            }
+            Self::Maximum | Self::CrossCorrelation(_) => Ok(()),
+            Self::MatchedShape { width, .. } => within("width of the fit", *width, 0.2, 4.0, wide),
+        }
+    }
+}
+
+/// A method prepared for one shot; times in samples.
+enum Picker<'a> {
+    Maximum,
+    Local(usize, f64),
+    Onset(f64),
+    Correlation(correlation::Correlator),
+    Matched(&'a Shape, f64),
+}
+
+impl<'a> Picker<'a> {
+    fn new(
+        method: &'a Method,
+        sensor: &ChannelView<'_>,
+        incident: &Pulse,
+        interval_s: f64,
+    ) -> Result<Self, SignalError> {
+        Ok(match method {
+            Method::Maximum => Self::Maximum,
+            Method::LocalModel { degree, width } => Self::Local(*degree, *width),
+            Method::Onset { fraction } => Self::Onset(*fraction),
+            Method::MatchedShape { shape, width } => Self::Matched(shape, *width),
+            Method::CrossCorrelation(template) => Self::Correlation(correlation::Correlator::new(
+                template, sensor, incident, interval_s,
+            )?),
+        })
+    }
+
+    fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        if pulse.clipped.is_some() {
+            return self.pick_clipped(view, pulse);
+        }
+        match self {
+            Self::Maximum => log_polynomial::pick(view, pulse)
+                .map_or_else(|| polynomial::pick_in_noise(view, pulse), Ok),
+            Self::Local(degree, width) => polynomial::pick_maximum(view, pulse, *degree, *width),
+            Self::Onset(fraction) => polynomial::pick_onset(view, pulse, *fraction),
+            Self::Correlation(correlator) => correlator.pick(view, pulse),
+            Self::Matched(shape, width) => shape::pick(view, pulse, shape, *width),
+        }
+    }
+
+    /// Of a clipped pulse, from its flanks.
+    fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+        let none = |what| SignalError::NoPick(pulse.kind, what);
+        let top = log_polynomial::pick_from_flanks(view, pulse);
+        let top =
+            top.ok_or_else(|| none("maximum that follows from its flanks, clipped as it is,"))?;
+        match self {
+            Self::Maximum | Self::Local(..) => Ok(top),
+            Self::Onset(fraction) => polynomial::pick_onset_of_clipped(view, pulse, *fraction, top),
+            Self::Matched(shape, width) => {
+                let whole = Pulse {
+                    height: top.height,
+                    width_samples: top.width_s,
+                    ..*pulse
+                };
+                shape::pick(view, &whole, shape, *width)
+            }
+            Self::Correlation(_) => Err(none("top to correlate, clipped as it is,")),
+        }
+    }
+}
