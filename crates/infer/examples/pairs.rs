@@ -75,7 +75,7 @@ impl Counts {
             rows: 1,
             ..Self::default()
         };
-        match &row.told {
+        match &row.contact {
             Err(_) => counts.none = 1,
             Ok(contact) => counts.count(contact, exact),
         }
@@ -195,7 +195,7 @@ fn counted(
 
 /// What a row tells that is not the truth.
 fn words(row: &WetRow, exact: [f64; 2]) -> String {
-    match &row.told {
+    match &row.contact {
         Err(why) => why.clone(),
         Ok(contact) => {
             let pairs = std::iter::once(&contact.first).chain(&contact.others);

@@ -127,7 +127,7 @@ fn others() -> [(&'static str, Method); 3] {
     let shape = Shape::cos_power(6.0);
     [
         ("onset at 50 %", Method::Onset { fraction: 0.5 }),
-        ("correlation", Method::CrossCorrelation(Template::Passing)),
+        ("correlation", Method::CrossCorrelation(Template::Incident)),
         ("matched shape", Method::MatchedShape { shape, width: 2.0 }),
     ]
 }

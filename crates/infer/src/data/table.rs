@@ -104,8 +104,8 @@ impl Data {
             let means: [Option<Summary>; 4] = [
                 Some(row.incident_s),
                 row.reflected_s,
-                Some(row.wall_over_passing),
-                row.returning_over_passing,
+                Some(row.wall_over_incident),
+                row.reflected_over_incident,
             ];
             for (of, mean) in Observable::ALL.into_iter().zip(&means) {
                 estimate(

@@ -2,7 +2,7 @@
 
 use crate::format::{self, digits, with_error};
 use crate::print::heading;
-use crate::words::{chi_square_of, chi_square_text, estimate, lines, misfit, percent};
+use crate::words::{chi_square_text, estimate, lines, misfit, percent};
 use hertzchain::gauge::Gauged;
 use hertzchain::inference::references;
 use hertzchain_infer::Problem;
@@ -47,7 +47,7 @@ pub(super) fn text(gauged: &Gauged) -> String {
     // Tables may be longer than a screen: who sees the verdict alone is told, too.
     match doubts.is_empty() {
         true => text,
-        false => text + "Beware: what the first lines say speaks against believing this.\n",
+        false => text + "warning: see the first lines.\n",
     }
 }
 
@@ -56,7 +56,7 @@ fn doubts(gauged: &Gauged) -> String {
     let dry = misfit(&gauged.gauge.dry_goodness())
         .map(|told| format!("of the dry curve, on which all below rests, {told}."));
     let all = dry.into_iter().chain(gauged.doubts());
-    let lines: String = all.map(|doubt| format!("Beware: {doubt}\n")).collect();
+    let lines: String = all.map(|doubt| format!("warning: {doubt}\n")).collect();
     match lines.is_empty() {
         true => lines,
         false => lines + "\n",
@@ -70,7 +70,9 @@ fn dry(gauged: &Gauged) -> String {
         let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
     });
-    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square_text(&gauge.dry_goodness())
+    let chi_square = gauge.dry_goodness().chi_square;
+    let chi_square = chi_square.map_or(String::new(), |found| chi_square_text(found) + "\n");
+    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
@@ -151,7 +153,7 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
     let fits = match law.reduced_chi_square > NO_LAW {
         true => format!(
-            "; the values do not follow it (reduced chi-square {})",
+            "; the values do not follow it (χ²/ν = {})",
             digits(law.reduced_chi_square, 2)
         ),
         false => String::new(),
