@@ -2,14 +2,10 @@
 //! reading, the JSON Schema and the parameter paths all go by these tables.
 
 pub(crate) mod advice;
-mod campaign;
-mod ends;
 pub(crate) mod ranges;
-mod rig;
 mod tables;
 
-pub(crate) use rig::RIG;
-pub(crate) use tables::{MOST_BEADS, ROOT};
+pub(crate) use tables::{MOST_BEADS, RIG, ROOT};
 
 use crate::value::Units;
 
@@ -137,38 +133,19 @@ impl Variants {
     }
 }
 
-impl Key {
-    const fn new(name: &'static str, kind: Kind, about: &'static str) -> Self {
-        Self {
-            name,
-            kind,
-            need: Need::Never,
-            about,
-        }
-    }
-
-    const fn needed(self, need: Need) -> Self {
-        Self { need, ..self }
-    }
-}
-
 /// Where a key belongs that stands in the wrong table, in words.
 pub(crate) fn home(key: &str) -> Option<String> {
     if let Some(found) = ROOT.key(key) {
-        return Some(match &found.kind {
-            Kind::Tables(fields) => format!("into a table of its own, {}", fields.title),
-            Kind::Table(fields) | Kind::Named(fields) => {
-                format!("into a table of its own, {}", fields.title)
-            }
-            Kind::Variants(variants) => format!("into a table of its own, {}", variants.title),
-            _ => "at the top of the file, before the first table".to_owned(),
-        });
+        let title = match &found.kind {
+            Kind::Tables(fields) | Kind::Table(fields) | Kind::Named(fields) => fields.title,
+            Kind::Variants(variants) => variants.title,
+            _ => return Some("at the top of the file, before the first table".to_owned()),
+        };
+        return Some(format!("into a table of its own, {title}"));
     }
-    let tables = ROOT.keys.iter().flat_map(|key| tables_of(&key.kind));
-    let mut holding = tables.filter(|fields| fields.key(key).is_some());
-    holding
-        .next()
-        .map(|fields| format!("into {}", fields.title))
+    let mut tables = ROOT.keys.iter().flat_map(|key| tables_of(&key.kind));
+    let holding = tables.find(|fields| fields.key(key).is_some())?;
+    Some(format!("into {}", holding.title))
 }
 
 /// The tables that a key of the file may hold.
