@@ -51,7 +51,7 @@ pub(crate) fn campaign<'py>(
     })?;
     let (done, seed, warnings) = Job::pooled(progress, threads).run(py, |stop| {
         let plan = Plan::new(&experiment.inner, seed).map_err(failure)?;
-        let warnings = hertzchain_sim::rig::outlook(&plan).map_err(failure)?;
+        let warnings = hertzchain_sim::rig::forecast(&plan).map_err(failure)?;
         let watch = |progress: hertzchain_sim::rig::Progress| {
             if progress.fired > 0 {
                 stop.count(1);

@@ -1,7 +1,7 @@
 //! What the parts of a campaign cost here: `cargo run --release --example cost -p hertzchain-rig`.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
-use hertzchain_sim::rig::{Bench, Chance, Plan, Purpose, Window, shoot};
+use hertzchain_sim::rig::{Bench, Plan, Purpose, RandomStream, Window, shoot};
 use std::error::Error;
 use std::time::Instant;
 
@@ -11,8 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let series = &plan.series[at];
         let experiment = &plan.case(series).experiment;
         let campaign = experiment.campaign();
-        let chance = |purpose| Chance::new(plan.seed, series.number, purpose);
-        let mut bench = Bench::lay(experiment, &mut chance(Purpose::Laying))?;
+        let random = |purpose| RandomStream::new(plan.seed, series.number, purpose);
+        let mut bench = Bench::assemble(experiment, &mut random(Purpose::Assembly))?;
         println!(
             "{}: open after laying {}",
             series.name,
@@ -34,10 +34,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             open(&gaps_m),
             gaps_m.iter().sum::<f64>()
         );
-        let window = Window::new(&campaign.recorder, -0.005, &mut chance(Purpose::Shot(0)));
-        let mut tape = window.tape();
+        let window = Window::new(&campaign.recorder, -0.005, &mut random(Purpose::Shot(0)));
+        let mut trace = window.trace();
         let begun = Instant::now();
-        let shot = shoot(&mut bench, 7, series.programmed_m_s, &mut tape)?;
+        let shot = shoot(&mut bench, 7, series.programmed_m_s, &mut trace)?;
         println!(
             "  shot {:.2} ms: ToF {:.3} {:.3} us, rest after {:.1} ms, rebound {:.4}, open {} sum {:.2e} m, peaks {:.1?} N",
             1e3 * begun.elapsed().as_secs_f64(),
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         let begun = Instant::now();
         let (amplifier, recorder) = (&campaign.amplifier, &campaign.recorder);
-        let record = window.record(tape, amplifier, recorder, &mut chance(Purpose::Noise(0)));
+        let record = window.record(trace, amplifier, recorder, &mut random(Purpose::Noise(0)));
         println!(
             "  record {:.2} ms, {} samples",
             1e3 * begun.elapsed().as_secs_f64(),

@@ -10,7 +10,9 @@
 use hertzchain_chain::System;
 use hertzchain_experiment::Experiment;
 use hertzchain_sim as study;
-use hertzchain_sim::rig::{Bench, Chance, Plan, Purpose, Series, Window, fired_m_s, shoot};
+use hertzchain_sim::rig::{
+    Bench, Plan, Purpose, RandomStream, Series, Window, shoot, true_speed_m_s,
+};
 use rayon::prelude::*;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -141,26 +143,29 @@ fn departures(plan: &Plan, series: &Series, shots: usize) -> Outcome<Departures>
     let experiment = &case.experiment;
     let campaign = experiment.campaign();
     let (sensor, speed_m_s) = (experiment.sensor_bead(), series.programmed_m_s);
-    let mut chance = Chance::new(plan.seed, series.number, Purpose::Laying);
-    let mut bench = Bench::lay(experiment, &mut chance)?;
+    let mut random = RandomStream::new(plan.seed, series.number, Purpose::Assembly);
+    let mut bench = Bench::assemble(experiment, &mut random)?;
     let model_s = model_s(experiment, speed_m_s)?;
     let mut found = Departures {
         load: Vec::new(),
         times_s: [Vec::new(), Vec::new()],
         by_load_s: [f64::NAN; 2],
     };
-    let (mut more_n, mut chance) = (0.0, Chance::new(plan.seed, series.number, Purpose::Shot(0)));
+    let (mut more_n, mut random) = (
+        0.0,
+        RandomStream::new(plan.seed, series.number, Purpose::Shot(0)),
+    );
     for _ in 0..shots {
         for _ in 0..campaign.taps {
-            let tap_m_s = fired_m_s(&campaign.actuator, campaign.tap_speed_m_s, &mut chance);
+            let tap_m_s = true_speed_m_s(&campaign.actuator, campaign.tap_speed_m_s, &mut random);
             bench.tap(tap_m_s)?;
         }
-        let (equilibrium, held) = bench.aim(speed_m_s)?;
+        let (equilibrium, held) = bench.systems(speed_m_s)?;
         let [equal_n, held_n] = [&equilibrium, &held].map(|system| load_n(system, sensor));
         more_n += (held_n - equal_n) / shots as f64;
         found.load.push(held_n / equal_n - 1.0);
-        let mut tape = Window::new(&campaign.recorder, 0.0, &mut chance).tape();
-        let shot = shoot(&mut bench, sensor, speed_m_s, &mut tape)?;
+        let mut trace = Window::new(&campaign.recorder, 0.0, &mut random).trace();
+        let shot = shoot(&mut bench, sensor, speed_m_s, &mut trace)?;
         found.times_s[0].push(shot.incident_s - model_s[0]);
         found.times_s[1].push(shot.reflected_s - model_s[1]);
     }

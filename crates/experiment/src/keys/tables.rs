@@ -58,7 +58,10 @@ const FRICTION: Limits = Limits::new(0.0, 10.0, true, "from 0 to 10");
 const RATIO: Limits = Limits::new(0.0, 100.0, false, "positive and below 100");
 const SPREAD: Limits = Limits::new(0.0, 0.1, true, "from 0 to 0.1");
 const BITS: Kind = Count { least: 2, most: 16 };
-const SEED: Kind = Count { least: 0, most: 1 << 52 };
+const SEED: Kind = Count {
+    least: 0,
+    most: 1 << 52,
+};
 const DISPLACEMENT: Kind = Quantity("m", ranges::DISPLACEMENT);
 const VISCOSITY: Kind = Scaled("Pa s", ranges::VISCOSITY);
 
@@ -106,25 +109,34 @@ static DRIVEN: Variants = Variants {
     title: "[driven]",
     tag: "motion",
     options: &[
-        ("sine", table! { "[driven] with motion = \"sine\"";
-            amplitude(Always): DISPLACEMENT, "largest displacement";
-            frequency(Always): positive("Hz"), "frequency";
-            radius: positive("m"), "radius of the driven body; default: as bead 1";
-            material: Text, "name of a material";
-        }),
-        ("pulse", table! { "[driven] with motion = \"pulse\"";
-            amplitude(Always): DISPLACEMENT, "largest displacement";
-            duration(Always): positive("s"), "duration of the push";
-            radius: positive("m"), "radius of the driven body; default: as bead 1";
-            material: Text, "name of a material";
-        }),
-        ("table", table! { "[driven] with motion = \"table\"";
-            times: Quantities("s"), "times, increasing";
-            positions: Quantities("m"), "positions, one a time";
-            file: Text, "CSV file with columns time_s,position_m, beside this file";
-            radius: positive("m"), "radius of the driven body; default: as bead 1";
-            material: Text, "name of a material";
-        }),
+        (
+            "sine",
+            table! { "[driven] with motion = \"sine\"";
+                amplitude(Always): DISPLACEMENT, "largest displacement";
+                frequency(Always): positive("Hz"), "frequency";
+                radius: positive("m"), "radius of the driven body; default: as bead 1";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "pulse",
+            table! { "[driven] with motion = \"pulse\"";
+                amplitude(Always): DISPLACEMENT, "largest displacement";
+                duration(Always): positive("s"), "duration of the push";
+                radius: positive("m"), "radius of the driven body; default: as bead 1";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "table",
+            table! { "[driven] with motion = \"table\"";
+                times: Quantities("s"), "times, increasing";
+                positions: Quantities("m"), "positions, one a time";
+                file: Text, "CSV file with columns time_s,position_m, beside this file";
+                radius: positive("m"), "radius of the driven body; default: as bead 1";
+                material: Text, "name of a material";
+            },
+        ),
     ],
 };
 
@@ -132,25 +144,40 @@ static FAR_END: Variants = Variants {
     title: "[far_end]",
     tag: "kind",
     options: &[
-        ("half-bead", table! { "[far_end] with kind = \"half-bead\"";
-            radius: positive("m"), "radius of the half-bead; default: as bead N";
-            material: Text, "name of a material";
-        }),
-        ("plane", table! { "[far_end] with kind = \"plane\"";
-            material: Text, "name of a material";
-        }),
-        ("stop", table! { "[far_end] with kind = \"stop\"";
-            mass(Always): positive("kg"), "mass of the stop";
-            radius: positive("m"), "radius of the half-bead; default: as bead N";
-            material: Text, "name of a material";
-        }),
-        ("plane-stop", table! { "[far_end] with kind = \"plane-stop\"";
-            mass(Always): positive("kg"), "mass of the stop";
-            material: Text, "name of a material";
-        }),
-        ("periodic", table! { "[far_end] with kind = \"periodic\"";
-            force: not_negative("N"), "static force around the ring; default 0";
-        }),
+        (
+            "half-bead",
+            table! { "[far_end] with kind = \"half-bead\"";
+                radius: positive("m"), "radius of the half-bead; default: as bead N";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "plane",
+            table! { "[far_end] with kind = \"plane\"";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "stop",
+            table! { "[far_end] with kind = \"stop\"";
+                mass(Always): positive("kg"), "mass of the stop";
+                radius: positive("m"), "radius of the half-bead; default: as bead N";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "plane-stop",
+            table! { "[far_end] with kind = \"plane-stop\"";
+                mass(Always): positive("kg"), "mass of the stop";
+                material: Text, "name of a material";
+            },
+        ),
+        (
+            "periodic",
+            table! { "[far_end] with kind = \"periodic\"";
+                force: not_negative("N"), "static force around the ring; default 0";
+            },
+        ),
         ("free", table! { "[far_end] with kind = \"free\""; }),
     ],
 };
@@ -159,13 +186,19 @@ static NEAR_END: Variants = Variants {
     title: "[near_end]",
     tag: "push",
     options: &[
-        ("constant", table! { "[near_end] with push = \"constant\"";
-            force(Always): not_negative("N"), "force on bead 1";
-        }),
-        ("spring", table! { "[near_end] with push = \"spring\"";
-            force(Always): not_negative("N"), "force on bead 1 at rest";
-            stiffness(Always): not_negative("N/m"), "stiffness of the spring";
-        }),
+        (
+            "constant",
+            table! { "[near_end] with push = \"constant\"";
+                force(Always): not_negative("N"), "force on bead 1";
+            },
+        ),
+        (
+            "spring",
+            table! { "[near_end] with push = \"spring\"";
+                force(Always): not_negative("N"), "force on bead 1 at rest";
+                stiffness(Always): not_negative("N/m"), "stiffness of the spring";
+            },
+        ),
     ],
 };
 

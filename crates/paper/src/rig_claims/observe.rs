@@ -6,7 +6,7 @@ use crate::reproduce::Progress;
 use hertzchain_sim::rig::Plan;
 use hertzchain_sim::rig::RigError;
 use hertzchain_sim::rig::Shot;
-use hertzchain_sim::rig::run;
+use hertzchain_sim::rig::run_series;
 use rayon::prelude::*;
 
 /// A rig's campaigns: without taps and with them.
@@ -72,7 +72,7 @@ fn at_speed([loose, tapped]: &Plans, series: usize, first: usize) -> Result<AtSp
 /// The shots of a series after the first.
 fn shots(plan: &Plan, series: usize, first: usize) -> Result<Vec<Shot>, RigError> {
     let mut shots = Vec::new();
-    run(plan, &plan.series[series], &mut |fired| {
+    run_series(plan, &plan.series[series], &mut |fired| {
         shots.extend((fired.number as usize >= first).then_some(fired.shot));
         Ok(())
     })?;

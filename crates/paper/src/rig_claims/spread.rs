@@ -6,7 +6,7 @@
 //! is the standard error.
 
 use super::evidence::mean;
-use hertzchain_sim::rig::{Chance, Purpose};
+use hertzchain_sim::rig::{Purpose, RandomStream};
 
 /// Sets of series that are drawn.
 const DRAWS: usize = 1000;
@@ -65,7 +65,7 @@ pub fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
 
 /// One series alone tells no error: it is not a number then.
 fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
-    let mut chance = Chance::new(SEED, 0, Purpose::Resampling);
+    let mut chance = RandomStream::new(SEED, 0, Purpose::Resampling);
     let mut drawn = || {
         let any = |_| of_series[(chance.uniform() * of_series.len() as f64) as usize];
         statistic(&of_series.iter().enumerate().map(any).collect::<Vec<f64>>())

@@ -1,7 +1,5 @@
-//! What can be wrong with a campaign, told to people.
+//! Why a campaign can't be run.
 
-use crate::StudyError;
-use crate::rig::striker::OutOfRange;
 use hertzchain_experiment::{Mistakes, PathError};
 use hertzchain_measure::MeasureError;
 use std::io;
@@ -13,17 +11,12 @@ pub enum RigError {
     /// An experiment that no rig can do.
     #[error("{0}")]
     Unsuited(String),
-    /// It was broken off.
-    #[error("the campaign was broken off; the same folder goes on from there")]
+    /// It was interrupted.
+    #[error("the campaign was interrupted; the same folder goes on from there")]
     Stopped,
     /// A speed that the actuator does not have.
-    #[error("{what}: {why}")]
-    Speed {
-        /// Which speed: a series' or the taps'.
-        what: String,
-        /// Why.
-        why: OutOfRange,
-    },
+    #[error("{0}")]
+    Speed(String),
     /// The experiment has mistakes at one of the speeds.
     #[error(transparent)]
     Mistakes(#[from] Box<Mistakes>),
@@ -31,54 +24,22 @@ pub enum RigError {
     #[error(transparent)]
     Number(#[from] PathError),
     /// A shot that can't be computed.
-    #[error("series {series}, {when}: {why}")]
-    Shot {
-        /// Name of the series.
-        series: String,
-        /// Which shot or tap.
-        when: String,
-        /// Why.
-        why: StudyError,
-    },
+    #[error("{0}")]
+    Shot(String),
     /// A recording that can't be written.
     #[error("{0}; `campaign` with the same folder goes on from there")]
     Record(#[from] MeasureError),
     /// A file with the name of a recording that is another's, or damaged.
     #[error("{0}; move it away, and `campaign` makes it again")]
     NotOurs(MeasureError),
-    /// A folder that can't be used.
-    #[error("cannot write into {path}: {error}")]
-    Folder {
-        /// Which one.
-        path: String,
-        /// What the system says.
-        error: io::Error,
-    },
+    /// A folder that can't be used, or recordings in it that contradict each other.
+    #[error("{0}")]
+    Folder(String),
     /// A folder with recordings of something else.
     #[error(
-        "{path} holds {holds}, and recordings of two campaigns do not mix: choose another folder, or \
-         move these files away"
+        "{0}, and recordings of two campaigns do not mix: choose another folder, or move these files away"
     )]
-    AnotherCampaign {
-        /// The folder.
-        path: String,
-        /// What is there.
-        holds: &'static str,
-    },
-    /// A folder whose campaign can't be told from its file.
-    #[error(
-        "{0} is of another build of the program, or of an experiment whose numbers a program has set: merge \
-         with the build that made the recordings"
-    )]
-    OtherBuild(String),
-    /// Two recordings of one series that are not the same.
-    #[error("{one} and {other} are the same series with other bytes: one is damaged; move it away")]
-    Differ {
-        /// One file.
-        one: String,
-        /// The other.
-        other: String,
-    },
+    AnotherCampaign(String),
     /// Not all series are there.
     #[error(
         "{} of {of} series are missing: {}; run the same `campaign` with any of the folders as --out \
@@ -96,15 +57,11 @@ pub enum RigError {
 const LISTED: usize = 12;
 
 fn first(names: &[String]) -> String {
-    let listed = names
-        .iter()
-        .take(LISTED)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
-    match names.len().saturating_sub(LISTED) {
-        0 => listed,
-        more => format!("{listed} and {more} more"),
+    match names.get(..LISTED) {
+        Some(listed) if names.len() > LISTED => {
+            format!("{} and {} more", listed.join(", "), names.len() - LISTED)
+        }
+        _ => names.join(", "),
     }
 }
 
@@ -116,9 +73,6 @@ impl From<Mistakes> for RigError {
 
 impl RigError {
     pub(crate) fn folder(path: &Path, error: io::Error) -> Self {
-        Self::Folder {
-            path: path.display().to_string(),
-            error,
-        }
+        Self::Folder(format!("cannot write into {}: {error}", path.display()))
     }
 }

@@ -1,11 +1,10 @@
 //! What a campaign consists of.
 
-use crate::rig::chance::MOST_SHOTS;
-use crate::rig::error::RigError;
-use crate::rig::striker;
+use crate::rig::RigError;
+use crate::rig::instruments::{MOST_SHOTS, programmed};
 use hertzchain_experiment::{Experiment, Units};
 
-/// Most series of a campaign: streams of chance are counted in 32 bits.
+/// Most series of a campaign: random streams are counted in 32 bits.
 const MOST_SERIES: usize = 1 << 20;
 
 /// A campaign that can be run.
@@ -55,17 +54,14 @@ impl Plan {
         let campaign = experiment.campaign();
         let actuator = &campaign.actuator;
         if campaign.taps > 0 {
-            striker::programmed(actuator, campaign.tap_speed_m_s).map_err(|why| {
-                let what = "taps".to_owned();
-                RigError::Speed { what, why }
-            })?;
+            programmed(actuator, campaign.tap_speed_m_s)
+                .map_err(|why| RigError::Speed(format!("taps: {why}")))?;
         }
         let mut series = Vec::new();
         for (case, Case { name, experiment }) in cases.iter().enumerate() {
             for (at, asked_m_s) in campaign.speeds_m_s.iter().enumerate() {
-                let programmed_m_s = striker::programmed(actuator, *asked_m_s).map_err(|why| {
-                    let what = format!("speed {} of case `{name}`", at + 1);
-                    RigError::Speed { what, why }
+                let programmed_m_s = programmed(actuator, *asked_m_s).map_err(|why| {
+                    RigError::Speed(format!("speed {} of case `{name}`: {why}", at + 1))
                 })?;
                 experiment.system(Some(programmed_m_s))?;
                 row_of_beads(experiment, programmed_m_s)?;
@@ -87,13 +83,11 @@ impl Plan {
     }
 
     /// The case of a series.
-    #[must_use]
     pub fn case(&self, series: &Series) -> &Case {
         &self.cases[series.case]
     }
 
     /// Shots of the series of one part.
-    #[must_use]
     pub fn shots(&self, series: usize) -> u64 {
         (series * self.experiment.campaign().shots) as u64
     }

@@ -173,7 +173,7 @@ fn recordings_of_two_campaigns_do_not_mix() {
     campaign(&plan(&[]), &out.0, shard("1/6"), &quiet).unwrap();
     let other = plan(&[("friction = 0.05", "friction = 0.06")]);
     let error = campaign(&other, &out.0, Shard::WHOLE, &quiet).unwrap_err();
-    assert!(matches!(error, RigError::AnotherCampaign { .. }), "{error}");
+    assert!(matches!(error, RigError::AnotherCampaign(_)), "{error}");
     let set = experiment(&[]).set(&[("track.friction", 0.06)]).unwrap();
     let set = Plan::new(&set, None).unwrap();
     assert!(campaign(&set, &out.0, Shard::WHOLE, &quiet).is_err());

@@ -2,7 +2,7 @@
 
 use hertzchain_experiment::{Actuator, Photogate, Recorder, preset};
 use hertzchain_sim::rig::{
-    Chance, Converter, Passing, Plan, Purpose, RigError, fired_m_s, programmed,
+    Converter, GateReading, Plan, Purpose, RandomStream, RigError, programmed, true_speed_m_s,
 };
 
 use crate::small;
@@ -20,8 +20,8 @@ fn recorder(bits: u32, range_v: f64, offset_v: f64) -> Recorder {
     }
 }
 
-fn chance() -> Chance {
-    Chance::new(1, 0, Purpose::Laying)
+fn random() -> RandomStream {
+    RandomStream::new(1, 0, Purpose::Assembly)
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn speeds_out_of_range_are_refused_and_told() {
     }
     let fast = small::experiment(&[("\"0.9 m/s\"", "\"2.6 m/s\"")]);
     let error = Plan::new(&fast, None).unwrap_err();
-    assert!(matches!(error, RigError::Speed { .. }), "{error}");
+    assert!(matches!(error, RigError::Speed(_)), "{error}");
     assert!(error.to_string().contains("2.6 m/s"), "{error}");
 }
 
@@ -59,9 +59,9 @@ fn spread(values: &[f64]) -> (f64, f64) {
 
 #[test]
 fn shots_spread_by_the_actuator_s_number_and_the_gate_adds_its_own() {
-    let (actuator, mut chance) = (actuator(), chance());
-    let fired = |chance: &mut Chance| fired_m_s(&actuator, 0.6, chance);
-    let speeds: Vec<f64> = (0..10_000).map(|_| fired(&mut chance)).collect();
+    let (actuator, mut random) = (actuator(), random());
+    let fired = |random: &mut RandomStream| true_speed_m_s(&actuator, 0.6, random);
+    let speeds: Vec<f64> = (0..10_000).map(|_| fired(&mut random)).collect();
     let (mean, deviation) = spread(&speeds);
     // Five standard errors of 10,000 draws.
     assert!((mean - 0.6).abs() < 5.0 * 0.003 / 100.0, "{mean}");
@@ -70,12 +70,12 @@ fn shots_spread_by_the_actuator_s_number_and_the_gate_adds_its_own() {
         error_m_s: 0.001,
         way_m: 2e-3,
     };
-    let measured = |chance: &mut Chance| Passing::of(&gate, 0.5, 0.0, chance);
+    let measured = |random: &mut RandomStream| GateReading::new(&gate, 0.5, 0.0, random);
     let errors: Vec<f64> = (0..10_000)
-        .map(|_| measured(&mut chance).speed_m_s - 0.5)
+        .map(|_| measured(&mut random).speed_m_s - 0.5)
         .collect();
     assert!((spread(&errors).1 / 0.001 - 1.0).abs() < 5.0 / 141.0);
-    assert_eq!(measured(&mut chance).time_s, -2e-3 / 0.5);
+    assert_eq!(measured(&mut random).time_s, -2e-3 / 0.5);
 }
 
 #[test]
@@ -124,8 +124,8 @@ fn fewer_bits_are_coarser_steps_of_the_same_volts() {
 
 #[test]
 fn chance_has_streams_that_do_not_repeat_each_other() {
-    let first = |series, purpose| Chance::new(7, series, purpose).bits();
-    let mut all = vec![first(0, Purpose::Laying), first(1, Purpose::Laying)];
+    let first = |series, purpose| RandomStream::new(7, series, purpose).bits();
+    let mut all = vec![first(0, Purpose::Assembly), first(1, Purpose::Assembly)];
     for shot in 0..100 {
         all.push(first(0, Purpose::Shot(shot)));
         all.push(first(0, Purpose::Noise(shot)));

@@ -7,8 +7,8 @@
 
 mod amplifier;
 mod campaign;
+mod forecast;
 mod instruments;
-mod outlook;
 mod poisoned;
 mod record;
 mod series;

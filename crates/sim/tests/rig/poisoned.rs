@@ -1,7 +1,7 @@
 //! Series that can't be computed, and parts that are put together.
 
 use crate::small::plan;
-use hertzchain_sim::rig::{RigError, Shard, campaign, merge, run, told_plan};
+use hertzchain_sim::rig::{RigError, Shard, campaign, merge, plan_of_folder, run_series};
 use std::fs;
 
 #[test]
@@ -29,7 +29,7 @@ fn a_poisoned_series_is_told_and_stops_no_other() {
     assert_eq!(there(&sound).iter().filter(|there| !**there).count(), 1);
     assert!(!there(&sound)[1]);
     // The same folder, without the poison, is made whole; the file tells the plan.
-    let told = told_plan(&out).unwrap();
+    let told = plan_of_folder(&out).unwrap();
     assert_eq!(told.series, sound.series);
     let missing = merge(&told, &[&out], &out).unwrap_err();
     assert!(
@@ -49,9 +49,9 @@ fn taps_that_the_actuator_cannot_do_are_refused_and_not_left_out() {
     let mut poisoned = plan(&[]);
     let fast = [("campaign.tap_speed", 3.0)];
     poisoned.cases[0].experiment = poisoned.cases[0].experiment.set(&fast).unwrap();
-    let refused = run(&poisoned, &poisoned.series[0], &mut |_| Ok(())).unwrap_err();
+    let refused = run_series(&poisoned, &poisoned.series[0], &mut |_| Ok(())).unwrap_err();
     assert!(
-        matches!(refused, RigError::Speed { ref what, .. } if what.starts_with("taps before shot 1")),
+        matches!(refused, RigError::Speed(ref what) if what.starts_with("taps before shot 1")),
         "{refused}"
     );
 }

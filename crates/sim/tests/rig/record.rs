@@ -1,7 +1,7 @@
 //! What the recorder stores of forces that are known.
 
 use hertzchain_experiment::{Amplifier, LowPass, LowPassKind, Recorder, Trigger, preset};
-use hertzchain_sim::rig::{Chance, Purpose, Record, Window};
+use hertzchain_sim::rig::{Purpose, RandomStream, Record, Window};
 
 fn amplifier() -> Amplifier {
     Amplifier {
@@ -25,19 +25,19 @@ fn recorder(trigger: Trigger) -> Recorder {
     }
 }
 
-fn chance() -> Chance {
-    Chance::new(3, 0, Purpose::Noise(0))
+fn random() -> RandomStream {
+    RandomStream::new(3, 0, Purpose::Noise(0))
 }
 
 /// A triangle of 100 N that begins 0.5 ms after the touch and lasts 0.2 ms.
 fn record(trigger: Trigger, gate_s: f64, amplifier: &Amplifier) -> Record {
     let recorder = recorder(trigger);
-    let window = Window::new(&recorder, gate_s, &mut chance());
-    let mut tape = window.tape();
+    let window = Window::new(&recorder, gate_s, &mut random());
+    let mut trace = window.trace();
     for (time_s, force_n) in [(0.5e-3, 0.0), (0.6e-3, 100.0), (0.7e-3, 0.0)] {
-        tape.note(time_s, [force_n, 0.0]);
+        trace.push(time_s, [force_n, 0.0]);
     }
-    window.record(tape, amplifier, &recorder, &mut chance())
+    window.record(trace, amplifier, &recorder, &mut random())
 }
 
 /// Time in s of the largest sample after the touch.
@@ -91,14 +91,14 @@ fn a_level_that_is_never_passed_starts_a_record_at_the_touch_and_says_so() {
 #[test]
 fn both_discs_add_in_one_channel_by_their_sensitivities() {
     let recorder = recorder(Trigger::Photogate);
-    let window = Window::new(&recorder, -2e-3, &mut chance());
+    let window = Window::new(&recorder, -2e-3, &mut random());
     let amplifier = Amplifier {
         wall_sensitivity_c_n: 5e-12,
         ..amplifier()
     };
-    let mut tape = window.tape();
-    tape.note(0.1e-3, [100.0, 40.0]);
-    let record = window.record(tape, &amplifier, &recorder, &mut chance());
+    let mut trace = window.trace();
+    trace.push(0.1e-3, [100.0, 40.0]);
+    let record = window.record(trace, &amplifier, &recorder, &mut random());
     // 10 mV/N × 100 N + 5 mV/N × 40 N = 1.2 V, less the droop of 1 mHz.
     let last = f64::from(*record.samples.last().unwrap()) * 10.0 / 32768.0;
     assert!((last - 1.2).abs() < 1e-3, "{last}");

@@ -5,17 +5,19 @@ use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::State;
 use hertzchain_chain::wave::{self, DormandPrince, Limits};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{Bench, Chance, Fired, Plan, Purpose, Window, programmed, shoot};
+use hertzchain_sim::rig::{
+    Bench, MeasuredShot, Plan, Purpose, RandomStream, Window, programmed, shoot,
+};
 
 /// By how much a series' times of flight in s are longer on another rig, shot by shot.
-fn longer_s(other: &Plan, series: usize, of: fn(&Fired) -> f64) -> Vec<f64> {
+fn longer_s(other: &Plan, series: usize, of: fn(&MeasuredShot) -> f64) -> Vec<f64> {
     let (one, other) = (shots(&plan(&[SAME_SPEED]), series), shots(other, series));
     let pairs = one.iter().zip(&other);
     pairs.map(|(one, other)| of(other) - of(one)).collect()
 }
 
-const INCIDENT_S: fn(&Fired) -> f64 = |fired| fired.shot.incident_s;
-const REFLECTED_S: fn(&Fired) -> f64 = |fired| fired.shot.reflected_s;
+const INCIDENT_S: fn(&MeasuredShot) -> f64 = |fired| fired.shot.incident_s;
+const REFLECTED_S: fn(&MeasuredShot) -> f64 = |fired| fired.shot.reflected_s;
 
 /// The series of the slowest and of the fastest dry shots, and of the slowest wet ones.
 const SLOW: usize = 0;
@@ -125,7 +127,7 @@ fn a_shot_leaves_what_the_next_one_finds() {
 }
 
 /// Incident time of flight in s of the wave that a shot makes in a chain left as it is here.
-fn wave_from(experiment: &Experiment, state: &State, fired: &Fired) -> f64 {
+fn wave_from(experiment: &Experiment, state: &State, fired: &MeasuredShot) -> f64 {
     let (system, _) = experiment.system(Some(fired.speed_m_s)).unwrap();
     let mut state = state.clone();
     state.strike(&system, fired.speed_m_s);
@@ -147,17 +149,17 @@ fn a_series_is_taps_and_shots_on_one_bench() {
         let experiment = &plan.case(series).experiment;
         let campaign = experiment.campaign();
         let tap_m_s = programmed(&campaign.actuator, campaign.tap_speed_m_s).unwrap();
-        let mut laying = Chance::new(plan.seed, series.number, Purpose::Laying);
-        let mut bench = Bench::lay(experiment, &mut laying).unwrap();
+        let mut laying = RandomStream::new(plan.seed, series.number, Purpose::Assembly);
+        let mut bench = Bench::assemble(experiment, &mut laying).unwrap();
         for fired in shots(&plan, at) {
             for _ in 0..campaign.taps {
                 bench.tap(tap_m_s).unwrap();
             }
             assert_eq!(*bench.state(), fired.shot.before);
             let recorder = &campaign.recorder;
-            let mut tape = Window::new(recorder, 0.0, &mut laying).tape();
+            let mut trace = Window::new(recorder, 0.0, &mut laying).trace();
             let sensor = experiment.sensor_bead();
-            shoot(&mut bench, sensor, fired.speed_m_s, &mut tape).unwrap();
+            shoot(&mut bench, sensor, fired.speed_m_s, &mut trace).unwrap();
             assert_eq!(*bench.state(), fired.shot.after);
         }
     }

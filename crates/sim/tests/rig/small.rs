@@ -1,7 +1,7 @@
 //! A campaign small enough for tests: 12 beads, two cases, three speeds.
 
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{Fired, Plan, run};
+use hertzchain_sim::rig::{MeasuredShot, Plan, run_series};
 
 pub const TEXT: &str = include_str!("../small.toml");
 
@@ -20,9 +20,9 @@ pub fn plan(changes: &[(&str, &str)]) -> Plan {
 }
 
 /// All shots of one series.
-pub fn shots(plan: &Plan, series: usize) -> Vec<Fired> {
+pub fn shots(plan: &Plan, series: usize) -> Vec<MeasuredShot> {
     let mut shots = Vec::new();
-    run(plan, &plan.series[series], &mut |fired| {
+    run_series(plan, &plan.series[series], &mut |fired| {
         shots.push(fired);
         Ok(())
     })

@@ -2,7 +2,7 @@
 
 use crate::small::shots;
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{Fired, Plan};
+use hertzchain_sim::rig::{MeasuredShot, Plan};
 use hertzchain_sim::{Batch, BatchOptions, Shard};
 
 /// The paper's rig, its chains laid compact and not pushed: at rest they are in equilibrium.
@@ -18,7 +18,7 @@ const COMPACT: [(&str, &str); 8] = [
 ];
 
 /// Incident and reflected time of flight in s at the shot's own speed, much closer than the rig's.
-fn fine_s(experiment: &Experiment, fired: &Fired) -> [f64; 2] {
+fn fine_s(experiment: &Experiment, fired: &MeasuredShot) -> [f64; 2] {
     let options = BatchOptions {
         accuracy: 1e-10,
         ..BatchOptions::of(experiment)

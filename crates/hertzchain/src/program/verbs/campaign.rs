@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::print::{self, print};
 use hertzchain::input;
 use hertzchain::options::CampaignOptions as Arguments;
-use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, outlook};
+use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, forecast};
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use std::io::IsTerminal;
@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let experiment = input::open(&arguments.input)?;
     let plan = Plan::new(&experiment, arguments.seed).map_err(failure)?;
-    for warning in outlook(&plan).map_err(failure)? {
+    for warning in forecast(&plan).map_err(failure)? {
         print::note(&format!("warning: {warning}"));
     }
     let threads = arguments.threads.map_or(0, |threads| threads.0);

@@ -7,21 +7,24 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print::print;
 use hertzchain_sim::BatchResult;
-use hertzchain_sim::rig::{TOLD_IN, told_plan};
+use hertzchain_sim::rig::{CAMPAIGN_FILE, plan_of_folder};
 use indicatif::HumanBytes;
 use std::path::Path;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
-    match folders.iter().find(|folder| folder.join(TOLD_IN).is_file()) {
+    match folders
+        .iter()
+        .find(|folder| folder.join(CAMPAIGN_FILE).is_file())
+    {
         Some(folder) => campaign(folder, &folders, &arguments.out),
         None => sweep(&folders, &arguments.out),
     }
 }
 
 fn campaign(told_by: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> {
-    let plan = told_plan(told_by).map_err(failure)?;
+    let plan = plan_of_folder(told_by).map_err(failure)?;
     let merged = hertzchain_sim::rig::merge(&plan, folders, out).map_err(failure)?;
     print(&format!(
         "{} series of {}, {} of them copied now; {} of recordings in {}; seed {}.\n",

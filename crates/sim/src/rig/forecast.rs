@@ -1,7 +1,6 @@
-//! What a campaign's recorder will not see, told before any shot is fired.
+//! Forecast of what a campaign's recorder will miss, before any shot is run.
 
-use crate::rig::error::RigError;
-use crate::rig::plan::{Case, Plan};
+use crate::rig::{Case, Plan, RigError};
 use crate::{Batch, BatchOptions, Shard};
 use hertzchain_chain::observe::Passage;
 use hertzchain_experiment::{Campaign, Recorder, Trigger};
@@ -9,7 +8,7 @@ use hertzchain_experiment::{Campaign, Recorder, Trigger};
 /// Relative accuracy of the shots that are looked at: records are longer or shorter by much more.
 const ACCURACY: f64 = 1e-3;
 
-/// Samples across a pulse's half maximum from which on its time is told as well as its
+/// Samples across a pulse's half maximum from which on its time is as good as its
 /// noise allows.
 const ENOUGH: f64 = 10.0;
 
@@ -35,8 +34,8 @@ const LATE: f64 = 3.0;
 /// # Errors
 /// A sampling rate that leaves no pulses: fewer than two samples across the half maximum of
 /// the narrowest.
-pub fn outlook(plan: &Plan) -> Result<Vec<String>, RigError> {
-    let mut told = Vec::new();
+pub fn forecast(plan: &Plan) -> Result<Vec<String>, RigError> {
+    let mut warnings = Vec::new();
     for case in &plan.cases {
         let speeds_m_s = &plan.experiment.campaign().speeds_m_s;
         let slowest = speeds_m_s.iter().copied().reduce(f64::min);
@@ -47,18 +46,18 @@ pub fn outlook(plan: &Plan) -> Result<Vec<String>, RigError> {
                 speed_m_s,
                 passage,
             };
-            told.extend(seen.rate(plan)?);
-            told.extend(seen.length(plan));
-            told.extend(seen.level(plan));
-            told.extend(seen.range(plan));
+            warnings.extend(seen.rate(plan)?);
+            warnings.extend(seen.length(plan));
+            warnings.extend(seen.level(plan));
+            warnings.extend(seen.range(plan));
         }
     }
-    told.dedup();
-    Ok(told)
+    warnings.dedup();
+    Ok(warnings)
 }
 
 /// The model's own shots in which a pulse reaches the wall. What can't be computed, the
-/// campaign itself will tell.
+/// campaign itself will report.
 fn passages(case: &Case, mut speeds_m_s: Vec<f64>) -> Vec<(f64, Passage)> {
     speeds_m_s.dedup();
     let options = BatchOptions {
@@ -120,10 +119,10 @@ impl Seen {
         let needed_s = back_s.unwrap_or(wall_s) - trigger_s + recorder.before_s;
         let missed = match back_s {
             _ if ends_s < wall_s => {
-                "before the wave is at the wall, so that no time of flight can be told"
+                "before the wave is at the wall, so that there is no time of flight"
             }
             Some(back_s) if ends_s < back_s => {
-                "before the wave is back at the sensor bead, so that no reflected time can be told"
+                "before the wave is back at the sensor bead, so that there is no reflected time of flight"
             }
             _ => return None,
         };
@@ -135,7 +134,7 @@ impl Seen {
         ))
     }
 
-    /// Voltages of the passing, the wall's and the returning pulse above no signal.
+    /// Voltages of the incident, the wall and the reflected pulse above the offset.
     fn peaks_v(&self, plan: &Plan) -> [Option<f64>; 3] {
         let amplifier = &plan.experiment.campaign().amplifier;
         let volts = |charge_c_n: f64, force_n: f64| amplifier.gain_v_c * charge_c_n * force_n;
@@ -158,14 +157,14 @@ impl Seen {
         let Trigger::Level(level_v) = recorder.trigger else {
             return None;
         };
-        let passing_v = self.peaks_v(plan)[0]?;
+        let incident_v = self.peaks_v(plan)[0]?;
         let noise_v = plan.experiment.campaign().amplifier.noise_v;
         let asked_v = level_v - recorder.offset_v;
         let what = &self.what;
-        let better_v = recorder.offset_v + (0.5 * passing_v).max(QUIET * noise_v);
-        if asked_v > passing_v {
+        let better_v = recorder.offset_v + (0.5 * incident_v).max(QUIET * noise_v);
+        if asked_v > incident_v {
             return Some(format!(
-                "{what}: its passing pulse of {passing_v:.3} V about {} V never passes the trigger's \
+                "{what}: its incident pulse of {incident_v:.3} V about {} V never passes the trigger's \
                  level of {level_v} V; level = \"{better_v:.3} V\" would be passed",
                 recorder.offset_v
             ));
@@ -174,7 +173,7 @@ impl Seen {
             format!(
                 "{what}: the trigger's level of {level_v} V is within the noise, {noise_v} V about {} V, \
                  which passes it without a shot or never from below; level = \"{better_v:.3} V\" is \
-                 half way up the passing pulse or above the noise",
+                 half way up the incident pulse or above the noise",
                 recorder.offset_v
             )
         })

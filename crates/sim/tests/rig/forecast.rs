@@ -1,18 +1,18 @@
 //! What a recorder will not see is told before a campaign.
 
 use crate::small::{experiment, plan, shots};
-use hertzchain_sim::rig::{Plan, RigError, outlook};
+use hertzchain_sim::rig::{Plan, RigError, forecast};
 
 #[test]
 fn a_recorder_that_sees_all_is_told_nothing() {
-    assert_eq!(outlook(&plan(&[])).unwrap(), Vec::<String>::new());
+    assert_eq!(forecast(&plan(&[])).unwrap(), Vec::<String>::new());
 }
 
 #[test]
 fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
     // The striker needs 10 ms from the gate at 0.1 m/s.
     let short = [("record = \"20 ms\"", "record = \"6.5 ms\"")];
-    let told = outlook(&plan(&short)).unwrap();
+    let told = forecast(&plan(&short)).unwrap();
     let named = |what: &str| told.iter().filter(|line| line.contains(what)).count();
     assert!(named("`dry`") > 0 && named("`wet`") > 0, "{told:?}");
     assert!(told[0].contains("at 0.1000 m/s"), "{told:?}");
@@ -20,7 +20,7 @@ fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
     let enough_ms: f64 = enough.split(" ms").next().unwrap().parse().unwrap();
     let longer = format!("record = \"{enough_ms} ms\"");
     let plan = plan(&[("record = \"20 ms\"", &longer), ("taps = 2", "taps = 0")]);
-    let left = outlook(&plan).unwrap();
+    let left = forecast(&plan).unwrap();
     assert!(
         !left.iter().any(|line| line.contains("`dry` at 0.1000")),
         "{left:?}"
@@ -35,7 +35,7 @@ fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
 
 #[test]
 fn a_rate_of_few_samples_a_pulse_is_told_and_one_of_none_refused() {
-    let at = |rate: &str| outlook(&plan(&[("sampling = \"500 kHz\"", rate)]));
+    let at = |rate: &str| forecast(&plan(&[("sampling = \"500 kHz\"", rate)]));
     let told = at("sampling = \"100 kHz\"").unwrap();
     assert!(told[0].contains("sampled at 100 kHz"), "{told:?}");
     let refused = at("sampling = \"1 kHz\"").unwrap_err();
@@ -46,7 +46,7 @@ fn a_rate_of_few_samples_a_pulse_is_told_and_one_of_none_refused() {
 /// Each of these would record nothing that anybody could use.
 #[test]
 fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
-    let told = |from: &str, to: &str| outlook(&plan(&[(from, to)])).unwrap().join("\n");
+    let told = |from: &str, to: &str| forecast(&plan(&[(from, to)])).unwrap().join("\n");
     let record = "record = \"20 ms\"";
     let clipped = told(record, "record = \"20 ms\"\nrange = \"20 mV\"");
     assert!(
