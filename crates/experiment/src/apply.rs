@@ -80,7 +80,6 @@ fn wall(spec: &mut Spec, reading: &Reading) {
     }
 }
 
-/// Which contacts are wet.
 fn sections(spec: &mut Spec, reading: &Reading) {
     let Some(wet) = spec.sections.iter().position(|section| section.wet) else {
         return;

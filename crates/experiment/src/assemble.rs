@@ -5,16 +5,16 @@ use crate::keys::ranges::SPEED;
 use crate::reference;
 use crate::spec::{Far, Near, Shape, Spec};
 use crate::validity;
-use crate::value::{Units, short};
+use crate::value::short;
 use hertzchain_chain::{Bead, Chain, FarEnd, Gap, Initial, Material, Section, Start};
 
-/// A chain and what is odd about it.
+/// A chain and its warnings.
 pub(crate) type Assembled = (Chain, Vec<Problem>);
 
 /// The chain of an experiment, hit at this speed.
 pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Problem> {
     let speed_m_s = striker_speed(spec, speed_m_s)?;
-    let (materials, mut oddities) = materials(spec, speed_m_s)?;
+    let (materials, mut warnings) = materials(spec, speed_m_s)?;
     let beads = beads(spec, &materials)?;
     let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
         return Err(Problem::new(
@@ -25,8 +25,8 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
     };
     let start = start(spec, speed_m_s, first, &materials)?;
     let far = far(&spec.far, last, &materials);
-    oddities.extend(inelastic(spec));
-    oddities.extend(closed_gaps(spec));
+    warnings.extend(inelastic(spec));
+    warnings.extend(closed_gaps(spec));
     let mut chain = Chain {
         start,
         far,
@@ -41,8 +41,8 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Pr
         beads,
     };
     chain.sections = reference::parted(spec, &chain)?;
-    oddities.extend(validity::warnings(spec, &chain));
-    Ok((chain, oddities))
+    warnings.extend(validity::warnings(spec, &chain));
+    Ok((chain, warnings))
 }
 
 /// The speed of the shot: the one asked for, else the file's.
@@ -51,24 +51,20 @@ fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Pro
     match (&spec.near, asked_m_s) {
         (Near::Striker { .. }, Some(speed)) if limits.hold(speed) => Ok(Some(speed)),
         (Near::Striker { .. }, Some(speed)) => {
-            let message = format!("a shot at {} was asked for", speed_words(spec, speed));
+            let message = format!(
+                "a shot at {} was asked for",
+                spec.units.with_unit(&short(speed), "m/s")
+            );
             let label = format!("expected a positive, finite speed, {}", limits.words);
             Err(Problem::new(&spec.near_span(), message, label))
         }
         (Near::Striker { speed_m_s, .. }, None) => Ok(Some(*speed_m_s)),
         (_, Some(speed)) => {
-            let asked = speed_words(spec, speed);
+            let asked = spec.units.with_unit(&short(speed), "m/s");
             let message = format!("a shot at {asked} was asked for, but there is no striker");
             Err(no_striker(spec, message))
         }
         (_, None) => Ok(None),
-    }
-}
-
-fn speed_words(spec: &Spec, speed: f64) -> String {
-    match spec.units {
-        Units::Si => format!("{} m/s", short(speed)),
-        Units::Dimensionless => short(speed),
     }
 }
 
@@ -79,7 +75,7 @@ pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> Problem {
 }
 
 impl Spec {
-    /// Where the file tells what sets the chain in motion.
+    /// Where the file says what sets the chain in motion.
     fn near_span(&self) -> std::ops::Range<usize> {
         match &self.near {
             Near::Striker { shape, .. } | Near::Driven { shape, .. } => shape.span.clone(),
@@ -87,7 +83,7 @@ impl Spec {
         }
     }
 
-    /// Where the file tells how fast it is set in motion.
+    /// Where the file says how fast it is set in motion.
     pub(crate) fn speed_span(&self) -> std::ops::Range<usize> {
         match &self.near {
             Near::Striker { speed_span, .. } => speed_span.clone(),
@@ -102,48 +98,40 @@ impl Spec {
         materials.any(|material| material == Some(index))
     }
 
-    /// Whether something of the chain is made of a material.
-    fn uses(&self, index: usize) -> bool {
-        let of = |shape: &Shape| shape.material == Some(index);
+    /// Indices of the materials that bodies or contacts of the chain have.
+    pub(crate) fn used_materials(&self) -> Vec<usize> {
         let parts = self.groups.iter().flat_map(|group| &group.cell);
-        let near = match &self.near {
-            Near::Striker { shape, .. } | Near::Driven { shape, .. } => of(shape),
-            Near::Free { .. } => false,
-        };
-        let far = match &self.far {
-            Far::HalfBead { shape, .. } | Far::Plane { shape, .. } => of(shape),
-            Far::Periodic { .. } | Far::Free => false,
-        };
-        let mut sections = self.sections.iter().map(|section| section.material);
-        near || far
-            || parts.into_iter().any(|part| part.material == Some(index))
-            || sections.any(|material| material == Some(index))
+        let sections = self.sections.iter().map(|section| section.material);
+        let used = parts.map(|part| part.material).chain(sections);
+        let ends = [self.near.material(), self.far.material()];
+        used.chain(ends).flatten().collect()
     }
 }
 
 /// Every material at this speed; those without use only cost a warning.
 fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Problem>), Problem> {
+    let used = spec.used_materials();
     let mut materials = Vec::new();
-    let mut oddities = Vec::new();
+    let mut warnings = Vec::new();
     for (index, material) in spec.materials.0.iter().enumerate() {
-        if spec.uses(index) {
-            let (values, oddity) = material.at(speed)?;
+        if used.contains(&index) {
+            let (values, warning) = material.at(speed)?;
             materials.push(values);
-            oddities.extend(oddity);
+            warnings.extend(warning);
         } else {
             materials.push(Material::RIGID);
             if spec.case_uses(index) {
                 continue;
             }
             let message = format!("nothing is made of `{}`", material.name);
-            oddities.push(Problem::new(
+            warnings.push(Problem::new(
                 &material.span,
                 message,
                 "this material is not used",
             ));
         }
     }
-    Ok((materials, oddities))
+    Ok((materials, warnings))
 }
 
 fn beads(spec: &Spec, materials: &[Material]) -> Result<Vec<Bead>, Problem> {

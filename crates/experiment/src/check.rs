@@ -6,7 +6,7 @@ use crate::keys::{self, Fields, Key, Kind, Limits, Need, ROOT, Variants, advice}
 use crate::known::Known;
 use crate::laws;
 use crate::nearest;
-use crate::value::{Expected, Units, short};
+use crate::value::{Expected, HAS_NONE, HAS_ONE, Units, short};
 
 /// Checks tables and collects what is wrong.
 #[derive(Debug)]
@@ -327,7 +327,7 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
         return Err(problem(format!("`{name}` is {}", node.kind())));
     };
     let value = number.value;
-    // Whole numbers beyond 2^53 are not told apart by a double.
+    // Whole numbers beyond 2^53 are not distinguished by a double.
     if value.fract() != 0.0 || value.abs() > 9e15 || !value.is_finite() {
         let message = match value.fract() == 0.0 {
             true => format!("`{name}` = {} is too large", short(value)),
@@ -399,5 +399,53 @@ fn example(key: &Key) -> String {
         Kind::Count { .. } => format!("`{name} = 1`"),
         Kind::Laws => "`laws = [\"elastic_hertz\"]`".to_owned(),
         _ => format!("`{name} = \"…\"`"),
+    }
+}
+
+/// The problems of a file, with one in place of all about units where no
+/// quantity at all suits the file's unit system.
+pub(crate) fn merge_unit_slips(
+    problems: Vec<Problem>,
+    fitting: usize,
+    units: Units,
+    tree: &Node,
+) -> Vec<Problem> {
+    let about_units = |problem: &Problem| match units {
+        Units::Si => problem.says(HAS_NONE),
+        Units::Dimensionless => problem.says(HAS_ONE),
+    };
+    let (slips, mut others): (Vec<Problem>, Vec<Problem>) =
+        problems.into_iter().partition(about_units);
+    match slips.first() {
+        Some(first) if fitting == 0 && slips.len() > 1 => {
+            others.insert(0, unit_slip(first, slips.len(), units, tree));
+            others
+        }
+        _ => {
+            others.extend(slips);
+            others.sort_by_key(Problem::start);
+            others
+        }
+    }
+}
+
+fn unit_slip(first: &Problem, count: usize, units: Units, tree: &Node) -> Problem {
+    match (units, tree.get("units")) {
+        (Units::Dimensionless, Some(node)) => {
+            let message =
+                format!("this file is dimensionless, but its {count} quantities have units");
+            Problem::new(
+                &node.span,
+                message,
+                "expected \"SI\", or plain numbers throughout",
+            )
+            .beside(first.place(), "the first quantity with a unit")
+        }
+        _ => {
+            let message = format!("none of the {count} quantities of this file has a unit");
+            let label = "the first: expected a unit, as in \"6.35 mm\"";
+            Problem::new(first.place(), message, label)
+                .help("where plain numbers are meant, write units = \"dimensionless\" at the top")
+        }
     }
 }

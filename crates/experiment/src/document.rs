@@ -44,6 +44,17 @@ pub(crate) struct Entry {
     pub(crate) node: Node,
 }
 
+impl Value {
+    /// A number in SI that a program sets.
+    pub(crate) fn from_code(value: f64) -> Self {
+        Self::Number(Number {
+            value,
+            half_digit: 0.0,
+            from_code: true,
+        })
+    }
+}
+
 impl Node {
     /// What the value is called in messages.
     pub(crate) fn kind(&self) -> &'static str {

@@ -1,9 +1,9 @@
-//! Steps and durations with which no shot comes to a sensible end, told at
+//! Steps and durations with which no shot comes to a sensible end, reported at
 //! their place in the file before anything runs.
 
 use crate::finding::Problem;
 use crate::spec::{Method, Near, Spec};
-use crate::value::{Units, brief};
+use crate::value::brief;
 use hertzchain_chain::{Chain, Gap, Push, System};
 use std::f64::consts::TAU;
 
@@ -47,7 +47,6 @@ struct Effort<'a> {
 
 /// Longest duration in s of a shot of a system: beyond, it would take more steps
 /// than hours have time for.
-#[must_use]
 pub fn longest_duration_s(system: &System) -> f64 {
     bearable_s(system.scales().time_s)
 }
@@ -97,12 +96,8 @@ impl<'a> Effort<'a> {
         }
     }
 
-    /// A time in messages.
     fn time(&self, time_s: f64) -> String {
-        match self.spec.units {
-            Units::Si => format!("{} s", brief(time_s)),
-            Units::Dimensionless => brief(time_s),
-        }
+        self.spec.units.with_unit(&brief(time_s), "s")
     }
 
     fn good_step(&self) -> String {
@@ -215,11 +210,8 @@ impl<'a> Effort<'a> {
         let most_n_m = STIFFEST * mass_kg / (self.contact_time_s * self.contact_time_s);
         (stiffness_n_m > most_n_m).then(|| {
             let message = "the spring on bead 1 is over a million times stiffer than its contact";
-            let unit = match self.spec.units {
-                Units::Si => " N/m",
-                Units::Dimensionless => "",
-            };
-            let label = format!("expected a stiffness of at most {}{unit}", brief(most_n_m));
+            let most = self.spec.units.with_unit(&brief(most_n_m), "N/m");
+            let label = format!("expected a stiffness of at most {most}");
             Problem::new(&self.spec.load_span, message, label)
                 .help("the steps would follow the spring alone; push = \"constant\" holds as well")
         })

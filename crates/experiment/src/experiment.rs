@@ -2,8 +2,7 @@
 
 use crate::apply::apply;
 use crate::assemble;
-use crate::check::Check;
-use crate::crushed;
+use crate::check::{self, Check};
 use crate::document::{self, Entry, Node, Value};
 use crate::effort;
 use crate::file;
@@ -12,7 +11,6 @@ use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
 use crate::spec::{Campaign, Liquid, Rig, SectionSpec, Solver, Spec};
-use crate::unit_slip;
 use crate::validity;
 use crate::value::Units;
 use crate::view::View;
@@ -92,7 +90,7 @@ impl Experiment {
         let mut check = Check::new(units, &tree);
         check.table(&tree, &ROOT, None);
         if !check.problems.is_empty() {
-            let problems = unit_slip::gathered(check.problems, check.fitting, units, &tree);
+            let problems = check::merge_unit_slips(check.problems, check.fitting, units, &tree);
             return Err(Mistakes::new(problems, &source));
         }
         let root = View {
@@ -127,21 +125,21 @@ impl Experiment {
         Ok(experiment)
     }
 
-    /// The chain, hit at this speed in m/s or at the file's own, and what is
-    /// odd about it. Materials may depend on the speed.
+    /// The chain, hit at this speed in m/s or at the file's own, and warnings
+    /// about it. Materials may depend on the speed.
     ///
     /// # Errors
     /// A speed without a striker, not positive or not finite; numbers that
     /// leave their limits at this speed; laws that can't be built.
     pub fn chain(&self, speed_m_s: Option<f64>) -> Result<(Chain, Vec<Warning>), Mistakes> {
-        let (chain, oddities) =
+        let (chain, warnings) =
             assemble::chain(&self.spec, speed_m_s).map_err(|p| self.mistake(p))?;
-        let warnings = oddities.into_iter().map(|p| p.warning(&self.source));
+        let warnings = warnings.into_iter().map(|p| p.warning(&self.source));
         Ok((chain, warnings.collect()))
     }
 
     /// The chain as [`Experiment::chain`] gives it, at rest and ready for a
-    /// shot, and what is odd about it.
+    /// shot, and warnings about it.
     ///
     /// # Errors
     /// Those of [`Experiment::chain`]; laws that the materials can't serve; no
@@ -164,7 +162,7 @@ impl Experiment {
         let (chain, warnings) = self.chain(speed_m_s)?;
         let refused = |error| self.mistake(locate::problem(&self.spec, &error));
         let system = System::new(&chain).map_err(refused)?;
-        let problem = crushed::problem(&self.spec, &chain, &system)
+        let problem = validity::overlapped_at_start(&self.spec, &chain, &system)
             .or_else(|| validity::refusal(&self.spec, &chain))
             .or_else(|| effort::problem(&self.spec, &chain, &system));
         match problem {
@@ -175,13 +173,11 @@ impl Experiment {
 
     /// What a solver says of this experiment's motion, at the laws of the
     /// contact where it ended, or at the solver's settings.
-    #[must_use]
     pub fn unsolved(&self, error: &SolveError) -> Mistakes {
         self.mistake(locate::unsolved(&self.spec, error))
     }
 
     /// Why a solver does not reach what it was asked for, at its settings.
-    #[must_use]
     pub fn unreached(&self, why: &str) -> Mistakes {
         self.mistake(locate::unreached(&self.spec, why))
     }
@@ -218,56 +214,47 @@ impl Experiment {
     }
 
     /// Name of the file or preset.
-    #[must_use]
     pub fn name(&self) -> &str {
         self.source.name()
     }
 
     /// The file's text, as provenance.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.source.inner()
     }
 
     /// What the experiment is.
-    #[must_use]
     pub fn title(&self) -> &str {
         &self.spec.title
     }
 
     /// Unit system of the file.
-    #[must_use]
     pub fn units(&self) -> Units {
         self.spec.units
     }
 
     /// Speed of the striker in m/s; `None` without a striker.
-    #[must_use]
     pub fn speed_m_s(&self) -> Option<f64> {
         self.spec.near.speed_m_s()
     }
 
     /// Number of beads N in the reading.
-    #[must_use]
     pub fn beads(&self) -> usize {
         self.spec.bead_count()
     }
 
     /// Whether bead N leans on something, so that there is a wall signal.
-    #[must_use]
     pub fn has_wall(&self) -> bool {
         self.spec.has_wall()
     }
 
     /// The sensor bead n of the ToF.
-    #[must_use]
     pub fn sensor_bead(&self) -> usize {
         self.spec.sensors.bead
     }
 
     /// All sensors: the sensor bead, the wall if there is one, the paper's
     /// channel if asked for, then those the file lists.
-    #[must_use]
     pub fn sensors(&self) -> Vec<Sensor> {
         let sensors = &self.spec.sensors;
         let wall = self.has_wall().then(|| Sensor::Contact(self.beads()));
@@ -292,45 +279,38 @@ impl Experiment {
     }
 
     /// Solver, accuracy, step and duration.
-    #[must_use]
     pub fn solver(&self) -> Solver {
         self.spec.solver
     }
 
     /// The choices that the paper leaves open.
-    #[must_use]
     pub fn reading(&self) -> Reading {
         self.spec.reading
     }
 
     /// Where a pulse is timed.
-    #[must_use]
     pub fn pick(&self) -> Pick {
         self.spec.reading.pick
     }
 
-    /// The liquid of the wet contacts, if the file tells.
-    #[must_use]
+    /// The liquid of the wet contacts, if the file has one.
     pub fn liquid(&self) -> Option<&Liquid> {
         self.spec.liquid.as_ref()
     }
 
-    /// What stands around the chain, if the file tells; nothing is computed
+    /// What stands around the chain, if the file has one; nothing is computed
     /// from it.
-    #[must_use]
     pub fn rig(&self) -> Option<&Rig> {
         self.spec.rig.as_ref()
     }
 
     /// What a rig does with this experiment, shot after shot.
-    #[must_use]
     pub fn campaign(&self) -> &Campaign {
         &self.spec.campaign
     }
 
     /// Names of the chains that a campaign measures, in the file's order;
     /// none where the file's one chain is all.
-    #[must_use]
     pub fn cases(&self) -> Vec<&str> {
         self.spec
             .cases
@@ -384,13 +364,11 @@ impl Experiment {
 
     /// Coefficient of dry friction between beads and track, which acts
     /// between shots.
-    #[must_use]
     pub fn friction_coefficient(&self) -> f64 {
         self.spec.friction_coefficient
     }
 
     /// Name of the effective material of a section's contacts, if it has one.
-    #[must_use]
     pub fn effective_material(&self, section: &SectionSpec) -> Option<&str> {
         let material = self.spec.materials.0.get(section.material?)?;
         Some(&material.name)
@@ -398,20 +376,14 @@ impl Experiment {
 
     /// Names of the materials that bodies or contacts of the chain have; a file may
     /// hold others, for its cases.
-    #[must_use]
     pub fn used_materials(&self) -> Vec<&str> {
-        let parts = self.spec.groups.iter().flat_map(|group| &group.cell);
-        let sections = self.spec.sections.iter().map(|section| section.material);
-        let used = parts.map(|part| part.material).chain(sections);
-        let ends = [self.spec.near.material(), self.spec.far.material()];
-        let used: Vec<usize> = used.chain(ends).flatten().collect();
+        let used = self.spec.used_materials();
         let named = self.spec.materials.0.iter().enumerate();
         let named = named.filter(|(at, _)| used.contains(at));
         named.map(|(_, material)| material.name.as_str()).collect()
     }
 
     /// Sections of contacts with their laws, in the reading.
-    #[must_use]
     pub fn sections(&self) -> &[SectionSpec] {
         &self.spec.sections
     }

@@ -13,7 +13,7 @@ pub(crate) fn read(path: &Path) -> Result<String, Error> {
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path)?;
-    // One byte more tells a file that is too large; an endless one ends.
+    // One byte more shows a file that is too large; an endless one ends.
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(Error::other("an experiment file has at most 16 MiB"));

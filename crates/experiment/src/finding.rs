@@ -73,7 +73,6 @@ impl Problem {
         self.span.start
     }
 
-    /// Adds what to do.
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
@@ -114,13 +113,11 @@ fn shortened(text: String) -> String {
 
 impl Finding {
     /// Name of the file.
-    #[must_use]
     pub fn file(&self) -> &str {
         self.source.name()
     }
 
     /// Line in the file, from 1.
-    #[must_use]
     pub fn line(&self) -> usize {
         self.line_of(&self.problem.span)
     }
@@ -131,27 +128,23 @@ impl Finding {
     }
 
     /// Line of the other place that has to do with it, if there is one.
-    #[must_use]
     pub fn other_line(&self) -> Option<usize> {
         let (span, _) = self.problem.other.as_deref()?;
         Some(self.line_of(span))
     }
 
     /// The offending text.
-    #[must_use]
     pub fn text(&self) -> &str {
         let text = self.source.inner().get(self.problem.span.clone());
         text.unwrap_or_default()
     }
 
     /// What was expected, as written under the offending text.
-    #[must_use]
     pub fn label(&self) -> &str {
         &self.problem.label
     }
 
     /// File, line, message, expectation and advice in one line, for logs.
-    #[must_use]
     pub fn one_line(&self) -> String {
         let other = self.problem.other.as_deref().into_iter();
         let other = other.map(|(span, label)| format!("; line {}: {label}", self.line_of(span)));
@@ -214,7 +207,6 @@ impl Mistakes {
     }
 
     /// Each mistake, in the order of discovery.
-    #[must_use]
     pub fn findings(&self) -> &[Finding] {
         &self.0
     }

@@ -2,11 +2,11 @@
 
 use crate::document::{Node, Value};
 
-/// Beads and materials of a file, as far as they can be told before it is
+/// Beads and materials of a file, as far as they can be counted before it is
 /// checked.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Known {
-    /// Number of beads N, where every group tells its own.
+    /// Number of beads N, where every group has its own.
     beads: Option<i64>,
     materials: Vec<String>,
 }
@@ -32,7 +32,6 @@ impl Known {
         }
     }
 
-    /// How that is counted.
     pub(crate) fn counting(key: &str) -> Option<&'static str> {
         match key {
             "bead" | "beads" => Some(BEADS),
@@ -64,7 +63,6 @@ pub(crate) fn expected_material<'a>(names: impl Iterator<Item = &'a str>) -> Str
     }
 }
 
-/// Beads of one group.
 fn group(table: &Node) -> Option<i64> {
     let Some(cell) = table.get("cell") else {
         return count(table, "count");

@@ -36,7 +36,6 @@ pub(crate) fn is_own(parameter: &Parameter) -> bool {
 
 impl LawSpec {
     /// Name of the law.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.row.info.name
     }
@@ -46,7 +45,6 @@ impl LawSpec {
         self.given.contains(&("stiffness", 0.0))
     }
 
-    /// The law itself.
     pub(crate) fn build(&self) -> Result<Arc<dyn Law>, Problem> {
         self.build_with(&self.given)
     }
@@ -135,7 +133,7 @@ fn contact(node: &Node) -> Result<Option<usize>, Problem> {
 }
 
 /// Refuses the same law with the same parameters twice in one section: its
-/// force would count twice, which nobody writes on purpose that way. The same
+/// force would count twice, which is not meant. The same
 /// law with other parameters is a sum of two terms.
 pub(crate) fn each_once(laws: &[LawSpec]) -> Result<(), Problem> {
     for (index, law) in laws.iter().enumerate() {

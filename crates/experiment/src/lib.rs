@@ -29,7 +29,7 @@
 //! ```
 //!
 //! - [`Experiment`] is a file that has been read and checked. What is wrong is
-//!   told as [`Mistakes`], each with its line and what was expected.
+//!   reported as [`Mistakes`], each with its line and what was expected.
 //! - [`preset`] gives the files that come with the program.
 //! - [`Reading`] is one choice of what the paper leaves open;
 //!   [`Experiment::with_reading`] applies it.
@@ -44,9 +44,7 @@
 mod apply;
 mod assemble;
 mod check;
-mod crushed;
 mod document;
-mod duplicate;
 mod effort;
 mod experiment;
 mod file;
@@ -65,7 +63,6 @@ mod schema;
 mod spec;
 mod syntax;
 mod understood;
-mod unit_slip;
 mod validity;
 mod value;
 mod view;

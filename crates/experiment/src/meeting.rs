@@ -163,7 +163,7 @@ impl Meeting<'_> {
 
     /// How strong each dissipative law is: its force at the largest overlap
     /// and the full speed over the elastic force, by the law's place in the
-    /// section. Both never act together; the ratio tells their sizes.
+    /// section. Both never act together; the ratio compares their sizes.
     pub(crate) fn strengths(&self) -> impl Iterator<Item = (usize, f64)> {
         let elastic_n = self.elastic_n();
         let terms = self.terms.iter().enumerate();

@@ -14,7 +14,6 @@ pub struct Preset {
 
 impl Preset {
     /// What it is: the file's title.
-    #[must_use]
     pub fn title(&self) -> &'static str {
         let line = self.text.lines().find(|line| line.starts_with("title"));
         line.and_then(|line| line.split('"').nth(1))
@@ -70,19 +69,16 @@ static EXAMPLES: &[Preset] = files![
 static CAMPAIGNS: &[Preset] = files!["paper"];
 
 /// The paper's chains.
-#[must_use]
 pub const fn presets() -> &'static [Preset] {
     PRESETS
 }
 
 /// Chains of other works, each with something to learn.
-#[must_use]
 pub const fn examples() -> &'static [Preset] {
     EXAMPLES
 }
 
 /// Campaigns of a rig: chains, speeds, shots and instruments.
-#[must_use]
 pub const fn campaigns() -> &'static [Preset] {
     CAMPAIGNS
 }

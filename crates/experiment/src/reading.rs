@@ -96,7 +96,6 @@ macro_rules! switches {
 
         impl Reading {
             /// The option of a switch, as written in a file.
-            #[must_use]
             pub fn get(&self, switch: &str) -> Option<&'static str> {
                 match switch {
                     $(stringify!($field) => Some(self.$field.text()),)+
@@ -227,13 +226,11 @@ pub const STOP_MASS_KG: f64 = 4.5;
 
 impl Reading {
     /// Every switch with its options, the default first.
-    #[must_use]
     pub const fn switches() -> &'static [Switch] {
         SWITCHES
     }
 
     /// The switches that are not at their default, with their options.
-    #[must_use]
     pub fn changes(&self) -> Vec<(&'static str, &'static str)> {
         let option = |switch: &Switch| Some((switch.name, self.get(switch.name)?));
         let changed = |(name, option): &(&str, &str)| Self::default().get(name) != Some(option);

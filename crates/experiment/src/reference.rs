@@ -28,7 +28,6 @@ pub struct Reference {
 impl Experiment {
     /// The contacts that the number at a path holds for, at the experiment's own speed;
     /// `None` where materials and radii would not give it.
-    #[must_use]
     pub fn reference(&self, path: &str) -> Option<Reference> {
         let (section, rest) = path.strip_prefix("contacts[")?.split_once("].laws.")?;
         let (law, parameter) = rest.split_once('.')?;
@@ -88,7 +87,6 @@ fn own_value(law: &str, parameter: &str, pair: &Pair) -> Option<f64> {
     (value.is_finite() && value >= 0.0).then_some(value)
 }
 
-/// A section's effective material.
 fn section_material(spec: &SectionSpec, chain: &Chain) -> Option<Material> {
     let sections = chain.sections.iter();
     let mut own = sections.filter(|section| section.contacts.contains(&spec.from));

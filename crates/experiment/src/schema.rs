@@ -14,7 +14,6 @@ const QUANTITY: &str = r"^\s*[-+]?(\d|\.\d)";
 /// JSON Schema (draft 2020-12) of an experiment file.
 ///
 /// Plain numbers stand for quantities with a dimension in dimensionless files alone.
-#[must_use]
 pub fn schema() -> Value {
     let dimensionless = json!({
         "properties": { "units": { "const": "dimensionless" } }, "required": ["units"],

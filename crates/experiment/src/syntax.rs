@@ -1,27 +1,28 @@
 //! What TOML's parser refuses, in the words of people who write experiments.
 
-use crate::duplicate;
+use crate::document::{self, Node};
 use crate::finding::Problem;
+use crate::keys::{Kind, ROOT};
 use crate::spec::as_key;
 use crate::units;
 use std::ops::Range;
 use toml::de::Error;
 
-/// Most problems that are told at once.
+/// Most problems that are reported at once.
 const MOST: usize = 20;
 
 /// One problem a slip of the pen: what only follows from an earlier error is
 /// left out.
 pub(crate) fn problems(errors: &[Error], text: &str) -> Vec<Problem> {
-    let mut told = Told::default();
+    let mut reported = Reported::default();
     let mut problems = Vec::new();
     for error in errors {
         if problems.len() == MOST {
             break;
         }
         let place = place(error, text);
-        let follows = told.covers(&place, error, text);
-        told.add(&place, error, text);
+        let follows = reported.covers(&place, error, text);
+        reported.add(&place, error, text);
         if !follows {
             problems.push(problem(error, &place, text));
         }
@@ -53,17 +54,17 @@ fn leaves_open(error: &Error) -> bool {
     inside.iter().any(|part| error.message().contains(part))
 }
 
-/// How far the text has been told about.
+/// How far the text has been reported on.
 #[derive(Default)]
-struct Told {
+struct Reported {
     /// End of the last line with an error, and of what continues it.
     line_end: usize,
     /// End of the last table that stands twice.
     table_end: usize,
 }
 
-impl Told {
-    /// Whether an error follows from one already told.
+impl Reported {
+    /// Whether an error follows from one already reported.
     fn covers(&self, place: &Range<usize>, error: &Error, text: &str) -> bool {
         let at = line(text, place.start);
         let in_line = at.start < self.line_end;
@@ -86,7 +87,7 @@ impl Told {
 }
 
 /// The line around a byte, without its end.
-pub(crate) fn line(text: &str, at: usize) -> Range<usize> {
+fn line(text: &str, at: usize) -> Range<usize> {
     let before = text.get(..at).unwrap_or_default();
     let after = text.get(at..).unwrap_or_default();
     let start = before.rfind('\n').map_or(0, |end| end + 1);
@@ -100,7 +101,7 @@ fn is_blank(line: &str) -> bool {
 }
 
 /// Whether a line starts a table or gives a key a value.
-pub(crate) fn begins_anew(line: &str) -> bool {
+fn begins_anew(line: &str) -> bool {
     let key = line.split('=').next().unwrap_or_default().trim();
     let word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
     line.starts_with('[') || (line.contains('=') && !key.is_empty() && key.chars().all(word))
@@ -108,7 +109,7 @@ pub(crate) fn begins_anew(line: &str) -> bool {
 
 fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
     if is_duplicate(error) {
-        return duplicate::problem(place, text);
+        return duplicate(place, text);
     }
     if let Some(problem) = bare_name(place, text) {
         return problem;
@@ -207,4 +208,91 @@ fn decimal_comma(raw: &str) -> Option<String> {
         false => format!("\"{better}\""),
     };
     Some(format!("expected a decimal point: write {written}"))
+}
+
+/// The one problem of a second `[table]` or `key = …`, whose key is at `place`.
+fn duplicate(place: &Range<usize>, text: &str) -> Problem {
+    let line = line(text, place.start);
+    let whole = text.get(line.clone()).unwrap_or_default();
+    let before = text.get(..line.start).unwrap_or_default();
+    let equals = whole.find('=').map_or(line.end, |at| line.start + at);
+    let first = match whole.trim_start().starts_with('[') {
+        true => header(before, whole),
+        false if begins_anew(whole) && place.start < equals => key(before, whole),
+        false => beside(text, line.start, place),
+    };
+    let written = text.get(place.clone()).unwrap_or_default();
+    let (what, help) = match whole.trim_start().starts_with('[') {
+        true => (whole.trim(), duplicate_help(written)),
+        false => (written, "keep one of the two".to_owned()),
+    };
+    let message = format!("`{what}` stands here a second time");
+    let problem = Problem::new(place, message, "expected it once").help(help);
+    match first {
+        Some(span) => problem.beside(&span, "the first one is here"),
+        None => problem,
+    }
+}
+
+/// What to do about a second table.
+fn duplicate_help(key: &str) -> String {
+    match ROOT.key(key).map(|key| &key.kind) {
+        Some(Kind::Tables(_)) => format!("write [[{key}]] to add one more"),
+        _ => "put all its keys into one table".to_owned(),
+    }
+}
+
+/// The keys of a header line, or of a line that gives a key a value.
+fn path(line: &str) -> Option<Vec<String>> {
+    let written = match line.trim_start().starts_with('[') {
+        true => line.to_owned(),
+        false => format!("{} = 0", line.split('=').next()?),
+    };
+    let tree = document::understood(&written);
+    let mut at = &tree;
+    let mut keys = Vec::new();
+    while let Some(entry) = latest(at).entries().first() {
+        keys.push(entry.key.clone());
+        at = &entry.node;
+    }
+    Some(keys)
+}
+
+/// A table, or the last of a list of them.
+fn latest(node: &Node) -> &Node {
+    node.members().last().unwrap_or(node)
+}
+
+fn header(before: &str, whole: &str) -> Option<Range<usize>> {
+    let tree = document::understood(before);
+    place_of(&tree, &path(whole)?)
+}
+
+/// The same key in the table that is open where the line stands.
+fn key(before: &str, whole: &str) -> Option<Range<usize>> {
+    let tree = document::understood(before);
+    let mut lines = before.lines().rev();
+    let open = lines.find(|line| line.trim_start().starts_with('['));
+    let mut full = open.map_or(Some(Vec::new()), path)?;
+    full.extend(path(whole)?);
+    place_of(&tree, &full)
+}
+
+/// Where a path's last key, or as much of it as there is, stands.
+fn place_of(tree: &Node, path: &[String]) -> Option<Range<usize>> {
+    let mut at = tree;
+    let mut place = None;
+    for key in path {
+        let entry = latest(at).entries().iter().find(|e| e.key == *key)?;
+        place = Some(entry.key_span.clone());
+        at = &entry.node;
+    }
+    place
+}
+
+/// The same word earlier in the line, for a table in braces.
+fn beside(text: &str, from: usize, place: &Range<usize>) -> Option<Range<usize>> {
+    let word = text.get(place.clone())?;
+    let at = from + text.get(from..place.start)?.rfind(word)?;
+    Some(at..at + word.len())
 }

@@ -10,8 +10,7 @@ impl Experiment {
     /// a program has set, the reading, and the contacts of the chosen case.
     ///
     /// Comments, blanks, and where the file lies do not matter; a number is its
-    /// bits. For fingerprints: nobody reads it.
-    #[must_use]
+    /// bits. For fingerprints: not for reading.
     pub fn understood(&self) -> String {
         let mut text = format!("{:?}\n", self.reading());
         for section in self.sections() {

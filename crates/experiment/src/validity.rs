@@ -1,4 +1,4 @@
-//! Contact laws used beyond what they are for, judged by two bodies that meet
+//! Contact laws used beyond what they are for, estimated from two bodies that meet
 //! at the speed that sets the chain in motion.
 
 use crate::finding::Problem;
@@ -6,15 +6,15 @@ use crate::laws::LawSpec;
 use crate::meeting::{Meeting, meetings};
 use crate::spec::{MaterialSpec, Spec};
 use crate::value::{Units, brief, rounded};
-use hertzchain_chain::Chain;
 use hertzchain_chain::laws::{Nature, Source};
+use hertzchain_chain::{Chain, FarEnd, System};
 use std::ops::Range;
 
 /// Largest overlap over the reduced radius for laws of touching spheres: the
 /// contact circle is then a third of that radius, no longer small against it.
 const DEEP: f64 = 0.1;
 
-/// Overlap over the reduced radius that no law survives: two alike spheres have
+/// Overlap over the reduced radius that no law survives: two like spheres have
 /// come nearer by one radius.
 const CRUSHED: f64 = 2.0;
 
@@ -50,18 +50,17 @@ pub(crate) fn warnings(spec: &Spec, chain: &Chain) -> Vec<Problem> {
     let deepest = spheres.max_by(|a, b| depth(a.0).total_cmp(&depth(b.0)));
     let deep = deepest.filter(|(m, _)| spec.units == Units::Si && depth(m) > DEEP);
     let deep = deep.map(|(meeting, law)| deep_contact(spec, meeting, law));
-    let odd = strengths(spec, &meetings).filter_map(|used| used.odd());
-    deep.into_iter().chain(odd).collect()
+    let strong = strengths(spec, &meetings).filter_map(|used| used.warning());
+    deep.into_iter().chain(strong).collect()
 }
 
 /// "two bodies that meet in contact 0 at 0.5 m/s".
 fn bodies(spec: &Spec, meeting: &Meeting<'_>) -> String {
-    let (contact, speed) = (meeting.contact, brief(meeting.speed_m_s));
-    let unit = match spec.units {
-        Units::Si => " m/s",
-        Units::Dimensionless => "",
-    };
-    format!("two bodies that meet in contact {contact} at {speed}{unit}")
+    let speed = spec.units.with_unit(&brief(meeting.speed_m_s), "m/s");
+    format!(
+        "two bodies that meet in contact {} at {speed}",
+        meeting.contact
+    )
 }
 
 /// The law of a meeting that takes the bodies for spheres: one whose stiffness
@@ -168,7 +167,7 @@ impl Used<'_> {
     }
 
     /// Too strong for the law's range, or too weak to be seen.
-    fn odd(&self) -> Option<Problem> {
+    fn warning(&self) -> Option<Problem> {
         if self.strength > STRONG {
             let label = "the two then do not come apart again";
             return Some(self.problem(label).help(validity(self.law)));
@@ -226,5 +225,52 @@ impl Used<'_> {
                 brief(1.0 / self.strength)
             ),
         }
+    }
+}
+
+/// The first contact that is overlapped by more than the smaller radius at the
+/// start, by load or by displacement. Dimensionless lengths have no radius to
+/// be compared with.
+pub(crate) fn overlapped_at_start(spec: &Spec, chain: &Chain, system: &System) -> Option<Problem> {
+    if spec.units == Units::Dimensionless {
+        return None;
+    }
+    let beads = chain.beads.len();
+    let mut displaced_m = vec![0.0; beads + 2];
+    for initial in &chain.initial {
+        if let Some(place) = displaced_m.get_mut(initial.bead) {
+            *place = initial.displacement_m;
+        }
+    }
+    if let (FarEnd::Periodic { .. }, [_, first, .., last]) = (&chain.far, &mut displaced_m[..]) {
+        *last = *first;
+    }
+    let inner = displaced_m.iter().zip(displaced_m.iter().skip(1)).skip(1);
+    // What bead N leans on is at least as large, or of no radius at all.
+    let right = chain.beads.iter().skip(1).chain(chain.beads.last());
+    let radii = chain.beads.iter().zip(right);
+    let mut contacts = (1..).zip(inner.zip(radii));
+    contacts.find_map(|(contact, ((left_m, right_m), (left, right)))| {
+        let at_rest_m = system.static_contact(contact).overlap_m;
+        let overlap_m = at_rest_m + left_m - right_m;
+        let radius_m = left.radius_m.min(right.radius_m);
+        (overlap_m > radius_m).then(|| overlapped(spec, contact, overlap_m, at_rest_m > radius_m))
+    })
+}
+
+fn overlapped(spec: &Spec, contact: usize, overlap_m: f64, by_load: bool) -> Problem {
+    let message = format!(
+        "contact {contact} is overlapped by {} m at the start, more than a bead's radius",
+        rounded(overlap_m)
+    );
+    let touches = |bead: usize| bead == contact || bead == contact + 1;
+    let moved = spec.initial.iter().find(|(i, _)| touches(i.bead));
+    match moved {
+        Some((_, span)) if !by_load => Problem::new(
+            span,
+            message,
+            "expected a smaller displacement into its neighbour",
+        ),
+        _ => Problem::new(&spec.load_span, message, "expected less force on the chain"),
     }
 }

@@ -15,6 +15,16 @@ pub enum Units {
     Dimensionless,
 }
 
+impl Units {
+    /// A number with its SI unit, which dimensionless files do not have.
+    pub(crate) fn with_unit(self, number: &str, unit: &str) -> String {
+        match self {
+            Self::Si => format!("{number} {unit}"),
+            Self::Dimensionless => number.to_owned(),
+        }
+    }
+}
+
 /// Ends of messages about a unit that is missing, or one too many.
 pub(crate) const HAS_NONE: &str = "has no unit";
 pub(crate) const HAS_ONE: &str = "has a unit in a dimensionless file";

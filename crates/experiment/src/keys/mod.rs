@@ -69,7 +69,6 @@ pub(crate) enum Kind {
 #[derive(Debug)]
 pub(crate) struct Variants {
     pub(crate) title: &'static str,
-    /// The deciding key.
     pub(crate) tag: &'static str,
     pub(crate) options: &'static [(&'static str, Fields)],
 }

@@ -2,7 +2,7 @@
 //!
 //! They are far wider than any material or laboratory and only keep out slips
 //! such as a lost exponent, whose consequences (no overlap that a number can
-//! hold, a pulse that never arrives) could not be told at their place in the
+//! hold, a pulse that never arrives) could not be reported at their place in the
 //! file. A rigid body is within them.
 
 use super::Limits;

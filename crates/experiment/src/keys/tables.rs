@@ -347,7 +347,6 @@ static READING: Fields = Fields {
     keys: reading::KEYS,
 };
 
-/// The whole file.
 pub(crate) static ROOT: Fields = table! { "an experiment file";
     title: Text, "what the experiment is";
     units: Choice(&["SI", "dimensionless"]), "default SI";

@@ -80,7 +80,6 @@ fn hint(nearest: Option<&str>) -> String {
 
 impl Experiment {
     /// Every number that the file gives, in its order.
-    #[must_use]
     pub fn numbers(&self) -> Vec<Named> {
         let given = |slot: Slot<'_>| {
             let si = slot.value(self.units())?;
@@ -96,7 +95,6 @@ impl Experiment {
     }
 
     /// Every place where a number stands or could stand, in the file's order.
-    #[must_use]
     pub fn places(&self) -> Vec<Place> {
         let place = |slot: Slot<'_>| slot.place(self.units());
         self.slots().into_iter().map(place).collect()
@@ -156,15 +154,8 @@ impl Experiment {
     /// # Errors
     /// An unknown or ambiguous path, or a value that does not fit.
     pub fn set(&self, values: &[(&str, f64)]) -> Result<Self, PathError> {
-        let number = |value: f64| {
-            Value::Number(Number {
-                value,
-                half_digit: 0.0,
-                from_code: true,
-            })
-        };
-        let values = values.iter().map(|(path, value)| (*path, number(*value)));
-        self.replaced(values)
+        let values = values.iter();
+        self.replaced(values.map(|(path, value)| (*path, Value::from_code(*value))))
     }
 
     /// This experiment with named numbers set from text as it would stand in
@@ -211,11 +202,7 @@ impl Experiment {
     /// A negative force, or one that the chain does not bear.
     pub fn with_push(&self, force_n: f64) -> Result<Self, PathError> {
         let step = |key: &str| Step::Key(key.to_owned());
-        let force = Value::Number(Number {
-            value: force_n,
-            half_digit: 0.0,
-            from_code: true,
-        });
+        let force = Value::from_code(force_n);
         let mut tree = self.tree().clone();
         assign(&mut tree, &[step("near_end")], Value::Table(Vec::new()));
         for (key, value) in [
@@ -243,13 +230,7 @@ impl Experiment {
         kind: Option<&str>,
     ) -> Result<Self, PathError> {
         let text = |name: Option<&str>| name.map(|name| Value::Text(name.to_owned()));
-        let corner = corner_hz.map(|value| {
-            Value::Number(Number {
-                value,
-                half_digit: 0.0,
-                from_code: true,
-            })
-        });
+        let corner = corner_hz.map(Value::from_code);
         let steps = ["campaign", "amplifier"].map(|key| Step::Key(key.to_owned()));
         let mut tree = self.tree().clone();
         for (key, value) in [
@@ -289,7 +270,11 @@ impl Experiment {
                 .then(|| self.reference(&slot.path))
                 .flatten();
             if let Some(contact) = reference.and_then(|found| found.contact) {
-                assign(&mut tree, &next_to(&slot.steps, CONTACT), whole(contact));
+                assign(
+                    &mut tree,
+                    &next_to(&slot.steps, CONTACT),
+                    Value::from_code(contact as f64),
+                );
             }
         }
         Ok(self.with_tree(tree)?)
@@ -317,14 +302,6 @@ fn next_to(steps: &[Step], key: &str) -> Vec<Step> {
     let (_, table) = steps.split_last().unwrap_or((&Step::Index(0), &[]));
     let key = Step::Key(key.to_owned());
     table.iter().cloned().chain([key]).collect()
-}
-
-fn whole(count: usize) -> Value {
-    Value::Number(Number {
-        value: count as f64,
-        half_digit: 0.0,
-        from_code: true,
-    })
 }
 
 /// The slot of a path or of an end of one: given numbers come first.

@@ -20,7 +20,7 @@ pub(crate) struct Group {
     pub(crate) span: Range<usize>,
 }
 
-/// Beads alike in a unit cell.
+/// Identical beads in a unit cell.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pub(crate) count: usize,
@@ -36,7 +36,6 @@ impl Group {
         cell.saturating_mul(self.repeat)
     }
 
-    /// Appends the group's beads.
     pub(crate) fn append(&self, materials: &[Material], beads: &mut Vec<Bead>) {
         for repetition in 0..self.repeat {
             let scale = self.scale(repetition);

@@ -29,7 +29,6 @@ pub struct SectionSpec {
 
 impl SectionSpec {
     /// Last contact in a chain of this many beads.
-    #[must_use]
     pub fn last(&self, beads: usize) -> usize {
         self.to.unwrap_or(beads)
     }

@@ -4,7 +4,7 @@ use super::Materials;
 use crate::finding::Problem;
 use crate::keys::ranges::SPEED;
 use crate::motion_file;
-use crate::value::{Units, brief};
+use crate::value::brief;
 use crate::view::View;
 use hertzchain_chain::{Motion, Push};
 use std::ops::Range;
@@ -15,7 +15,6 @@ use std::path::Path;
 pub(crate) struct Shape {
     pub(crate) radius_m: Option<f64>,
     pub(crate) mass_kg: Option<f64>,
-    /// Index of the material.
     pub(crate) material: Option<usize>,
     pub(crate) span: Range<usize>,
 }
@@ -32,7 +31,7 @@ pub(crate) enum Near {
         shape: Shape,
         motion: Motion,
     },
-    /// Beads that start displaced or moving, as the file tells here.
+    /// Beads that start displaced or moving, as the file says here.
     Free {
         span: Range<usize>,
     },
@@ -147,11 +146,8 @@ fn bearable(motion: Motion, table: &View<'_>) -> Result<Motion, Problem> {
     if limits.hold(speed_m_s) {
         return Ok(motion);
     }
-    let unit = match table.units {
-        Units::Si => " m/s",
-        Units::Dimensionless => "",
-    };
-    let message = format!("this motion reaches a speed of {}{unit}", brief(speed_m_s));
+    let speed = table.units.with_unit(&brief(speed_m_s), "m/s");
+    let message = format!("this motion reaches a speed of {speed}");
     let keys = ["frequency", "duration", "times", "file"];
     let place = keys.into_iter().find(|key| table.has(key));
     let place = place.map_or(table.span(), |key| table.span_of(key));

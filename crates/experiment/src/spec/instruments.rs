@@ -115,7 +115,6 @@ const fn two(frequency: f64, damping: f64) -> Factor {
 
 impl Amplifier {
     /// Factors of the low-pass, whose product falls to 1/√2 at the corner.
-    #[must_use]
     pub const fn factors(&self) -> &'static [Factor] {
         match (self.order, self.kind) {
             (LowPass::First, _) => const { &[one(1.0)] },
@@ -154,7 +153,6 @@ impl Amplifier {
     }
 
     /// What the amplifier's filters are, in words.
-    #[must_use]
     pub fn filters(&self) -> String {
         let kind = match (self.order, self.kind) {
             (LowPass::First, _) => "",
@@ -207,7 +205,6 @@ pub enum Channels {
 
 impl Channels {
     /// How many there are.
-    #[must_use]
     pub const fn count(self) -> usize {
         match self {
             Self::Summed => 1,
@@ -329,7 +326,6 @@ impl Recorder {
     }
 
     /// Samples of a record.
-    #[must_use]
     pub fn samples(&self) -> usize {
         // Rounded: 0.1 s at 1 MHz are 100,000 samples.
         (self.record_s * self.sampling_hz).round() as usize

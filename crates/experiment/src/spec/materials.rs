@@ -105,7 +105,7 @@ impl MaterialSpec {
         Some(&largest.span)
     }
 
-    /// The material at a striker speed, and what is odd about it.
+    /// The material at a striker speed, and a warning about it.
     pub(crate) fn at(
         &self,
         speed_m_s: Option<f64>,

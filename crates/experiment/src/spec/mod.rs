@@ -124,7 +124,6 @@ impl Spec {
         Ok(spec)
     }
 
-    /// Number of beads N.
     pub(crate) fn bead_count(&self) -> usize {
         let count: usize = self.groups.iter().map(Group::count).sum();
         count.saturating_sub(self.beads_less)

@@ -13,27 +13,39 @@ pub struct Rig {
     pub parts: Vec<RigPart>,
 }
 
-/// What a part is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RigPartKind {
-    /// Launches the striker.
-    Actuator,
-    /// Brings the striker back to its place.
-    Repositioner,
-    /// Measures the striker's speed.
-    Photogate,
-    /// Hold bead 1.
-    Springs,
-    /// Force sensors in the sensor bead and at the wall.
-    Sensor,
-    /// What the sensors are wired to.
-    Recorder,
-    /// What the far end is fixed to.
-    Stop,
-    /// Carries the stop.
-    EndStructure,
-    /// A separate mass against noise.
-    Bar,
+/// Declares the kinds of parts with their keys in `[rig]`, from the launcher to the far end.
+macro_rules! kinds {
+    ($($Kind:ident $key:literal $about:literal;)+) => {
+        /// What a part is for.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum RigPartKind {
+            $(#[doc = $about] $Kind,)+
+        }
+
+        impl RigPartKind {
+            /// Every kind, from the launcher to the far end.
+            pub const ALL: [Self; [$($key),+].len()] = [$(Self::$Kind),+];
+
+            /// Its key in `[rig]`.
+            pub const fn key(self) -> &'static str {
+                match self {
+                    $(Self::$Kind => $key,)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    Actuator "actuator" "Launches the striker.";
+    Repositioner "repositioner" "Brings the striker back to its place.";
+    Photogate "photogate" "Measures the striker's speed.";
+    Springs "springs" "Hold bead 1.";
+    Sensor "sensor" "Force sensors in the sensor bead and at the wall.";
+    Recorder "recorder" "What the sensors are wired to.";
+    Stop "stop" "What the far end is fixed to.";
+    EndStructure "end_structure" "Carries the stop.";
+    Bar "bar" "A separate mass against noise.";
 }
 
 /// One part of the apparatus.
@@ -55,40 +67,8 @@ pub struct RigPart {
     pub rate_hz: Option<f64>,
 }
 
-impl RigPartKind {
-    /// Every kind, from the launcher to the far end.
-    pub const ALL: [Self; 9] = [
-        Self::Actuator,
-        Self::Repositioner,
-        Self::Photogate,
-        Self::Springs,
-        Self::Sensor,
-        Self::Recorder,
-        Self::Stop,
-        Self::EndStructure,
-        Self::Bar,
-    ];
-
-    /// Its key in `[rig]`.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Actuator => "actuator",
-            Self::Repositioner => "repositioner",
-            Self::Photogate => "photogate",
-            Self::Springs => "springs",
-            Self::Sensor => "sensor",
-            Self::Recorder => "recorder",
-            Self::Stop => "stop",
-            Self::EndStructure => "end_structure",
-            Self::Bar => "bar",
-        }
-    }
-}
-
 impl Rig {
     /// A part, if the file names it.
-    #[must_use]
     pub fn part(&self, kind: RigPartKind) -> Option<&RigPart> {
         self.parts.iter().find(|part| part.kind == kind)
     }
@@ -98,12 +78,10 @@ impl Rig {
             return Ok(None);
         };
         let part = |kind: RigPartKind| Some(RigPart::read(kind, &table.table(kind.key())?));
+        let parts = RigPartKind::ALL.into_iter().filter_map(part);
         Ok(Some(Self {
             beads: table.text("beads").map(str::to_owned),
-            parts: RigPartKind::ALL
-                .into_iter()
-                .filter_map(part)
-                .collect::<Result<_, _>>()?,
+            parts: parts.collect::<Result<_, _>>()?,
         }))
     }
 }
@@ -121,9 +99,9 @@ impl RigPart {
             mass_kg: quantity("mass")?,
             length_m: quantity("length")?,
             force_n: quantity("force")?,
-            bits: match table.fields.key("bits") {
-                Some(_) => table.count("bits")?,
-                None => None,
+            bits: match kind {
+                RigPartKind::Recorder => table.count("bits")?,
+                _ => None,
             },
             rate_hz: quantity("rate")?,
         })

@@ -47,7 +47,6 @@ pub struct Liquid {
 
 impl Liquid {
     /// Dynamic viscosity in Pa s.
-    #[must_use]
     pub fn dynamic_viscosity_pa_s(&self) -> Option<f64> {
         Some(self.kinematic_viscosity_m2_s? * self.density_kg_m3?)
     }
@@ -178,7 +177,6 @@ pub(super) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, P
     root.tables("initial").iter().map(initial).collect()
 }
 
-/// Whether contacts may pull.
 pub(super) fn tension(root: &View<'_>) -> Tension {
     match root.text("tension") {
         Some("clipped") => Tension::Clipped,

@@ -18,7 +18,7 @@ impl Decimal {
         exponent: 0,
     };
 
-    /// Reads the number at the start of a text and tells how many bytes it took.
+    /// Reads the number at the start of a text and returns how many bytes it took.
     pub(super) fn read(text: &str) -> Result<(Self, usize), UnitError> {
         let bytes = text.as_bytes();
         let mut at = text.len() - text.trim_start().len();

@@ -80,7 +80,6 @@ impl Dimension {
 
     /// Whether two dimensions agree. Exponents may come from a user's decimal
     /// ("n = 1.3333333"), hence the margin.
-    #[must_use]
     pub fn agrees_with(&self, other: &Self) -> bool {
         let value = |r: &Exponent| *r.numer() as f64 / *r.denom() as f64;
         let pairs = self.0.iter().zip(&other.0);
@@ -90,7 +89,6 @@ impl Dimension {
     }
 
     /// "a length", or the SI unit where there is no common name.
-    #[must_use]
     pub fn name(&self) -> String {
         match self.known() {
             Some((name, _, _)) => (*name).to_owned(),
@@ -104,7 +102,6 @@ impl Dimension {
     }
 
     /// A quantity of this dimension, as an example.
-    #[must_use]
     pub fn example(&self) -> String {
         match self.known() {
             Some((_, _, example)) => (*example).to_owned(),

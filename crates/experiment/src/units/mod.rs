@@ -77,7 +77,6 @@ impl Unit {
     };
 
     /// Size in SI base units.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.convert(Decimal::ONE)
     }
