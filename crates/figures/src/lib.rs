@@ -1,4 +1,4 @@
-//! Pictures of results as SVG and PNG.
+//! Pictures of results as SVG, PDF and PNG.
 //!
 //! A [`Figure`] holds panels: a [`Chart`] with [`Series`] and perhaps a
 //! [`HeatMap`], a [`VerdictMatrix`], or a [`RigDrawing`]. All data come as
@@ -18,13 +18,14 @@ mod error;
 mod figure;
 mod heat;
 mod matrix;
+mod pdf;
 mod png_image;
 mod render;
 mod rig;
 mod text;
 
 pub use animation::Animation;
-pub use chart::{Chart, Dash, Legend, Marker, Series};
+pub use chart::{Chart, Dash, Legend, Marker, Series, case_look};
 pub use draw::{Colour, ColourMap};
 pub use error::FigureError;
 pub use figure::{DOUBLE_COLUMN_MM, Figure, Panel, SINGLE_COLUMN_MM};

@@ -145,10 +145,10 @@ fn legends_of_crowded_and_filled_charts_cover_nothing() {
     charts.extend([1, 4, 9].map(|names| crowded(names).y_range(-0.9, 0.9)));
     for chart in charts {
         let figure = Figure::single_column(70.0).letters().panel(chart.clone());
-        assert_eq!(covered(&figure.svg()), (1, 0), "{chart:?}");
+        assert_eq!(covered(&figure.svg_outlined()), (1, 0), "{chart:?}");
         let both = Figure::single_column(110.0).share_x();
         let both = both.panel(chart.clone()).panel(chart.clone());
-        assert_eq!(covered(&both.svg()), (2, 0), "{chart:?}");
+        assert_eq!(covered(&both.svg_outlined()), (2, 0), "{chart:?}");
     }
 }
 
@@ -162,7 +162,7 @@ fn check_legible(svg: &str) {
 #[test]
 fn every_kind_of_picture_is_legible_as_wide_as_a_column() {
     for figure in every_kind() {
-        let svg = figure.svg();
+        let svg = figure.svg_outlined();
         check_legible(&svg);
         let (_, width_mm) = smallest_type(&svg);
         assert!([85.0, 175.0].contains(&width_mm), "{width_mm} mm wide");
@@ -171,7 +171,7 @@ fn every_kind_of_picture_is_legible_as_wide_as_a_column() {
 
 #[test]
 fn small_type_is_noticed() {
-    let svg = Figure::single_column(60.0).panel(wave()).svg();
+    let svg = Figure::single_column(60.0).panel(wave()).svg_outlined();
     let (whole, _) = smallest_type(&svg);
     let half = svg.replacen("width=\"85mm\"", "width=\"42.5mm\"", 1);
     // Rounding of the quotient.
@@ -191,7 +191,7 @@ fn each_group(group: &Group, visit: &mut impl FnMut(&Group)) {
 #[test]
 fn every_kind_of_picture_is_well_formed_with_all_text_on_the_page() {
     for figure in every_kind() {
-        check(&figure.svg());
+        check(&figure.svg_outlined());
     }
 }
 
@@ -218,7 +218,7 @@ fn check_apart(svg: &str) {
 #[test]
 fn texts_of_a_picture_do_not_touch() {
     for figure in every_kind() {
-        check_apart(&figure.svg());
+        check_apart(&figure.svg_outlined());
     }
 }
 
@@ -227,7 +227,10 @@ fn a_covered_curve_is_noticed() {
     let curve = "<path d=\"M0 50H100\" stroke=\"#000000\"/>";
     let picture = |y: u32| {
         let (svg, xml) = ("<svg xmlns=\"http://www.w3.org/2000/svg\"", "</svg>");
-        let legend = format!("<g id=\"legend1\"><rect y=\"{y}\" width=\"30\" height=\"20\"/></g>");
+        let legend = format!(
+            "<g id=\"legend1\" data-box=\"0 {y} 30 {}\"><rect y=\"{y}\" width=\"30\" height=\"20\"/></g>",
+            y + 20
+        );
         format!(
             "{svg} width=\"100\" height=\"100\"><rect width=\"100\" height=\"100\" fill=\"#fff\"/>{curve}{legend}{xml}"
         )
@@ -239,10 +242,52 @@ fn a_covered_curve_is_noticed() {
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     for (a, b) in every_kind().iter().zip(&every_kind()) {
+        assert_eq!(a.svg_outlined(), b.svg_outlined());
         assert_eq!(a.svg(), b.svg());
     }
     let png = |i: usize| every_kind()[i].png(100.0).expect("renders");
     assert_eq!(png(3), png(3));
+}
+
+#[test]
+fn text_of_an_svg_is_text_unless_outlines_are_asked_for() {
+    let figure = Figure::single_column(60.0).panel(wave());
+    let svg = figure.svg();
+    let document = roxmltree::Document::parse(&svg).expect("well-formed XML");
+    let texts = document.descendants().filter(|n| n.has_tag_name("text"));
+    let texts: Vec<String> = texts
+        .map(|n| {
+            n.descendants()
+                .filter(|n| n.is_text())
+                .filter_map(|n| n.text())
+                .collect()
+        })
+        .collect();
+    assert!(
+        texts.contains(&"Time (µs)".to_owned()) && texts.contains(&"Fwall (N)".to_owned()),
+        "{texts:?}"
+    );
+    assert!(!svg.contains("<use ") && !figure.svg_outlined().contains("<text "));
+}
+
+#[test]
+fn every_kind_of_picture_is_a_pdf_whose_table_points_at_its_objects() {
+    for figure in every_kind() {
+        let pdf = figure.pdf().expect("renders");
+        let text = String::from_utf8_lossy(&pdf);
+        assert!(text.starts_with("%PDF-1.5") && text.ends_with("%%EOF\n"));
+        let (_, table) = text.rsplit_once("xref\n0 ").expect("a table");
+        let entries = table.lines().filter(|line| line.ends_with(" 00000 n "));
+        for (i, entry) in entries.enumerate() {
+            let at: usize = entry[..10].parse().expect("an offset");
+            assert!(
+                pdf[at..].starts_with(format!("{} 0 obj\n", i + 1).as_bytes()),
+                "{entry}"
+            );
+        }
+    }
+    let map = every_kind()[3].pdf().expect("renders");
+    assert!(String::from_utf8_lossy(&map).contains("/I0 Do Q"));
 }
 
 fn decoded(png: &[u8]) -> (u32, u32, Vec<u8>, Option<u32>) {
@@ -291,7 +336,7 @@ fn a_million_points_make_a_small_file() {
         .collect();
     let line = Figure::single_column(60.0)
         .panel(Chart::new("n", "y").with(Series::line("", &x, &y)))
-        .svg();
+        .svg_outlined();
     assert!(line.len() < 150_000, "{}", line.len());
 }
 
@@ -345,7 +390,7 @@ proptest! {
         if logs.1 { chart = chart.y_log() }
         if let Some((a, b)) = range { chart = chart.x_range(a, b) }
         let figure = Figure::new(size.0.max(45.0), size.1.max(35.0)).letters();
-        let svg = figure.panel(chart.clone().inset(chart)).svg();
+        let svg = figure.panel(chart.clone().inset(chart)).svg_outlined();
         check(&svg);
         check_legible(&svg);
     }
@@ -355,7 +400,7 @@ proptest! {
         values in numbers(), columns in 0_usize..9, rows in 0_usize..9, edges in (number(), number()),
     ) {
         let heat = HeatMap::new(columns, rows, &values).x_edges(edges.0, edges.1).label("value");
-        check(&Figure::single_column(60.0).panel(Chart::new("x", "y").heat(heat)).svg());
+        check(&Figure::single_column(60.0).panel(Chart::new("x", "y").heat(heat)).svg_outlined());
     }
 
     #[test]
@@ -385,7 +430,7 @@ proptest! {
             end_structure: named(flags[4], "end structure, 4.5 kg"),
             bar: named(flags[2], "bar against noise, 6 kg"),
         };
-        let svg = rig.figure().svg();
+        let svg = rig.figure().svg_outlined();
         check(&svg);
         check_apart(&svg);
         check_legible(&svg);
@@ -397,7 +442,7 @@ proptest! {
     ) {
         let names: Vec<&str> = columns.iter().map(String::as_str).collect();
         let row = |t: VerdictMatrix, c: &String| t.row(c, &[Verdict::Fails, Verdict::InPart, Verdict::Holds]);
-        let svg = claims.iter().fold(VerdictMatrix::new(&names), row).figure().svg();
+        let svg = claims.iter().fold(VerdictMatrix::new(&names), row).figure().svg_outlined();
         check(&svg);
         check_legible(&svg);
     }

@@ -2,7 +2,7 @@
 //! and all of it computed anew.
 //!
 //! [`claims`] holds the paper's statements against computed numbers, [`readings`] tries
-//! every way in which its model can be understood, [`rig_claims`] judges what it says of its rig
+//! every way in which its model can be understood, [`rig_claims`] evaluates what it says of its rig
 //! by virtual ones, and [`reproduce`] computes everything with tables.
 
 pub mod claims;

@@ -35,7 +35,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
     let claims: Vec<Claim> = claims()
         .unwrap()
         .into_iter()
-        .map(|judge| judge.claim)
+        .map(|evaluator| evaluator.claim)
         .collect();
     let row = |reading: Reading, moved: usize| Row {
         reading,
@@ -79,7 +79,7 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     let mut computed = reproduce(&coarse, &Silent).unwrap();
     for (name, figure) in pictures(&mut computed, 3) {
         assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");
-        let (smallest, width_mm) = smallest_type(&figure.svg());
+        let (smallest, width_mm) = smallest_type(&figure.svg_outlined());
         // Scales of some 0.006 are written with six decimals, page sizes with two.
         assert!(smallest > 6.0 - 5e-3, "{name}: type of {smallest} points");
         assert_eq!(width_mm, 85.0, "{name} is not as wide as a column");
@@ -87,7 +87,7 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     }
     // A scan in which every switch moves something takes two columns at most.
     let (_, wide) = pictures(&mut computed, 100).pop().unwrap();
-    let (smallest, width_mm) = smallest_type(&wide.svg());
+    let (smallest, width_mm) = smallest_type(&wide.svg_outlined());
     assert!(smallest > 6.0 - 5e-3 && width_mm == 175.0, "{width_mm} mm");
     assert!(wide.caption_text().contains("† Not decidable"));
     computed.scan = None;

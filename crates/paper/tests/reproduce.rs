@@ -39,7 +39,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
         let p = evidence.curve(case).unwrap().at(speed).unwrap();
         for (branch, known) in Branch::BOTH.into_iter().zip([incident, reflected]) {
             let off = (p.tof_s(branch) / known - 1.0).abs();
-            // The rerun that tells what was reached is itself wrong by a fraction.
+            // The rerun that estimates what was reached is itself wrong by a fraction.
             assert!(
                 off < 2.0 * p.accuracy_reached.max(1e-9),
                 "{case} {speed}: {off:e}"
@@ -84,10 +84,10 @@ fn with_accuracies(p: &Point) -> Vec<(f64, f64)> {
 
 #[test]
 fn lean_shots_have_all_that_claims_ask_for_as_right_as_they_say() {
-    let judges = claims().unwrap();
+    let evaluators = claims().unwrap();
     // Speeds with and without rebound, and that of the split pulse.
     let speeds = [0.16, 0.3993, 1.05];
-    let lean = gathered(&speeds, 1e-5, Effort::Lean(&judges));
+    let lean = gathered(&speeds, 1e-5, Effort::Lean(&evaluators));
     let fine = gathered(&speeds, 1e-8, Effort::Checked);
     let curves = lean.curves.iter().zip(&fine.curves);
     let points =
@@ -96,22 +96,22 @@ fn lean_shots_have_all_that_claims_ask_for_as_right_as_they_say() {
         let numbers = with_accuracies(lean).into_iter().zip(with_accuracies(fine));
         for (i, ((one, off), (other, as_off))) in numbers.enumerate() {
             let what = format!("{case} at {} m/s, number {i}", lean.speed_m_s);
-            // The fine shot is as right as it says up to twice: its judge errs too.
+            // The fine shot is as right as it says up to twice: its check errs too.
             assert!(
                 one.is_nan() || (one - other).abs() <= off + 2.0 * as_off,
                 "{what}: {one:e} {other:e} {off:e}"
             );
         }
-        let followed = judges.iter().any(|j| j.needs_end(case, lean.speed_m_s));
+        let followed = evaluators.iter().any(|j| j.needs_end(case, lean.speed_m_s));
         assert_eq!(!lean.striker_rebound_m_s.is_nan(), followed, "{case}");
         assert_eq!(!lean.loosened_m.is_nan(), followed, "{case}");
     }
-    for judge in &judges {
+    for evaluator in &evaluators {
         assert_eq!(
-            judge.decide(&lean).leaning,
-            judge.decide(&fine).leaning,
+            evaluator.decide(&lean).leaning,
+            evaluator.decide(&fine).leaning,
             "{}",
-            judge.claim.id
+            evaluator.claim.id
         );
     }
 }
@@ -260,8 +260,8 @@ fn closing_the_gaps_behind_the_pulse_hardly_shortens_the_way_back() {
 
 #[test]
 fn the_way_back_without_gaps_is_asked_for_only_by_its_claims() {
-    let judges = claims().unwrap();
-    let lean = gathered(&[0.5], 1e-4, Effort::Lean(&judges));
+    let evaluators = claims().unwrap();
+    let lean = gathered(&[0.5], 1e-4, Effort::Lean(&evaluators));
     let known = |case: &str| !lean.curve(case).unwrap().points[0].excess_s[1].is_nan();
     assert!(known("dry") && !known("pump") && !known("hertz"));
 }

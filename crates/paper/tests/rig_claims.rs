@@ -112,8 +112,11 @@ fn towards_mean(shot: &mut Shot, speed_m_s: f64) {
 
 fn decide(id: &str, evidence: &Evidence) -> Finding {
     let all = claims().unwrap();
-    let judge = all.into_iter().find(|judge| judge.claim.id == id).unwrap();
-    judge.decide(evidence)
+    let evaluator = all
+        .into_iter()
+        .find(|evaluator| evaluator.claim.id == id)
+        .unwrap();
+    evaluator.decide(evidence)
 }
 
 fn broken((_, tapped, change): &(&str, bool, Change)) -> Evidence {
@@ -131,19 +134,19 @@ fn broken((_, tapped, change): &(&str, bool, Change)) -> Evidence {
 
 #[test]
 fn every_claim_holds_on_a_rig_that_agrees_with_the_paper() {
-    for judge in claims().unwrap() {
-        let finding = judge.decide(&agreeing());
-        let id = &judge.claim.id;
+    for evaluator in claims().unwrap() {
+        let finding = evaluator.decide(&agreeing());
+        let id = &evaluator.claim.id;
         assert_eq!(finding.verdict, Verdict::Holds, "{id}: {finding:?}");
     }
 }
 
 #[test]
 fn every_verdict_flips_when_its_numbers_change() {
-    for judge in claims().unwrap() {
-        let claim = &judge.claim;
+    for evaluator in claims().unwrap() {
+        let claim = &evaluator.claim;
         let change = BREAKS.iter().find(|(id, ..)| id == &claim.id).unwrap();
-        let finding = judge.decide(&broken(change));
+        let finding = evaluator.decide(&broken(change));
         assert_eq!(finding.verdict, Verdict::Fails, "{}: {finding:?}", claim.id);
         let other_side = match claim.needs {
             Needs::Below => finding.value >= claim.threshold,
@@ -181,9 +184,9 @@ fn what_was_not_seen_is_not_decidable() {
             (shot.incident_s, shot.reflected_s) = (f64::NAN, f64::NAN);
         }
     }
-    for judge in claims().unwrap() {
-        let verdict = judge.decide(&nothing).verdict;
-        assert_eq!(verdict, Verdict::NotDecidable, "{}", judge.claim.id);
+    for evaluator in claims().unwrap() {
+        let verdict = evaluator.decide(&nothing).verdict;
+        assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
     }
     // Missing pulses are not a spread of nothing.
     for id in [
@@ -236,7 +239,7 @@ fn the_bootstrap_s_error_of_a_mean_is_that_of_theory() {
     let found = typical(&numbers);
     assert!(found.value.abs() < 1e-12);
     let expected = 1.96 * (1f64 / 20.0).sqrt();
-    // A thousand draws tell a standard deviation to 1/√2000; four times that.
+    // A thousand draws give a standard deviation to 1/√2000; four times that.
     assert!(
         (found.error / expected - 1.0).abs() < 4.0 / 44.7,
         "{found:?}"
@@ -292,12 +295,16 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
     // Three rigs, three speeds, with taps and without, and the header.
     assert_eq!(csv.lines().count(), 19);
     assert_eq!((evidence.rigs.len(), evidence.wet.len()), (2, 1));
-    let claims = RigClaims::judge(&design, &evidence).unwrap();
+    let claims = RigClaims::evaluate(&design, &evidence).unwrap();
     let page = claims.markdown();
-    for judged in &claims.judged {
-        assert!(page.contains(&judged.claim.statement));
+    for evaluated in &claims.evaluated {
+        assert!(page.contains(&evaluated.claim.statement));
         // Gaps, rebounds and times of flight are there at every speed.
-        assert!(judged.finding.value.is_finite(), "{}", judged.claim.id);
+        assert!(
+            evaluated.finding.value.is_finite(),
+            "{}",
+            evaluated.claim.id
+        );
     }
     assert!(page.contains("| as the preset |") && page.contains("| friction 0.2 |"));
     assert!(page.contains("| as the preset, wet |"));
@@ -309,8 +316,8 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
         wet: Vec::new(),
         ..evidence.clone()
     };
-    let again = RigClaims::judge(&design, &only_dry).unwrap();
-    for (one, two) in claims.judged.iter().zip(&again.judged) {
+    let again = RigClaims::evaluate(&design, &only_dry).unwrap();
+    for (one, two) in claims.evaluated.iter().zip(&again.evaluated) {
         assert_eq!(one.finding.value.to_bits(), two.finding.value.to_bits());
     }
     let rigs = claims.json()["rigs"].as_array().unwrap().len();

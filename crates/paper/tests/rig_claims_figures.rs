@@ -16,7 +16,7 @@ fn a_small_design_has_all_its_pictures() {
         ..Design::about(Experiment::from_text("small.toml", text).unwrap())
     };
     let evidence = observe(&design, &Silent).unwrap();
-    let claims = RigClaims::judge(&design, &evidence).unwrap();
+    let claims = RigClaims::evaluate(&design, &evidence).unwrap();
     for (name, figure) in rig_figures(&evidence, &claims) {
         let svg = figure.svg();
         let marks = svg.matches("<path").count();

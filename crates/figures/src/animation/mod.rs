@@ -207,8 +207,8 @@ impl Animation {
     /// A factor of 1, 2 or 5 times a power of ten: half of the beads behind the
     /// striker move by no more than one radius. Those thrown off do not count.
     fn fitting_factor(&self, moved: &[Vec<f64>]) -> f64 {
-        let farthest = |path: &Vec<f64>| path.iter().fold(0.0, |far: f64, u| far.max(u.abs()));
-        let mut reach: Vec<f64> = moved.iter().skip(1).map(farthest).collect();
+        let largest = |path: &Vec<f64>| path.iter().fold(0.0, |far: f64, u| far.max(u.abs()));
+        let mut reach: Vec<f64> = moved.iter().skip(1).map(largest).collect();
         reach.sort_by(f64::total_cmp);
         let wanted = self.radius(1) / reach.get(reach.len() / 2).copied().unwrap_or(0.0);
         if !wanted.is_finite() || wanted <= 1.0 {

@@ -31,7 +31,7 @@ fn ends_and_extremes(run: &[Point]) -> Vec<Point> {
         .collect()
 }
 
-/// Drops points that a printed pixel cannot tell from an earlier one.
+/// Drops points that a printed pixel cannot distinguish from an earlier one.
 pub(crate) fn scatter(points: Vec<Point>) -> Vec<Point> {
     if points.len() <= FEW {
         return points;

@@ -121,7 +121,7 @@ impl Prepared {
             room -= 2.0 * factor.width() + small;
         }
         label
-            .fitted(room)
+            .shrunk_to(room)
             .draw(svg, Point::new(frame.centre().x, y), Anchor::CENTRE, ink);
     }
 
@@ -143,7 +143,8 @@ impl Prepared {
             let at = Point::new(frame.x0, frame.y0 - 0.6 * small);
             factor.draw(svg, at, Anchor::LEFT, ink);
         }
-        let label = TextLine::new(&chart.y.label, self.style.label).fitted(1.08 * frame.height());
+        let label =
+            TextLine::new(&chart.y.label, self.style.label).shrunk_to(1.08 * frame.height());
         let x = frame.x0 - 2.5 - widest - 2.0 - label.descent();
         label.draw_turned(
             svg,
@@ -176,7 +177,7 @@ impl Prepared {
         if self.spot == Spot::Above {
             return self.draw_legend_above(svg, chart, &plot.frame);
         }
-        let legend = LegendBox::upright(chart, &self.style, 0.9 * plot.frame.width());
+        let legend = LegendBox::stacked(chart, &self.style, 0.9 * plot.frame.width());
         if legend.is_empty() {
             return;
         }
@@ -199,7 +200,7 @@ impl Prepared {
     fn draw_notes(&self, svg: &mut Svg, chart: &Chart, plot: &Plot, taken: &mut Occupancy) {
         let inner = plot.frame.grown(-self.style.tick - 2.0);
         for note in &chart.notes {
-            let line = TextLine::new(note, self.style.small).fitted(inner.width());
+            let line = TextLine::new(note, self.style.small).shrunk_to(inner.width());
             let places = places(&inner, line.width(), 1.3 * self.style.small);
             if let Some((place, _)) = taken.freest(&places) {
                 taken.mark_rect(&place, 9);

@@ -24,13 +24,13 @@ pub(crate) struct LegendBox {
 
 impl LegendBox {
     /// One name below the other, none wider than `widest`.
-    pub(crate) fn upright(chart: &Chart, style: &Style, widest: f64) -> Self {
+    pub(crate) fn stacked(chart: &Chart, style: &Style, widest: f64) -> Self {
         let font = style.small;
         let room = widest - (SAMPLE + 1.2) * font;
         let named = chart.series.iter().enumerate();
         let entries = named
             .filter(|(_, s)| !s.name.is_empty())
-            .map(|(i, s)| (i, TextLine::new(&s.name, font).fitted(room)))
+            .map(|(i, s)| (i, TextLine::new(&s.name, font).shrunk_to(room)))
             .collect();
         Self {
             entries,
@@ -41,7 +41,7 @@ impl LegendBox {
 
     /// As few rows as `widest` allows, their columns aligned.
     pub(crate) fn flat(chart: &Chart, style: &Style, widest: f64) -> Self {
-        let mut legend = Self::upright(chart, style, widest);
+        let mut legend = Self::stacked(chart, style, widest);
         let pitch = legend.cell() + GAP * legend.font;
         let most = ((widest + GAP * legend.font) / pitch).floor().max(1.0) as usize;
         let rows = legend.entries.len().div_ceil(most).max(1);
@@ -78,7 +78,7 @@ impl LegendBox {
         place: &Rect,
         veil: bool,
     ) {
-        svg.open_legend();
+        svg.open_legend(&place.grown(-0.2 * self.font));
         if veil {
             svg.rect(place, &Paint::fill(Colour::WHITE).opacity(0.85));
         }

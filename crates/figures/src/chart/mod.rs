@@ -16,7 +16,7 @@ mod strokes;
 mod style;
 
 pub use config::{Chart, Legend};
-pub use series::{Dash, Marker, Series};
+pub use series::{Dash, Marker, Series, case_look};
 
 pub(crate) use placement::Spot;
 pub(crate) use plot::Plot;

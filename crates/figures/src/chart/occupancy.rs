@@ -44,7 +44,7 @@ impl Occupancy {
         Some(row * self.columns + column)
     }
 
-    /// Marks one place as taken, `weight` telling how bad it is to cover it.
+    /// Marks one place as taken, `weight` saying how bad it is to cover it.
     pub(crate) fn mark(&mut self, p: Point, weight: u32) {
         if let Some(cell) = self.index(p).and_then(|i| self.cells.get_mut(i)) {
             *cell = (*cell).max(weight);

@@ -34,7 +34,7 @@ pub(crate) fn choose(
     plot: &Plot,
     given: Option<Spot>,
 ) -> (Scale, Spot) {
-    let legend = LegendBox::upright(chart, style, 0.9 * plot.frame.width());
+    let legend = LegendBox::stacked(chart, style, 0.9 * plot.frame.width());
     if chart.legend == Legend::Off || legend.is_empty() || given == Some(Spot::Above) {
         return (plot.y, given.unwrap_or(Spot::Inside));
     }

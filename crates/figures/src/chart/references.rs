@@ -47,7 +47,7 @@ pub(crate) fn draw_label(
     } else {
         b.x - a.x
     };
-    let line = TextLine::new(&reference.label, style.small).fitted(0.9 * length);
+    let line = TextLine::new(&reference.label, style.small).shrunk_to(0.9 * length);
     let places = places(plot, &line, reference.vertical, a);
     let Some((place, _)) = taken.freest(&places) else {
         return;

@@ -69,6 +69,23 @@ impl Marker {
     }
 }
 
+/// Returns the colour and marker of a case in every figure: the paper's for its liquids, known by
+/// the first word of the name, else the next by `number`.
+#[must_use]
+pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
+    match case.split(|c: char| !c.is_alphanumeric()).next() {
+        Some("dry") => (Colour::BLACK, Marker::OpenCircle),
+        Some("pump") => (Colour::GREEN, Marker::Triangle),
+        Some("gear") => (Colour::BLUE, Marker::Square),
+        Some("motor") => (Colour::VERMILION, Marker::Circle),
+        // The palette has the four of above first.
+        _ => (
+            Colour::PALETTE[(number + 4) % Colour::PALETTE.len()],
+            Marker::of_index(number + 4),
+        ),
+    }
+}
+
 /// One data set of a chart: a line, points or a band.
 ///
 /// Points that are not finite, or not positive on a logarithmic axis, are left

@@ -33,7 +33,7 @@ impl Colour {
     /// Sky blue of the series palette.
     pub const SKY: Self = Self(74, 160, 210);
 
-    /// Series colours told apart with common colour-vision deficiencies, after
+    /// Series colours distinguished with common colour-vision deficiencies, after
     /// the hues of Okabe and Ito, darkened so that thin lines stay legible.
     pub const PALETTE: [Self; 7] = [
         Self::BLACK,

@@ -115,6 +115,9 @@ fn push_dash(out: &mut String, stroke: &Stroke) {
     out.push('"');
 }
 
+/// The embedded font first, then what is alike and common.
+const FONT: &str = "font-family=\"'Noto Sans', 'Open Sans', 'DejaVu Sans', Arial, sans-serif\"";
+
 /// An SVG document being written.
 #[derive(Debug, Default)]
 pub(crate) struct Svg {
@@ -124,6 +127,8 @@ pub(crate) struct Svg {
     gradients: Vec<(Colour, String)>,
     texts: usize,
     legends: usize,
+    /// Text becomes outlines.
+    pub(crate) outlines: bool,
 }
 
 impl Svg {
@@ -160,9 +165,14 @@ impl Svg {
     }
 
     /// Everything drawn until [`Svg::close`] is one legend.
-    pub(crate) fn open_legend(&mut self) {
+    pub(crate) fn open_legend(&mut self, place: &Rect) {
         self.legends += 1;
-        let _ = writeln!(self.body, "<g id=\"legend{}\">", self.legends);
+        let Rect { x0, y0, x1, y1 } = place;
+        let _ = writeln!(
+            self.body,
+            "<g id=\"legend{}\" data-box=\"{x0:.2} {y0:.2} {x1:.2} {y1:.2}\">",
+            self.legends
+        );
     }
 
     pub(crate) fn close(&mut self) {
@@ -203,6 +213,17 @@ impl Svg {
         let _ = writeln!(self.body, " xlink:href=\"data:image/png;base64,{data}\"/>");
     }
 
+    /// A text element; `rest` ends its attributes and holds its runs.
+    pub(crate) fn text(&mut self, transform: &str, colour: Colour, plain: &str, rest: &str) {
+        self.texts += 1;
+        let (n, label) = (self.texts, escape(plain));
+        let _ = writeln!(
+            self.body,
+            "<text id=\"t{n}\" aria-label=\"{label}\" fill=\"{colour}\" transform=\"{transform}\" \
+             xml:space=\"preserve\"{rest}</text>"
+        );
+    }
+
     /// Opens a text: glyphs follow in font units, placed by `transform`.
     pub(crate) fn open_text(&mut self, transform: &str, colour: Colour, plain: &str) {
         self.texts += 1;
@@ -234,7 +255,7 @@ impl Svg {
         fmt(&mut size[1], height_mm * PT_PER_MM);
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-             width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
+             width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {} {}\" role=\"img\" {FONT}>\n",
             size[0], size[1]
         );
         let _ = writeln!(out, "<title>{}</title>", escape(title));

@@ -184,10 +184,21 @@ impl Figure {
         (self.width_mm, self.height_mm)
     }
 
-    /// The picture as SVG; text is outlines, so it needs no font.
+    /// The picture as SVG with text as text, measured with Noto Sans.
     #[must_use]
     pub fn svg(&self) -> String {
+        self.drawn(Svg::new())
+    }
+
+    /// The picture as SVG with text as outlines, which look the same everywhere.
+    #[must_use]
+    pub fn svg_outlined(&self) -> String {
         let mut svg = Svg::new();
+        svg.outlines = true;
+        self.drawn(svg)
+    }
+
+    fn drawn(&self, mut svg: Svg) -> String {
         let panels = self.shared();
         let page = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
         let grid = Grid::new(page, self.columns, self.letters, &panels);
@@ -211,7 +222,16 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Size`] if the size in pixels is zero or too large.
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
-        crate::render::png(&self.svg(), self.width_mm, self.height_mm, dpi)
+        crate::render::png(&self.svg_outlined(), self.width_mm, self.height_mm, dpi)
+    }
+
+    /// The picture as PDF, text as outlines.
+    ///
+    /// # Errors
+    /// [`FigureError::Render`] if the renderer refuses the picture: a fault of this crate.
+    pub fn pdf(&self) -> Result<Vec<u8>, FigureError> {
+        let size = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
+        crate::pdf::pdf(&self.svg_outlined(), size)
     }
 
     /// The panels, shared axes given one range and one set of labels.
@@ -234,7 +254,7 @@ impl Figure {
             letter.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
             x += letter.width() + 4.0;
         }
-        let title = TextLine::new(panel.title(), 8.0).fitted(frame.x1 - x);
+        let title = TextLine::new(panel.title(), 8.0).shrunk_to(frame.x1 - x);
         title.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
     }
 }

@@ -55,7 +55,7 @@ pub(crate) fn draw_bar(svg: &mut Svg, map: &HeatMap, frame: &Rect, style: &Style
         svg.image(&bar, &png);
     }
     let widest = draw_ticks(svg, map, &bar, style);
-    let label = TextLine::new(&map.label, style.label).fitted(frame.height());
+    let label = TextLine::new(&map.label, style.label).shrunk_to(frame.height());
     let x = bar.x1 + 6.0 + widest + label.ascent();
     label.draw_turned(
         svg,

@@ -11,18 +11,9 @@ pub struct SingularValues<'a> {
     pub values: &'a [f64],
     /// One unit direction a value, in units of the parameters' scales.
     pub directions: &'a [Vec<f64>],
-    /// Values up to here cannot be told from 0.
+    /// Values up to here cannot be distinguished from 0.
     pub floor: f64,
 }
-
-const MARKERS: [Marker; 6] = [
-    Marker::Circle,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::OpenCircle,
-    Marker::Diamond,
-    Marker::OpenSquare,
-];
 
 impl SingularValues<'_> {
     /// Values above, the parameters' parts in each direction below.
@@ -86,7 +77,7 @@ impl SingularValues<'_> {
                 chart.with(
                     points
                         .colour(Colour::PALETTE[k % Colour::PALETTE.len()])
-                        .marker(MARKERS[k % MARKERS.len()]),
+                        .marker(Marker::of_index(k)),
                 )
             })
     }

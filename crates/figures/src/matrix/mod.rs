@@ -163,7 +163,7 @@ impl Layout {
         let headers: Vec<TextLine> = matrix
             .columns
             .iter()
-            .map(|c| TextLine::new(c, FONT).fitted(TALLEST_HEADER))
+            .map(|c| TextLine::new(c, FONT).shrunk_to(TALLEST_HEADER))
             .collect();
         let longest = headers.iter().map(TextLine::width).fold(0.0, f64::max);
         let upright = longest <= cell - 3.0;

@@ -10,8 +10,8 @@ const LARGEST: f64 = 24.0;
 const ELISION: f64 = 1.1;
 /// Beads kept at either end, and on either side of the sensor, when others are
 /// left out.
-const KEPT: usize = 2;
-const BESIDE: usize = 1;
+const EDGE_BEADS: usize = 2;
+const SENSOR_NEIGHBOURS: usize = 1;
 /// Fewer beads than this leave room for one at either end.
 const ROOMY: usize = 9;
 
@@ -191,12 +191,12 @@ fn runs(rig: &RigDrawing, capacity: usize) -> Vec<(usize, usize)> {
     if last <= capacity {
         return vec![(1, last)];
     }
-    let kept = if capacity < ROOMY { 1 } else { KEPT };
+    let kept = if capacity < ROOMY { 1 } else { EDGE_BEADS };
     let mut runs = vec![(1, kept)];
     if let Some(n) = rig.sensor() {
         runs.push((
-            n.saturating_sub(BESIDE).max(1),
-            n.saturating_add(BESIDE).min(last),
+            n.saturating_sub(SENSOR_NEIGHBOURS).max(1),
+            n.saturating_add(SENSOR_NEIGHBOURS).min(last),
         ));
     }
     runs.push(((last + 1).saturating_sub(kept).max(1), last));

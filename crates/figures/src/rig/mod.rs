@@ -174,7 +174,7 @@ impl RigDrawing {
                 self.incline_deg
             ));
         }
-        let line = TextLine::new(&format!("{text}."), 6.4).fitted(WIDTH);
+        let line = TextLine::new(&format!("{text}."), 6.4).shrunk_to(WIDTH);
         let at = Point::new(0.0, below - 3.0);
         line.draw(svg, at, Anchor::LEFT, Colour::grey(100));
     }

@@ -17,7 +17,7 @@ pub(super) const PIEZO: Colour = Colour(150, 40, 110);
 /// Draws oil, beads and elisions, and labels them.
 pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mut Labels) {
     for contact in 0..=layout.beads.len() {
-        draw_oil_beside(svg, rig, layout, contact);
+        draw_oil_after(svg, rig, layout, contact);
     }
     for (number, x) in &layout.beads {
         draw_bead(svg, Point::new(*x, 0.0), layout.radius());
@@ -34,7 +34,7 @@ pub(super) fn draw(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, labels: &mu
 }
 
 /// Oil right of the bead at `index` in the drawing, and left of the first.
-fn draw_oil_beside(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, index: usize) {
+fn draw_oil_after(svg: &mut Svg, rig: &RigDrawing, layout: &Layout, index: usize) {
     let before = index.checked_sub(1).and_then(|i| layout.beads.get(i));
     let contact = before.map_or(0, |(n, _)| *n);
     let x = before.map_or(layout.start, |(_, x)| x + layout.radius());

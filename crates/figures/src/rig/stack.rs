@@ -27,7 +27,7 @@ pub(super) struct Place {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Stack {
     pub(super) places: Vec<Place>,
-    /// From the row to the far edge of the farthest text.
+    /// From the row to the far edge of the outermost text.
     pub(super) height: f64,
 }
 

@@ -16,6 +16,22 @@ pub(crate) enum Style {
     Bold,
 }
 
+impl Style {
+    /// How a `tspan` asks for it.
+    pub(crate) fn attribute(self) -> &'static str {
+        match self {
+            Self::Regular => "",
+            Self::Italic => " font-style=\"italic\"",
+            Self::Bold => " font-weight=\"bold\"",
+        }
+    }
+}
+
+/// Width of characters in em.
+pub(crate) fn width(style: Style, text: &str) -> f64 {
+    text.chars().map(|c| GlyphId::of(style, c).advance()).sum()
+}
+
 /// One glyph of one face; also its name inside an SVG.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct GlyphId {

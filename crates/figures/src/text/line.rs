@@ -1,8 +1,8 @@
 //! A laid-out line of text.
 
-use super::font::{GlyphId, Style, units_per_em};
+use super::font::{GlyphId, Style, units_per_em, width};
 use super::markup::{Run, Script, parse};
-use crate::draw::{Colour, Point, Svg, fmt};
+use crate::draw::{Colour, Point, Svg, escape, fmt};
 
 /// Smallest size of anything that is written, points: what journals ask for.
 pub(crate) const LEAST_SIZE: f64 = 6.0;
@@ -50,19 +50,27 @@ impl Anchor {
     };
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Placed {
-    glyph: GlyphId,
+/// Characters of one style that follow each other at one height, in em of the line.
+#[derive(Debug, Clone)]
+struct Span {
+    text: String,
+    style: Style,
     x: f64,
     up: f64,
     scale: f64,
+}
+
+impl Span {
+    fn end(&self) -> f64 {
+        self.x + self.scale * width(self.style, &self.text)
+    }
 }
 
 /// A line of text ready to be drawn at any place.
 #[derive(Debug, Clone)]
 pub(crate) struct TextLine {
     runs: Vec<Run>,
-    glyphs: Vec<Placed>,
+    spans: Vec<Span>,
     plain: String,
     width_em: f64,
     top_em: f64,
@@ -89,7 +97,7 @@ impl TextLine {
     fn from_runs(runs: &[Run], size: f64) -> Self {
         let mut line = Self {
             runs: runs.to_vec(),
-            glyphs: Vec::new(),
+            spans: Vec::new(),
             plain: String::new(),
             width_em: 0.0,
             top_em: CAP_HEIGHT,
@@ -121,27 +129,23 @@ impl TextLine {
     fn place(&mut self, run: &Run, start: f64) -> f64 {
         let (scale, up) = match run.script {
             Script::Base => (1.0, 0.0),
-            // Large scripts sink deeper to be told from their base.
+            // Large scripts sink deeper to differ from their base.
             Script::Sub => (self.script_scale(), 0.04 - 0.3 * self.script_scale()),
             Script::Super => (self.script_scale(), 0.36),
         };
         self.top_em = self.top_em.max(up + CAP_HEIGHT * scale);
         self.bottom_em = self.bottom_em.max(DESCENT * scale - up);
-        let mut x = start;
-        for c in run.text.chars() {
-            let glyph = GlyphId::of(run.style, c);
-            if !c.is_whitespace() {
-                self.glyphs.push(Placed {
-                    glyph,
-                    x,
-                    up,
-                    scale,
-                });
-            }
-            self.plain.push(c);
-            x += glyph.advance() * scale;
-        }
-        x
+        let span = Span {
+            text: run.text.clone(),
+            style: run.style,
+            x: start,
+            up,
+            scale,
+        };
+        let end = span.end();
+        self.plain.push_str(&run.text);
+        self.spans.push(span);
+        end
     }
 
     /// Scripts of small lines are as large as legible.
@@ -174,7 +178,7 @@ impl TextLine {
 
     /// Shrinks the font until the line is no wider than `width`, as far as it
     /// stays legible, and then cuts its end.
-    pub(crate) fn fitted(mut self, width: f64) -> Self {
+    pub(crate) fn shrunk_to(mut self, width: f64) -> Self {
         let width = width.max(0.0);
         // Scripts shrink less than their base: a few rounds come close.
         for _ in 0..6 {
@@ -194,20 +198,26 @@ impl TextLine {
 
     /// As much of the line as fits, and an ellipsis.
     fn cut(mut self, width: f64) -> Self {
-        let mark = GlyphId::of(Style::Regular, ELLIPSIS);
-        let room = width / self.size - mark.advance();
-        let end = |glyph: &Placed| glyph.x + glyph.glyph.advance() * glyph.scale;
-        self.glyphs.retain(|glyph| end(glyph) <= room);
-        let x = self.glyphs.iter().map(end).fold(0.0, f64::max);
-        if room >= 0.0 {
-            self.glyphs.push(Placed {
-                glyph: mark,
-                x,
-                up: 0.0,
-                scale: 1.0,
-            });
+        let mut mark = Span {
+            text: ELLIPSIS.to_string(),
+            style: Style::Regular,
+            x: 0.0,
+            up: 0.0,
+            scale: 1.0,
+        };
+        let room = width / self.size - mark.end();
+        for span in &mut self.spans {
+            while !span.text.is_empty() && (span.end() > room || span.text.ends_with(' ')) {
+                span.text.pop();
+            }
         }
-        self.width_em = if room >= 0.0 { x + mark.advance() } else { 0.0 };
+        self.spans.retain(|span| !span.text.is_empty());
+        self.width_em = 0.0;
+        if room >= 0.0 {
+            mark.x = self.spans.iter().map(Span::end).fold(0.0, f64::max);
+            self.width_em = mark.end();
+            self.spans.push(mark);
+        }
         self
     }
 
@@ -224,48 +234,84 @@ impl TextLine {
         colour: Colour,
         angle_deg: f64,
     ) {
-        if self.glyphs.is_empty() || self.size <= 0.0 {
+        if self.plain.trim().is_empty() || self.spans.is_empty() || self.size <= 0.0 {
             return;
         }
-        let transform = self.transform(at, anchor, angle_deg);
-        svg.open_text(&transform, colour, &self.plain);
-        for placed in &self.glyphs {
-            let id = placed.glyph;
-            svg.glyph(id, || id.outline(), &glyph_transform(placed));
+        let mut place = String::from("translate(");
+        push_pair(&mut place, at.x, at.y);
+        if angle_deg != 0.0 {
+            place.push_str(") rotate(");
+            fmt(&mut place, -angle_deg);
+        }
+        place.push_str(") translate(");
+        let down = anchor.up * CAP_HEIGHT * self.size;
+        if svg.outlines {
+            push_pair(&mut place, -anchor.across * self.width(), down);
+            self.draw_outlines(svg, place, colour);
+        } else {
+            push_pair(&mut place, 0.0, down);
+            place.push(')');
+            svg.text(&place, colour, &self.plain, &self.live(anchor));
+        }
+    }
+
+    fn draw_outlines(&self, svg: &mut Svg, mut place: String, colour: Colour) {
+        let scale = self.size / units_per_em();
+        place.push_str(&format!(") scale({scale:.6} {:.6})", -scale));
+        svg.open_text(&place, colour, &self.plain);
+        for span in &self.spans {
+            let mut x = span.x;
+            for c in span.text.chars() {
+                let id = GlyphId::of(span.style, c);
+                if !c.is_whitespace() {
+                    svg.glyph(id, || id.outline(), &glyph_transform(span, x));
+                }
+                x += id.advance() * span.scale;
+            }
         }
         svg.close();
     }
 
-    /// Font units, y upward, to the page.
-    fn transform(&self, at: Point, anchor: Anchor, angle_deg: f64) -> String {
-        let mut out = String::from("translate(");
-        fmt(&mut out, at.x);
-        out.push(' ');
-        fmt(&mut out, at.y);
-        out.push(')');
-        if angle_deg != 0.0 {
-            out.push_str(" rotate(");
-            fmt(&mut out, -angle_deg);
-            out.push(')');
+    /// Attributes and content of a `text` element: runs follow each other, so that a viewer
+    /// without the font still sets the line as one.
+    fn live(&self, anchor: Anchor) -> String {
+        let side = match anchor.across {
+            share if share < 0.25 => "start",
+            share if share > 0.75 => "end",
+            _ => "middle",
+        };
+        let mut out = format!(" text-anchor=\"{side}\" font-size=\"{:.4}\">", self.size);
+        let (mut x, mut up) = (0.0, 0.0);
+        for span in &self.spans {
+            out.push_str("<tspan");
+            let moved = [("dx", span.x - x), ("dy", up - span.up)];
+            for (name, em) in moved.into_iter().filter(|(_, em)| em.abs() > 1e-9) {
+                out.push_str(&format!(" {name}=\"{:.3}\"", em * self.size));
+            }
+            if span.scale != 1.0 {
+                out.push_str(&format!(" font-size=\"{:.4}\"", span.scale * self.size));
+            }
+            out.push_str(span.style.attribute());
+            out.push_str(&format!(">{}</tspan>", escape(&span.text)));
+            (x, up) = (span.end(), span.up);
         }
-        out.push_str(" translate(");
-        fmt(&mut out, -anchor.across * self.width());
-        out.push(' ');
-        fmt(&mut out, anchor.up * CAP_HEIGHT * self.size);
-        let scale = self.size / units_per_em();
-        out.push_str(&format!(") scale({scale:.6} {:.6})", -scale));
         out
     }
 }
 
-fn glyph_transform(placed: &Placed) -> String {
-    let mut out = String::from("translate(");
-    fmt(&mut out, placed.x * units_per_em());
+fn push_pair(out: &mut String, x: f64, y: f64) {
+    fmt(out, x);
     out.push(' ');
-    fmt(&mut out, placed.up * units_per_em());
+    fmt(out, y);
+}
+
+/// Where a glyph of a span stands, in font units.
+fn glyph_transform(span: &Span, x: f64) -> String {
+    let mut out = String::from("translate(");
+    push_pair(&mut out, x * units_per_em(), span.up * units_per_em());
     out.push(')');
-    if placed.scale != 1.0 {
-        out.push_str(&format!(" scale({})", placed.scale));
+    if span.scale != 1.0 {
+        out.push_str(&format!(" scale({})", span.scale));
     }
     out
 }

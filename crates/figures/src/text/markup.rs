@@ -148,7 +148,7 @@ impl Parser<'_> {
         // As in TeX, a space only ends the name: `\mu s` is a microsecond.
         self.rest.next_if_eq(&' ');
         if name == "mathrm" {
-            return self.upright_group(script);
+            return self.roman_group(script);
         }
         match SYMBOLS.iter().find(|(n, _)| *n == name) {
             Some((_, symbol)) => self.push(*symbol, script),
@@ -158,7 +158,7 @@ impl Parser<'_> {
         }
     }
 
-    fn upright_group(&mut self, script: Script) {
+    fn roman_group(&mut self, script: Script) {
         if self.rest.next_if_eq(&'{').is_none() {
             return;
         }

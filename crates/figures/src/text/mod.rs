@@ -1,5 +1,5 @@
-//! Text as outlines: a little TeX-like markup is laid out with an embedded
-//! font and drawn as paths, so a picture looks the same everywhere.
+//! Text: a little TeX-like markup is laid out with the metrics of an embedded font and
+//! drawn as text, or as outlines that need no font.
 //!
 //! Inside `$...$` Latin letters are italic, `_x`, `_{...}`, `^x` and `^{...}`
 //! make subscripts and superscripts, `\mathrm{...}` is upright, `\alpha`,

@@ -24,7 +24,7 @@ pub(crate) fn wrap(markup: &str, size: f64, width: f64, max_lines: usize) -> Vec
     }
     lines
         .iter()
-        .map(|l| TextLine::new(l, size).fitted(width))
+        .map(|l| TextLine::new(l, size).shrunk_to(width))
         .collect()
 }
 

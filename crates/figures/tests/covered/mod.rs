@@ -1,15 +1,14 @@
 //! What the legends of a picture lie on, seen in the rendered picture without them.
 
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Group, Node, Options, Tree};
+use resvg::usvg::{Options, Tree};
 
 /// Pixels per point.
 const SCALE: f32 = 2.0;
 
 /// How many legends an SVG has and how many pixels below them are not white.
 pub(super) fn covered(svg: &str) -> (usize, usize) {
-    let mut boxes = Vec::new();
-    collect(parsed(svg).root(), &mut boxes);
+    let boxes = boxes(svg);
     let bare = svg.replace("<g id=\"legend", "<g display=\"none\" id=\"legend");
     let page = rendered(&parsed(&bare));
     let under = |[left, top, right, bottom]: &[f32; 4]| {
@@ -38,15 +37,22 @@ fn rendered(tree: &Tree) -> Pixmap {
     page
 }
 
-/// Left, top, right and bottom of every legend.
-fn collect(group: &Group, boxes: &mut Vec<[f32; 4]>) {
-    if group.id().starts_with("legend") {
-        let b = group.abs_bounding_box();
-        boxes.push([b.left(), b.top(), b.right(), b.bottom()]);
-    }
-    for child in group.children() {
-        if let Node::Group(inner) = child {
-            collect(inner, boxes);
-        }
-    }
+/// Left, top, right and bottom of every legend in pixels.
+fn boxes(svg: &str) -> Vec<[f32; 4]> {
+    // Pages in millimetres have viewBoxes in points; resvg takes 96 pixels for an inch.
+    let unit = if svg.contains("viewBox") {
+        96.0 / 72.0
+    } else {
+        1.0
+    };
+    let written = svg.split("data-box=\"").skip(1);
+    let numbers = written.map(|rest| rest.split(['"', ' ']).take(4));
+    numbers
+        .map(|four| {
+            let four: Vec<f32> = four
+                .map(|n| unit * n.parse::<f32>().expect("a number"))
+                .collect();
+            [four[0], four[1], four[2], four[3]]
+        })
+        .collect()
 }

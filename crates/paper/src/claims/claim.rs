@@ -91,13 +91,13 @@ pub type Predicate<E> = fn(&Claim, &E) -> Finding;
 /// A claim and the code that decides it on numbers of a kind: those of single
 /// shots, if nothing else is said.
 #[derive(Clone, Debug)]
-pub struct Judge<E = Evidence> {
+pub struct Evaluator<E = Evidence> {
     /// The row.
     pub claim: Claim,
     predicate: Predicate<E>,
 }
 
-impl<E> Judge<E> {
+impl<E> Evaluator<E> {
     /// Decides the claim on numbers.
     #[must_use]
     pub fn decide(&self, evidence: &E) -> Finding {
@@ -105,7 +105,7 @@ impl<E> Judge<E> {
     }
 }
 
-impl Judge {
+impl Evaluator {
     /// Whether the claim is about what a shot of a case leaves behind when the
     /// pulses have passed: the striker or the gaps.
     #[must_use]
@@ -139,7 +139,7 @@ static PAPER: &str = include_str!("../../data/claims.toml");
 ///
 /// # Errors
 /// When the data file is damaged, which a test rules out.
-pub fn claims() -> Result<Vec<Judge>, ClaimError> {
+pub fn claims() -> Result<Vec<Evaluator>, ClaimError> {
     read(PAPER, predicates::find)
 }
 
@@ -150,15 +150,18 @@ pub fn claims() -> Result<Vec<Judge>, ClaimError> {
 pub fn read<E>(
     text: &str,
     find: impl Fn(&str) -> Option<Predicate<E>>,
-) -> Result<Vec<Judge<E>>, ClaimError> {
+) -> Result<Vec<Evaluator<E>>, ClaimError> {
     let file: File = toml::from_str(text)?;
-    let mut judges: Vec<Judge<E>> = Vec::with_capacity(file.claim.len());
+    let mut evaluators: Vec<Evaluator<E>> = Vec::with_capacity(file.claim.len());
     for claim in file.claim {
-        if judges.iter().any(|judge| judge.claim.id == claim.id) {
+        if evaluators
+            .iter()
+            .any(|evaluator| evaluator.claim.id == claim.id)
+        {
             return Err(ClaimError::Twice(claim.id));
         }
         match find(&claim.predicate) {
-            Some(predicate) => judges.push(Judge { claim, predicate }),
+            Some(predicate) => evaluators.push(Evaluator { claim, predicate }),
             None => {
                 return Err(ClaimError::Predicate {
                     claim: claim.id,
@@ -167,5 +170,5 @@ pub fn read<E>(
             }
         }
     }
-    Ok(judges)
+    Ok(evaluators)
 }

@@ -1,4 +1,4 @@
-//! The numbers that claims are judged on.
+//! The numbers that claims are evaluated on.
 
 use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
 
@@ -254,7 +254,7 @@ pub struct Digitised {
     pub standard_error: f64,
 }
 
-/// All that claims are judged on.
+/// All that claims are evaluated on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evidence {
     /// One curve a case.

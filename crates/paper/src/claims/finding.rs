@@ -10,7 +10,7 @@ pub enum Verdict {
     InPart,
     /// It does not, or in fewer.
     Fails,
-    /// The numbers do not tell.
+    /// The numbers do not decide.
     NotDecidable,
 }
 
@@ -136,7 +136,7 @@ impl Counts {
     /// The verdict that stands whichever way the open comparisons go.
     fn verdict(self) -> Verdict {
         let all = self.yes + self.no + self.open;
-        // More comparisons met never make a verdict worse: the extremes tell.
+        // More comparisons met never make a verdict worse: the extremes decide.
         let (least, most) = (sure(self.yes, all), sure(self.yes + self.open, all));
         if least == most {
             least

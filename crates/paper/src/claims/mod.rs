@@ -11,7 +11,7 @@ mod predicates;
 mod report;
 mod rounded;
 
-pub use claim::{Claim, ClaimError, Judge, Needs, Predicate, claims, read};
+pub use claim::{Claim, ClaimError, Evaluator, Needs, Predicate, claims, read};
 pub use evidence::{
     Branch, Curve, Digitised, Evidence, Measured, Oil, Point, Ratio, SHOTS_PER_POINT,
     SPEED_SCATTER_M_S,
@@ -20,4 +20,4 @@ pub use finding::{Distance, Finding, IN_PART, Tally, Verdict, Worst};
 pub use predicates::find as predicate;
 pub use report::{MEANING, claims_json, claims_markdown, computed_text};
 pub(crate) use report::{rounded_text, verdicts_text, with_unit};
-pub use rounded::{Judged, Rounded, judge_all, judge_all_rounded};
+pub use rounded::{EvaluatedClaim, Rounded, evaluate_all, evaluate_all_rounded};

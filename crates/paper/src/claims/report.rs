@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Claim, Finding, IN_PART, Judged, Needs, Rounded, Verdict};
+use super::{Claim, EvaluatedClaim, Finding, IN_PART, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -12,12 +12,12 @@ pub const MEANING: &str = "A claim that fails is a statement that the paper's mo
 /// All that was found about every claim, as a list in JSON. Numbers that do not
 /// exist are `null`.
 #[must_use]
-pub fn claims_json(judged: &[Judged]) -> Value {
-    judged.iter().map(row).collect()
+pub fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
+    evaluated.iter().map(row).collect()
 }
 
-fn row(judged: &Judged) -> Value {
-    let claim = &judged.claim;
+fn row(evaluated: &EvaluatedClaim) -> Value {
+    let claim = &evaluated.claim;
     let mut row = json!({
         "id": claim.id,
         "statement": claim.statement,
@@ -33,19 +33,19 @@ fn row(judged: &Judged) -> Value {
         "at_most": claim.at_most,
         "reason": claim.reason,
         "value_is": claim.value,
-        "value": number(judged.finding.value),
-        "value_accuracy": number(judged.finding.accuracy),
-        "value_expected": judged.finding.expected,
-        "deviation": judged.finding.deviation().map_or(Value::Null, number),
-        "detail": judged.finding.detail,
-        "nearest_change": judged.finding.nearest_change.map(|nearest| json!({
+        "value": number(evaluated.finding.value),
+        "value_accuracy": number(evaluated.finding.accuracy),
+        "value_expected": evaluated.finding.expected,
+        "deviation": evaluated.finding.deviation().map_or(Value::Null, number),
+        "detail": evaluated.finding.detail,
+        "nearest_change": evaluated.finding.nearest_change.map(|nearest| json!({
             "margin": number(nearest.margin),
             "accuracy": number(nearest.accuracy),
         })),
-        "verdict_as_printed": judged.finding.verdict.name(),
-        "verdict": judged.verdict.name(),
+        "verdict_as_printed": evaluated.finding.verdict.name(),
+        "verdict": evaluated.verdict.name(),
     });
-    if let (Some(rounded), Some(row)) = (&judged.rounded, row.as_object_mut()) {
+    if let (Some(rounded), Some(row)) = (&evaluated.rounded, row.as_object_mut()) {
         let counts = Verdict::ALL.iter().zip(rounded.verdicts);
         let counts: Map<String, Value> = counts
             .map(|(verdict, count)| (verdict.name().to_owned(), json!(count)))
@@ -80,31 +80,33 @@ fn number(value: f64) -> Value {
 
 /// The same as a page for people, below a head of its own.
 #[must_use]
-pub fn claims_markdown(judged: &[Judged], head: &str) -> String {
+pub fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> String {
     let mut page = format!("{head}\n\n{}\n\n", verdicts_text());
-    let drawn = judged.iter().any(|judged| judged.rounded.is_some());
+    let drawn = evaluated
+        .iter()
+        .any(|evaluated| evaluated.rounded.is_some());
     let mut header = vec!["claim", "verdict", "computed", "needed"];
     if drawn {
         page.push_str(ROUNDING);
         header.push("rounding allows");
     }
-    let _ = writeln!(page, "{}\n", totals(judged));
+    let _ = writeln!(page, "{}\n", totals(evaluated));
     let _ = writeln!(page, "| {} |", header.join(" | "));
     let _ = writeln!(page, "|{}", "---|".repeat(header.len()));
-    for judged in judged {
-        let rounding = drawn.then(|| rounded_text(judged).unwrap_or_default());
+    for evaluated in evaluated {
+        let rounding = drawn.then(|| rounded_text(evaluated).unwrap_or_default());
         let row = [
-            judged.claim.statement.clone(),
-            judged.verdict.name().to_owned(),
-            computed_text(judged),
-            needed(judged),
+            evaluated.claim.statement.clone(),
+            evaluated.verdict.name().to_owned(),
+            computed_text(evaluated),
+            needed(evaluated),
         ];
         let row: Vec<String> = row.into_iter().chain(rounding).collect();
         let _ = writeln!(page, "| {} |", row.join(" | "));
     }
     page.push_str("\n## One by one\n");
-    for judged in judged {
-        section(&mut page, judged);
+    for evaluated in evaluated {
+        section(&mut page, evaluated);
     }
     page
 }
@@ -127,20 +129,20 @@ const ROUNDING: &str = "Rounding: every printed constant is drawn within half a 
     a threshold than its accuracy is computed again more accurately.\n\n";
 
 /// How many claims have which verdict, in a sentence.
-fn totals(judged: &[Judged]) -> String {
-    let count = |verdict| judged.iter().filter(|j| j.verdict == verdict).count();
+fn totals(evaluated: &[EvaluatedClaim]) -> String {
+    let count = |verdict| evaluated.iter().filter(|j| j.verdict == verdict).count();
     let parts = Verdict::ALL.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
-    format!("Of {} claims: {}.", judged.len(), parts.join(", "))
+    format!("Of {} claims: {}.", evaluated.len(), parts.join(", "))
 }
 
-fn section(page: &mut String, judged: &Judged) {
-    let (claim, finding) = (&judged.claim, &judged.finding);
-    let _ = writeln!(page, "\n### `{}`: {}\n", claim.id, judged.verdict);
+fn section(page: &mut String, evaluated: &EvaluatedClaim) {
+    let (claim, finding) = (&evaluated.claim, &evaluated.finding);
+    let _ = writeln!(page, "\n### `{}`: {}\n", claim.id, evaluated.verdict);
     let _ = writeln!(page, "{} ({})\n", claim.statement, claim.paper);
     let _ = writeln!(
         page,
         "- Computed: {} ({}).",
-        computed_text(judged),
+        computed_text(evaluated),
         claim.value
     );
     if let (Some(expected), Some(deviation)) = (finding.expected, finding.deviation()) {
@@ -153,15 +155,15 @@ fn section(page: &mut String, judged: &Judged) {
             of_unit(deviation, claim)
         );
     }
-    let _ = writeln!(page, "- Needed: {}. {}", needed(judged), claim.reason);
+    let _ = writeln!(page, "- Needed: {}. {}", needed(evaluated), claim.reason);
     let _ = writeln!(page, "- Detail: {}.", finding.detail);
-    if let Some(rounded) = &judged.rounded {
-        rounding(page, judged, rounded);
+    if let Some(rounded) = &evaluated.rounded {
+        rounding(page, evaluated, rounded);
     }
 }
 
 /// What rounding of the printed constants does to a claim.
-fn rounding(page: &mut String, judged: &Judged, rounded: &Rounded) {
+fn rounding(page: &mut String, evaluated: &EvaluatedClaim, rounded: &Rounded) {
     let counts = Verdict::ALL.iter().zip(rounded.verdicts);
     let counts = counts.filter(|(_, count)| *count > 0);
     let counts: Vec<String> = counts
@@ -175,7 +177,7 @@ fn rounding(page: &mut String, judged: &Judged, rounded: &Rounded) {
         true => format!(" in the {} that have it", rounded.with_value),
         false => String::new(),
     };
-    let range = rounded_text(judged);
+    let range = rounded_text(evaluated);
     let range = range.map_or(String::new(), |range| {
         format!("; computed: {range}{in_some}")
     });
@@ -184,22 +186,22 @@ fn rounding(page: &mut String, judged: &Judged, rounded: &Rounded) {
         "- Rounding of the printed constants, {} draws: {}{open}{range}. The constants as printed give: {}.",
         rounded.draws,
         counts.join(", "),
-        judged.finding.verdict,
+        evaluated.finding.verdict,
     );
 }
 
 /// What was computed, with its accuracy and unit.
 #[must_use]
-pub fn computed_text(judged: &Judged) -> String {
-    let value = value_text(judged.finding.value, accuracy_shown(&judged.finding));
-    of_unit(value, &judged.claim)
+pub fn computed_text(evaluated: &EvaluatedClaim) -> String {
+    let value = value_text(evaluated.finding.value, accuracy_shown(&evaluated.finding));
+    of_unit(value, &evaluated.claim)
 }
 
 /// What the claim needs, in the unit of what was computed.
-fn needed(judged: &Judged) -> String {
-    let claim = &judged.claim;
+fn needed(evaluated: &EvaluatedClaim) -> String {
+    let claim = &evaluated.claim;
     let threshold = with_unit(claim.threshold, claim);
-    let mut text = match (claim.needs, judged.finding.expected) {
+    let mut text = match (claim.needs, evaluated.finding.expected) {
         (Needs::Above, _) => format!("above {threshold}"),
         (Needs::Below, _) => format!("below {threshold}"),
         (Needs::Within, None) => format!("within {threshold}"),
@@ -215,9 +217,9 @@ fn needed(judged: &Judged) -> String {
 }
 
 /// What rounding allows, if anything was drawn.
-pub(crate) fn rounded_text(judged: &Judged) -> Option<String> {
-    let (low, high) = judged.rounded.as_ref()?.range?;
-    let high = with_unit(high, &judged.claim);
+pub(crate) fn rounded_text(evaluated: &EvaluatedClaim) -> Option<String> {
+    let (low, high) = evaluated.rounded.as_ref()?.range?;
+    let high = with_unit(high, &evaluated.claim);
     Some(format!("{} to {high}", digits(low)))
 }
 

@@ -1,6 +1,6 @@
 //! Verdicts under the rounding of the printed constants.
 
-use super::{Claim, Finding, Judge, Verdict};
+use super::{Claim, Evaluator, Finding, Verdict};
 
 /// What became of a claim when the printed constants were drawn anew within
 /// half a unit of their last digit.
@@ -47,7 +47,7 @@ impl Rounded {
 
 /// A claim with all that was found about it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct EvaluatedClaim {
     /// The claim.
     pub claim: Claim,
     /// The verdict, rounding considered.
@@ -58,7 +58,7 @@ pub struct Judged {
     pub rounded: Option<Rounded>,
 }
 
-impl Judged {
+impl EvaluatedClaim {
     /// Whether rounding of the printed constants alone flips the verdict that
     /// they give.
     #[must_use]
@@ -70,31 +70,37 @@ impl Judged {
 
 /// Decides all claims on the constants as printed.
 #[must_use]
-pub fn judge_all<E>(judges: &[Judge<E>], printed: &E) -> Vec<Judged> {
-    judge_all_rounded(judges, printed, &[])
+pub fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<EvaluatedClaim> {
+    evaluate_all_rounded(evaluators, printed, &[])
 }
 
 /// Decides all claims on the constants as printed, and looks what draws within
 /// their rounding do: a claim of which one draw lies on another side than the
 /// printed constants is not decidable.
 #[must_use]
-pub fn judge_all_rounded<E>(judges: &[Judge<E>], printed: &E, draws: &[E]) -> Vec<Judged> {
-    let all = judges.iter().map(|judge| decide(judge, printed, draws));
+pub fn evaluate_all_rounded<E>(
+    evaluators: &[Evaluator<E>],
+    printed: &E,
+    draws: &[E],
+) -> Vec<EvaluatedClaim> {
+    let all = evaluators
+        .iter()
+        .map(|evaluator| decide(evaluator, printed, draws));
     all.collect()
 }
 
-fn decide<E>(judge: &Judge<E>, printed: &E, draws: &[E]) -> Judged {
-    let finding = judge.decide(printed);
-    let drawn: Vec<Finding> = draws.iter().map(|draw| judge.decide(draw)).collect();
+fn decide<E>(evaluator: &Evaluator<E>, printed: &E, draws: &[E]) -> EvaluatedClaim {
+    let finding = evaluator.decide(printed);
+    let drawn: Vec<Finding> = draws.iter().map(|draw| evaluator.decide(draw)).collect();
     let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
-    let mut judged = Judged {
-        claim: judge.claim.clone(),
+    let mut evaluated = EvaluatedClaim {
+        claim: evaluator.claim.clone(),
         verdict: finding.verdict,
         finding,
         rounded,
     };
-    if judged.flips_by_rounding() {
-        judged.verdict = Verdict::NotDecidable;
+    if evaluated.flips_by_rounding() {
+        evaluated.verdict = Verdict::NotDecidable;
     }
-    judged
+    evaluated
 }

@@ -13,7 +13,7 @@ pub use rig::rig;
 pub use rig_claims::rig_figures;
 
 use crate::reproduce::{ReproduceError, Reproduction};
-use hertzchain_figures::{Colour, Figure, Marker};
+use hertzchain_figures::Figure;
 
 /// All figures of a reproduction with their names.
 ///
@@ -53,16 +53,6 @@ fn label(case: &str) -> &str {
         "hertz" => "Hertz",
         "hertz-viscoelastic" => "Hertz + viscoelastic",
         other => other,
-    }
-}
-
-/// The paper's symbols, and one colour a liquid in all figures.
-fn look(case: &str) -> (Marker, Colour) {
-    match case {
-        "pump" => (Marker::Triangle, Colour::GREEN),
-        "gear" => (Marker::Square, Colour::BLUE),
-        "motor" => (Marker::Circle, Colour::VERMILION),
-        _ => (Marker::OpenCircle, Colour::BLACK),
     }
 }
 

@@ -1,9 +1,9 @@
 //! Wet over dry times of flight, the paper's Fig. 4.
 
-use super::{label, look};
+use super::label;
 use crate::claims::Evidence;
 use crate::reproduce::OILS;
-use hertzchain_figures::{Chart, Dash, Figure, Series};
+use hertzchain_figures::{Chart, Dash, Figure, Series, case_look};
 
 /// Three ratios against speed with a line at 1.
 pub(super) fn figure(evidence: &Evidence) -> Figure {
@@ -26,7 +26,7 @@ fn series(evidence: &Evidence, case: &str) -> Series {
     let ratios = evidence.ratios(case);
     let speeds: Vec<f64> = ratios.iter().map(|r| r.speed_m_s).collect();
     let values: Vec<f64> = ratios.iter().map(|r| r.incident).collect();
-    let (marker, colour) = look(case);
+    let (colour, marker) = case_look(case, 0);
     Series::line(label(case), &speeds, &values)
         .marker(marker)
         .colour(colour)

@@ -1,6 +1,6 @@
 //! Which claims hold in which reading.
 
-use crate::claims::Verdict as Judged;
+use crate::claims::Verdict as Found;
 use crate::readings::{FLIPPED, Row, Scan};
 use hertzchain_figures::{Figure, Verdict, VerdictMatrix};
 
@@ -140,11 +140,11 @@ fn words(id: &str) -> String {
     id.split('-').map(word).collect::<Vec<_>>().join(" ")
 }
 
-fn symbol(verdict: Judged) -> Verdict {
+fn symbol(verdict: Found) -> Verdict {
     match verdict {
-        Judged::Holds => Verdict::Holds,
-        Judged::InPart => Verdict::InPart,
-        Judged::Fails => Verdict::Fails,
-        Judged::NotDecidable => Verdict::NotDecidable,
+        Found::Holds => Verdict::Holds,
+        Found::InPart => Verdict::InPart,
+        Found::Fails => Verdict::Fails,
+        Found::NotDecidable => Verdict::NotDecidable,
     }
 }

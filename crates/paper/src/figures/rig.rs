@@ -18,7 +18,7 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
     let caption = format!(
         "Drawn from the experiment file of the motor oil: what moves, what is wet, where forces \
          are measured.{} Not to scale{}.",
-        beside_the_model(experiment)?,
+        not_modelled(experiment)?,
         part(experiment, RigPartKind::Bar).map_or("", |_| "; where the bar stands is not known"),
     );
     Ok(drawing.figure().title("The rig").caption(&caption))
@@ -64,7 +64,7 @@ fn part(experiment: &Experiment, kind: RigPartKind) -> Option<&RigPart> {
 }
 
 /// What of the rig the model leaves out, as a sentence of a caption.
-fn beside_the_model(experiment: &Experiment) -> Result<String, ReproduceError> {
+fn not_modelled(experiment: &Experiment) -> Result<String, ReproduceError> {
     let (chain, _warnings) = experiment.chain(None)?;
     let name = |kind| part(experiment, kind).map(|part| part.name.clone());
     let pushed = chain.push.force_n() > 0.0;
@@ -130,13 +130,13 @@ fn digits(value: f64) -> String {
 fn bead_label(experiment: &Experiment, beads: &[Bead]) -> String {
     let words = experiment.rig().and_then(|rig| rig.beads.clone());
     let words = words.map(|words| unbroken(&words));
-    let alike = |of: fn(&Bead) -> f64| {
+    let same = |of: fn(&Bead) -> f64| {
         let first = beads.first().map(of)?;
         beads.iter().all(|bead| of(bead) == first).then_some(first)
     };
     let si = experiment.units() == Units::Si;
-    let radius = alike(|bead| bead.radius_m).filter(|_| si);
-    let mass = alike(|bead| bead.mass_kg).filter(|_| si);
+    let radius = same(|bead| bead.radius_m).filter(|_| si);
+    let mass = same(|bead| bead.mass_kg).filter(|_| si);
     let numbers = [
         radius.map(|m| format!("$R$\u{a0}=\u{a0}{}\u{a0}mm", digits(m * 1e3))),
         mass.map(|kg| format!("$m$\u{a0}=\u{a0}{}\u{a0}g", digits(kg * 1e3))),

@@ -1,6 +1,6 @@
 //! Figures of the claims about the rig.
 
-use crate::claims::{Branch, Judged, Verdict as Found};
+use crate::claims::{Branch, EvaluatedClaim, Verdict as Found};
 use crate::rig_claims::{
     AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
 };
@@ -20,19 +20,21 @@ pub fn rig_figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str
 /// Claims against rigs.
 fn verdicts(claims: &RigClaims) -> Figure {
     let names: Vec<&str> = claims.rigs.iter().map(|(rig, _)| &*rig.name).collect();
-    let cell = |claim: usize| move |(_, judged): &(Rig, Vec<Judged>)| symbol(judged.get(claim));
-    let rows = claims.judged.iter().enumerate();
-    let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, judged)| {
+    let cell = |claim: usize| {
+        move |(_, evaluated): &(Rig, Vec<EvaluatedClaim>)| symbol(evaluated.get(claim))
+    };
+    let rows = claims.evaluated.iter().enumerate();
+    let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, evaluated)| {
         let cells: Vec<Verdict> = claims.rigs.iter().map(cell(at)).collect();
-        matrix.row(&judged.claim.id.replace('-', " "), &cells)
+        matrix.row(&evaluated.claim.id.replace('-', " "), &cells)
     });
     matrix
         .figure()
         .title("What the paper says of its rig, on virtual ones")
 }
 
-fn symbol(judged: Option<&Judged>) -> Verdict {
-    match judged.map(|judged| judged.verdict) {
+fn symbol(evaluated: Option<&EvaluatedClaim>) -> Verdict {
+    match evaluated.map(|evaluated| evaluated.verdict) {
         Some(Found::Holds) => Verdict::Holds,
         Some(Found::InPart) => Verdict::InPart,
         Some(Found::Fails) => Verdict::Fails,
@@ -105,13 +107,13 @@ type Of = fn(&AtSpeed) -> f64;
 /// Rigs that differ from the usual one in a factor at most, by its value.
 fn one_at_a_time(evidence: &Evidence, factor: usize) -> Vec<(f64, &Observed)> {
     let usual = Rig::usual();
-    let alike = |rig: &Rig| {
+    let same = |rig: &Rig| {
         let pairs = rig.values.iter().zip(usual.values).enumerate();
         pairs
             .into_iter()
             .all(|(at, (value, usual))| at == factor || *value == usual)
     };
-    let rigs = evidence.rigs.iter().filter(|observed| alike(&observed.rig));
+    let rigs = evidence.rigs.iter().filter(|observed| same(&observed.rig));
     let mut rigs: Vec<(f64, &Observed)> = rigs
         .filter_map(|observed| Some((*observed.rig.values.get(factor)?, observed)))
         .collect();
@@ -149,9 +151,9 @@ fn rebounds(evidence: &Evidence) -> Figure {
 
 /// The usual rig and those that differ from it in friction or push.
 fn shown(evidence: &Evidence) -> Vec<&Observed> {
-    let alike = |rig: &Rig| rig.values[2..] == Rig::usual().values[2..];
+    let same = |rig: &Rig| rig.values[2..] == Rig::usual().values[2..];
     let rigs = evidence.rigs.iter();
-    rigs.filter(|observed| alike(&observed.rig)).collect()
+    rigs.filter(|observed| same(&observed.rig)).collect()
 }
 
 /// Gaps after the fastest shots and after the taps that follow, contact by

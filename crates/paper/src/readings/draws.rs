@@ -2,7 +2,7 @@
 
 use super::rounding::{Draw, DryPoisson, Prefactors};
 use super::sharpened::sharpened;
-use crate::claims::{Evidence, Judge};
+use crate::claims::{Evaluator, Evidence};
 use crate::reproduce::{Cases, Effort, Gathering, OILS, ReproduceError, SPEEDS_M_S, gather};
 use hertzchain_chain::Chain;
 use hertzchain_experiment::Reading;
@@ -17,7 +17,7 @@ const ACCURACIES: [f64; 2] = [1e-6, 1e-7];
 /// # Errors
 /// The first shot that can't be computed.
 pub fn rounded_evidence(
-    judges: &[Judge],
+    evaluators: &[Evaluator],
     reading: &Reading,
     (seed, draws): (u64, usize),
     dry_poisson: DryPoisson,
@@ -36,12 +36,12 @@ pub fn rounded_evidence(
             let known = prefactors.iter().find(|(name, _)| *name == case);
             draw.change(case, speed, known.and_then(|(_, p)| *p), chain);
         };
-        let evidence = sharpened(judges, &ACCURACIES, &|accuracy| {
+        let evidence = sharpened(evaluators, &ACCURACIES, &|accuracy| {
             let how = Gathering {
                 reading: *reading,
                 speeds_m_s: &SPEEDS_M_S,
                 accuracy,
-                effort: Effort::Lean(judges),
+                effort: Effort::Lean(evaluators),
             };
             let mut evidence = gather(&how, &change, &|| {})?;
             draw.change_oils(&mut evidence.oils);

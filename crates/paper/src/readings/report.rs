@@ -1,7 +1,7 @@
 //! A scan over readings as a table and a page.
 
 use super::scan::{Factor, Row, Scan};
-use crate::claims::{Claim, Judged, Verdict, rounded_text, verdicts_text, with_unit};
+use crate::claims::{Claim, EvaluatedClaim, Verdict, rounded_text, verdicts_text, with_unit};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -242,7 +242,7 @@ fn prices(page: &mut String, scan: &Scan) {
 /// What rounding does when the dry balls' Poisson ratio is 0.3 to one digit
 /// instead of two: the claims whose verdict then differs.
 #[must_use]
-pub fn two_digits_markdown(one_digit: &[Judged], two_digits: &[Judged]) -> String {
+pub fn two_digits_markdown(one_digit: &[EvaluatedClaim], two_digits: &[EvaluatedClaim]) -> String {
     let mut page = String::from(
         "\n## If steel's 0.3 means the handbooks' 0.30\n\nThe verdicts of claims.md let the printed Poisson \
          ratio of steel, 0.3, lie between 0.25 and 0.35, as its one digit says. Taken for the handbooks' \

@@ -1,7 +1,7 @@
 //! Which claims hold in which reading.
 
 use super::sharpened::sharpened;
-use crate::claims::{Claim, Judge, Verdict, claims};
+use crate::claims::{Claim, Evaluator, Verdict, claims};
 use crate::reproduce::{Effort, Gathering, Memory, Progress, ReproduceError, gather_remembering};
 use hertzchain_experiment::Reading;
 use std::time::Instant;
@@ -99,7 +99,7 @@ pub fn scan(
 ) -> Result<Scan, ReproduceError> {
     let start = Instant::now();
     let scanner = Scanner {
-        judges: claims()?,
+        evaluators: claims()?,
         memory: Memory::default(),
         speeds_m_s,
         accuracy,
@@ -119,9 +119,9 @@ pub fn scan(
     let search = scanner.climb(start)?;
     Ok(Scan {
         claims: scanner
-            .judges
+            .evaluators
             .into_iter()
-            .map(|judge| judge.claim)
+            .map(|evaluator| evaluator.claim)
             .collect(),
         default,
         single,
@@ -169,8 +169,8 @@ impl Scan {
         let closest = self.closest();
         let mut found: Vec<&Row> = Vec::new();
         for row in self.rows() {
-            let told = found.iter().any(|other| other.reading == row.reading);
-            if row.score() == closest.score() && row.reading != closest.reading && !told {
+            let listed = found.iter().any(|other| other.reading == row.reading);
+            if row.score() == closest.score() && row.reading != closest.reading && !listed {
                 found.push(row);
             }
         }
@@ -276,7 +276,7 @@ fn product(factors: &[Factor]) -> Vec<Reading> {
 }
 
 struct Scanner<'a> {
-    judges: Vec<Judge>,
+    evaluators: Vec<Evaluator>,
     memory: Memory,
     speeds_m_s: &'a [f64],
     accuracy: f64,
@@ -286,16 +286,19 @@ struct Scanner<'a> {
 impl Scanner<'_> {
     fn row(&self, reading: &Reading) -> Result<Row, ReproduceError> {
         let accuracies = [self.accuracy, 0.1 * self.accuracy];
-        let evidence = sharpened(&self.judges, &accuracies, &|accuracy| {
+        let evidence = sharpened(&self.evaluators, &accuracies, &|accuracy| {
             let how = Gathering {
                 reading: *reading,
                 speeds_m_s: self.speeds_m_s,
                 accuracy,
-                effort: Effort::Lean(&self.judges),
+                effort: Effort::Lean(&self.evaluators),
             };
             gather_remembering(&how, &self.memory)
         })?;
-        let findings = self.judges.iter().map(|judge| judge.decide(&evidence));
+        let findings = self
+            .evaluators
+            .iter()
+            .map(|evaluator| evaluator.decide(&evidence));
         let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();
         Ok(Row {
             reading: *reading,

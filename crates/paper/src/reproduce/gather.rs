@@ -1,10 +1,10 @@
-//! From shots to the numbers that claims are judged on.
+//! From shots to the numbers that claims are evaluated on.
 
 use super::cases::Cases;
 use super::memory::Memory;
 use super::point::{checked, excess_s, read_off_all};
 use super::{ReproduceError, failed};
-use crate::claims::{Curve, Evidence, Judge, Point};
+use crate::claims::{Curve, Evaluator, Evidence, Point};
 use hertzchain_chain::{Chain, Sensor};
 use hertzchain_experiment::{Experiment, Reading};
 use hertzchain_sim::{Control, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot};
@@ -31,7 +31,7 @@ pub enum Effort<'a> {
     Checked,
     /// Times, peaks and widths by the ensemble loop; the striker, the gaps and the
     /// way back without them only of the shots in which one of these claims asks for them.
-    Lean(&'a [Judge]),
+    Lean(&'a [Evaluator]),
 }
 
 /// Changes a chain of a case, hit at a speed, before it is shot.
@@ -132,12 +132,14 @@ impl Target {
         change: Change<'_>,
     ) -> Result<Self, ReproduceError> {
         let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
-        let asks = |what: fn(&Judge, &str, f64) -> bool| match how.effort {
+        let asks = |what: fn(&Evaluator, &str, f64) -> bool| match how.effort {
             Effort::Checked => true,
-            Effort::Lean(judges) => judges.iter().any(|judge| what(judge, case, speed_m_s)),
+            Effort::Lean(evaluators) => evaluators
+                .iter()
+                .any(|evaluator| what(evaluator, case, speed_m_s)),
         };
-        let closing = asks(Judge::needs_closing);
-        let followed = closing || asks(Judge::needs_end);
+        let closing = asks(Evaluator::needs_closing);
+        let followed = closing || asks(Evaluator::needs_end);
         let ends = vec![
             Sensor::Position(1),
             Sensor::Position(plan.chain.beads.len()),

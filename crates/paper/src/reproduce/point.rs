@@ -29,7 +29,7 @@ mod unchecked {
 /// Below this accuracy rounding decides, not the step.
 const FINEST: f64 = 1e-12;
 
-/// Computes a shot, and again at a tenth of the tolerance: what this changes tells
+/// Computes a shot, and again at a tenth of the tolerance: what this changes shows
 /// the accuracy of every number. Where times of flight change by more than the
 /// accuracy asked, the finer shot takes its place.
 pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> {
@@ -47,9 +47,9 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
     loop {
         let finer = at(0.1 * accuracy)?;
         let (tolerance, _) = tolerance(&plan.clone().with_accuracy(accuracy));
-        let judged = judged(point, &finer, tolerance);
-        if judged.accuracy_reached <= plan.accuracy || 0.1 * accuracy <= FINEST {
-            return Ok(judged);
+        let evaluated = evaluated(point, &finer, tolerance);
+        if evaluated.accuracy_reached <= plan.accuracy || 0.1 * accuracy <= FINEST {
+            return Ok(evaluated);
         }
         accuracy *= 0.1;
         point = finer;
@@ -58,7 +58,7 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
 
 /// A point whose accuracies follow from what a finer computation changes and from
 /// the tolerance of a step.
-fn judged(point: Point, finer: &Point, tolerance: f64) -> Point {
+fn evaluated(point: Point, finer: &Point, tolerance: f64) -> Point {
     let largest = |number: &dyn Fn(&Point) -> Vec<f64>, relative: bool| {
         let pairs = number(&point).into_iter().zip(number(finer));
         let off = pairs.map(|(a, b)| {

@@ -1,6 +1,6 @@
 //! How far a long computation is.
 
-/// Is told how far a long computation is; may be called from any thread.
+/// Is notified how far a long computation is; may be called from any thread.
 pub trait Progress: Sync {
     /// A stage of so many steps begins.
     fn begin(&self, stage: &str, steps: u64);
@@ -10,7 +10,7 @@ pub trait Progress: Sync {
     fn note(&self, _text: &str) {}
 }
 
-/// Tells nobody.
+/// Reports nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

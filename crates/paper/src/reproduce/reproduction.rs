@@ -9,7 +9,7 @@ use super::{
     power_laws_csv, ratios_csv, tof_csv,
 };
 use crate::claims::{
-    Evidence, Judged, MEANING, claims, claims_json, claims_markdown, judge_all_rounded,
+    EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all_rounded,
 };
 use crate::readings::{
     DryPoisson, Scan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
@@ -70,10 +70,10 @@ pub struct Reproduction {
     /// Times of flight, peaks and the rest.
     pub evidence: Evidence,
     /// The claims with their verdicts.
-    pub judged: Vec<Judged>,
+    pub evaluated: Vec<EvaluatedClaim>,
     /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
     /// readings were asked for.
-    pub two_digits: Option<Vec<Judged>>,
+    pub two_digits: Option<Vec<EvaluatedClaim>>,
     /// The signals of Fig. 2.
     pub signals: Vec<SignalShot>,
     /// One dry and one wet shot bead by bead.
@@ -110,11 +110,11 @@ pub fn reproduce(
     let films = films(&cases)?;
     progress.advance();
     let (one_digit, two_digits) = (DryPoisson::OneDigit, DryPoisson::TwoDigits);
-    let verdicts = judged(options, (&reading, one_digit), &evidence, progress)?;
+    let verdicts = evaluated(options, (&reading, one_digit), &evidence, progress)?;
     let (two_digits, scan) = match options.readings {
         0 => (None, None),
         most => {
-            let two_digits = judged(options, (&reading, two_digits), &evidence, progress)?;
+            let two_digits = evaluated(options, (&reading, two_digits), &evidence, progress)?;
             let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
             scan.flipped_by_rounding = flipped(&verdicts);
             let closest = scan.closest().reading;
@@ -124,7 +124,7 @@ pub fn reproduce(
                 ..how
             };
             let evidence = gather(&how, &|_, _, _| {}, &|| {})?;
-            let rounded = judged(options, (&closest, one_digit), &evidence, progress)?;
+            let rounded = evaluated(options, (&closest, one_digit), &evidence, progress)?;
             scan.flipped_in_closest = flipped(&rounded);
             (Some(two_digits), Some(scan))
         }
@@ -134,7 +134,7 @@ pub fn reproduce(
         reading,
         cases,
         evidence,
-        judged: verdicts,
+        evaluated: verdicts,
         two_digits,
         signals,
         films,
@@ -143,24 +143,24 @@ pub fn reproduce(
 }
 
 /// The claims, decided on the tables and under rounding, in a reading.
-fn judged(
+fn evaluated(
     options: &Options,
     (reading, dry_poisson): (&Reading, DryPoisson),
     evidence: &Evidence,
     progress: &dyn Progress,
-) -> Result<Vec<Judged>, ReproduceError> {
-    let judges = claims()?;
+) -> Result<Vec<EvaluatedClaim>, ReproduceError> {
+    let evaluators = claims()?;
     progress.begin("rounding of the printed constants", options.draws as u64);
     let done = || progress.advance();
     let draws = (options.seed, options.draws);
-    let draws = rounded_evidence(&judges, reading, draws, dry_poisson, &done)?;
-    Ok(judge_all_rounded(&judges, evidence, &draws))
+    let draws = rounded_evidence(&evaluators, reading, draws, dry_poisson, &done)?;
+    Ok(evaluate_all_rounded(&evaluators, evidence, &draws))
 }
 
 /// Claims that rounding flips, by index.
-fn flipped(judged: &[Judged]) -> Vec<usize> {
-    let flipped = judged.iter().enumerate();
-    let flipped = flipped.filter(|(_, judged)| judged.flips_by_rounding());
+fn flipped(evaluated: &[EvaluatedClaim]) -> Vec<usize> {
+    let flipped = evaluated.iter().enumerate();
+    let flipped = flipped.filter(|(_, evaluated)| evaluated.flips_by_rounding());
     flipped.map(|(claim, _)| claim).collect()
 }
 
@@ -211,15 +211,18 @@ impl Reproduction {
                 json(&json!({
                     "reading": reading,
                     "meaning": MEANING,
-                    "claims": claims_json(&self.judged),
+                    "claims": claims_json(&self.evaluated),
                 })),
             ),
-            ("claims.md", claims_markdown(&self.judged, &head(&reading))),
+            (
+                "claims.md",
+                claims_markdown(&self.evaluated, &head(&reading)),
+            ),
         ];
         if let Some(scan) = &self.scan {
             files.push(("readings.csv", scan_csv(scan)));
             let two_digits = self.two_digits.as_deref().unwrap_or_default();
-            let page = scan_markdown(scan) + &two_digits_markdown(&self.judged, two_digits);
+            let page = scan_markdown(scan) + &two_digits_markdown(&self.evaluated, two_digits);
             files.push(("readings.md", page));
         }
         Ok(files)

@@ -3,7 +3,7 @@
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::rig::RigError;
 
-/// Something that the paper does not tell of its rig.
+/// Something that the paper does not state of its rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factor {
     /// In words.
@@ -155,7 +155,7 @@ pub struct Design {
     pub speeds: usize,
     /// Shots of a series that count.
     pub shots: usize,
-    /// Shots before them: without taps they tell of the laying.
+    /// Shots before them: without taps they show the laying.
     pub first: usize,
 }
 
@@ -211,5 +211,5 @@ impl Design {
     }
 }
 
-/// Length of records that nobody reads, in s.
+/// Length of records that is not read, in s.
 const SHORTEST_S: f64 = 1e-4;

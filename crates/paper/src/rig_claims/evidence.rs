@@ -26,12 +26,12 @@ pub struct Observed {
     pub speeds: Vec<AtSpeed>,
 }
 
-/// All that claims are judged on.
+/// All that claims are evaluated on.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
-    /// The dry rigs in the design's order: what claims are judged on.
+    /// The dry rigs in the design's order: what claims are evaluated on.
     pub rigs: Vec<Observed>,
-    /// The others, each of which is judged alone.
+    /// The others, each of which is evaluated alone.
     pub wet: Vec<Observed>,
 }
 

@@ -1,8 +1,8 @@
 //! What the paper says of its rig, held against virtual ones.
 //!
-//! The paper does not tell how its beads rub, how they are laid, how unlike
+//! The paper does not say how its beads rub, how they are laid, how unlike
 //! they are, nor how its spring presses; so a [`Design`] of rigs is tried. Each runs
-//! campaigns with taps and without, and claims, rows of a data file, are judged on all
+//! campaigns with taps and without, and claims, rows of a data file, are evaluated on all
 //! rigs together and on each alone.
 
 mod design;
@@ -18,7 +18,7 @@ pub use observe::observe;
 pub use report::{MEANING, RigClaims, series_csv};
 pub use spread::{Estimate, root_mean_square, typical};
 
-use crate::claims::{ClaimError, Judge, read};
+use crate::claims::{ClaimError, Evaluator, read};
 
 /// The claims as they come with the program.
 static PAPER: &str = include_str!("../../data/rig_claims.toml");
@@ -27,6 +27,6 @@ static PAPER: &str = include_str!("../../data/rig_claims.toml");
 ///
 /// # Errors
 /// When the data file is damaged, which a test rules out.
-pub fn claims() -> Result<Vec<Judge<Evidence>>, ClaimError> {
+pub fn claims() -> Result<Vec<Evaluator<Evidence>>, ClaimError> {
     read(PAPER, predicates::find)
 }

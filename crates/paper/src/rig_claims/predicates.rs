@@ -7,7 +7,7 @@ use hertzchain_sim::rig::Shot;
 
 static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("rebounds-differ", rebounds_differ),
-    ("spread-beside-scatter", spread_beside_scatter),
+    ("spread-beside-scatter", spread_and_scatter),
     ("taps-shrink-own", taps_shrink_own),
     ("taps-shrink-seen", taps_shrink_seen),
     ("return-longer", return_longer),
@@ -37,7 +37,7 @@ fn rebounds_differ(claim: &Claim, evidence: &Evidence) -> Finding {
     })
 }
 
-fn spread_beside_scatter(claim: &Claim, evidence: &Evidence) -> Finding {
+fn spread_and_scatter(claim: &Claim, evidence: &Evidence) -> Finding {
     a_rig_each(claim, evidence, |observed| {
         let series = observed.with_scatter_s(Branch::Incident);
         let ratio = |(at, scatter_s): (&AtSpeed, f64)| incident_s(&at.loose) / scatter_s;

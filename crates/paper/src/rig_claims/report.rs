@@ -5,7 +5,7 @@ use super::design::{Design, FACTORS, Rig};
 use super::evidence::{AtSpeed, Evidence, Observed, each, largest_m, mean, rebound_m_s, tof_s};
 use super::spread::deviation;
 use crate::claims::{
-    Branch, ClaimError, Judged, claims_json, claims_markdown, computed_text, judge_all,
+    Branch, ClaimError, EvaluatedClaim, claims_json, claims_markdown, computed_text, evaluate_all,
 };
 use hertzchain_sim::rig::Shot;
 use serde_json::{Map, Value, json};
@@ -15,31 +15,31 @@ use std::fmt::Write as _;
 pub const MEANING: &str = "A claim that fails is a statement that virtual rigs do not show, whose friction, laying, \
     sizes and push are assumptions, as the paper prints none; this does not make it wrong of the paper's own rig.";
 
-/// The claims, judged on all dry rigs of a design and on each rig alone.
+/// The claims, evaluated on all dry rigs of a design and on each rig alone.
 #[derive(Clone, Debug)]
 pub struct RigClaims {
     /// On all dry rigs together.
-    pub judged: Vec<Judged>,
+    pub evaluated: Vec<EvaluatedClaim>,
     /// On each alone.
-    pub rigs: Vec<(Rig, Vec<Judged>)>,
+    pub rigs: Vec<(Rig, Vec<EvaluatedClaim>)>,
     /// What the rigs did, in words.
     about: String,
 }
 
 impl RigClaims {
-    /// Judges all claims.
+    /// Evaluates all claims.
     ///
     /// # Errors
     /// When the claims' data file is damaged, which a test rules out.
-    pub fn judge(design: &Design, evidence: &Evidence) -> Result<Self, ClaimError> {
-        let judges = claims()?;
+    pub fn evaluate(design: &Design, evidence: &Evidence) -> Result<Self, ClaimError> {
+        let evaluators = claims()?;
         let alone = evidence.alone().flat_map(|alone| {
-            let judged = judge_all(&judges, &alone);
+            let evaluated = evaluate_all(&evaluators, &alone);
             let rig = alone.rigs.into_iter().next();
-            rig.map(|observed| (observed.rig, judged))
+            rig.map(|observed| (observed.rig, evaluated))
         });
         Ok(Self {
-            judged: judge_all(&judges, evidence),
+            evaluated: evaluate_all(&evaluators, evidence),
             rigs: alone.collect(),
             about: about(design, evidence),
         })
@@ -52,14 +52,14 @@ impl RigClaims {
             "# What the paper says of its rig, and what virtual ones show\n\n{}\n\n{MEANING}",
             self.about
         );
-        let mut page = claims_markdown(&self.judged, &head);
+        let mut page = claims_markdown(&self.evaluated, &head);
         page.push_str("\n## Rig by rig\n\n| rig |");
-        for judged in &self.judged {
-            let _ = write!(page, " {} |", judged.claim.id);
+        for evaluated in &self.evaluated {
+            let _ = write!(page, " {} |", evaluated.claim.id);
         }
-        let _ = writeln!(page, "\n|{}", "---|".repeat(self.judged.len() + 1));
-        for (rig, judged) in &self.rigs {
-            let cells = judged.iter().map(|j| {
+        let _ = writeln!(page, "\n|{}", "---|".repeat(self.evaluated.len() + 1));
+        for (rig, evaluated) in &self.rigs {
+            let cells = evaluated.iter().map(|j| {
                 let computed = computed_text(j);
                 format!(" {}: {computed} |", j.verdict)
             });
@@ -71,17 +71,17 @@ impl RigClaims {
     /// As JSON.
     #[must_use]
     pub fn json(&self) -> Value {
-        let rigs = self.rigs.iter().map(|(rig, judged)| {
+        let rigs = self.rigs.iter().map(|(rig, evaluated)| {
             let values = FACTORS.iter().zip(rig.values);
             let values: Map<String, Value> = values
                 .map(|(factor, value)| (factor.path.to_owned(), json!(value)))
                 .collect();
-            json!({ "rig": rig.name, "values_si": values, "claims": claims_json(judged) })
+            json!({ "rig": rig.name, "values_si": values, "claims": claims_json(evaluated) })
         });
         json!({
             "about": self.about,
             "meaning": MEANING,
-            "claims": claims_json(&self.judged),
+            "claims": claims_json(&self.evaluated),
             "rigs": rigs.collect::<Vec<Value>>(),
         })
     }
@@ -91,8 +91,8 @@ fn about(design: &Design, evidence: &Evidence) -> String {
     let speeds = evidence.rigs.first().map_or(&[][..], |rig| &rig.speeds);
     let end = |at: Option<&AtSpeed>| at.map_or(f64::NAN, |at| at.speed_m_s);
     format!(
-        "Computed on {} virtual rigs: {}, then others in what the paper does not tell, friction with the track, push on \
-         bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. Chains are dry; {} more, as the preset with oil, are judged one by one and count in no verdict on all. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
+        "Computed on {} virtual rigs: {}, then others in what the paper does not state, friction with the track, push on \
+         bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. Chains are dry; {} more, as the preset with oil, are evaluated one by one and count in no verdict on all. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
          without taps and once with {} taps before every shot; {} shots of a series count, after {} that do not. All \
          shots of a series have exactly the same speed, so that spreads are the chain's own; times of flight are \
          those of the true peaks, without noise.\n\n\

@@ -45,7 +45,7 @@ pub(super) fn mean_of(values: &[f64]) -> Estimate {
 }
 
 /// ln of the geometric mean of a number that series have, with its error. Series
-/// whose number is none, having no pulses, tell nothing.
+/// whose number is none, having no pulses, count for nothing.
 #[must_use]
 pub fn typical(of_series: &[f64]) -> Estimate {
     let logs = of_series.iter().map(|v| v.ln());
@@ -63,7 +63,7 @@ pub fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
     })
 }
 
-/// One series alone tells no error: it is not a number then.
+/// One series alone has no error: it is not a number then.
 fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
     let mut chance = RandomStream::new(SEED, 0, Purpose::Resampling);
     let mut drawn = || {

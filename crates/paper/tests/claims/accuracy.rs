@@ -18,12 +18,12 @@ fn all_evidence() -> Vec<Evidence> {
 #[test]
 fn only_what_is_counted_far_from_a_change_is_exact() {
     for evidence in all_evidence() {
-        for judge in claims().unwrap() {
-            let finding = judge.decide(&evidence);
+        for evaluator in claims().unwrap() {
+            let finding = evaluator.decide(&evidence);
             let exact = finding.accuracy == 0.0;
             let far = finding.nearest_change;
             let far = far.is_some_and(|change| change.margin > change.accuracy);
-            assert!(!exact || far, "{}: {finding:?}", judge.claim.id);
+            assert!(!exact || far, "{}: {finding:?}", evaluator.claim.id);
         }
     }
 }
@@ -130,15 +130,15 @@ fn a_value_stays_within_its_accuracy_when_every_number_is_off_by_its_own() {
         for curve in &mut shaken.curves {
             curve.points.iter_mut().for_each(|p| signs.shake(p));
         }
-        for judge in claims().unwrap() {
-            let (exact, off) = (judge.decide(&evidence), judge.decide(&shaken));
+        for evaluator in claims().unwrap() {
+            let (exact, off) = (evaluator.decide(&evidence), evaluator.decide(&shaken));
             let change = (off.value - exact.value).abs();
             // Bounds are of first order: the second is smaller by the accuracies,
             // and rounding of the made-up numbers by more.
             assert!(
                 change <= exact.accuracy * 1.001 + 1e-14,
                 "{}: {change:e} of {:e}",
-                judge.claim.id,
+                evaluator.claim.id,
                 exact.accuracy
             );
         }

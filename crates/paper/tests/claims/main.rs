@@ -13,42 +13,44 @@ mod breaks;
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_paper::claims::{
-    Claim, Evidence, Finding, Judge, Judged, MEANING, Needs, Verdict, claims, claims_markdown,
-    judge_all, judge_all_rounded, predicate, read,
+    Claim, EvaluatedClaim, Evaluator, Evidence, Finding, MEANING, Needs, Verdict, claims,
+    claims_markdown, evaluate_all, evaluate_all_rounded, predicate, read,
 };
 
-fn judge(id: &str) -> Judge {
+fn evaluate(id: &str) -> Evaluator {
     let all = claims().unwrap();
-    all.into_iter().find(|judge| judge.claim.id == id).unwrap()
+    all.into_iter()
+        .find(|evaluator| evaluator.claim.id == id)
+        .unwrap()
 }
 
 fn decide(id: &str, evidence: &Evidence) -> Finding {
-    judge(id).decide(evidence)
+    evaluator(id).decide(evidence)
 }
 
 #[test]
 fn every_claim_holds_on_numbers_that_agree_with_the_paper() {
     let evidence = agreeing();
-    for judge in claims().unwrap() {
-        let finding = judge.decide(&evidence);
+    for evaluator in claims().unwrap() {
+        let finding = evaluator.decide(&evidence);
         assert_eq!(
             finding.verdict,
             Verdict::Holds,
             "{}: {finding:?}",
-            judge.claim.id
+            evaluator.claim.id
         );
     }
 }
 
 #[test]
 fn every_verdict_flips_when_its_numbers_change() {
-    for judge in claims().unwrap() {
-        let id = &judge.claim.id;
+    for evaluator in claims().unwrap() {
+        let id = &evaluator.claim.id;
         let change = BREAKS.iter().find(|(name, _)| name == id);
         let (_, change) = change.unwrap_or_else(|| panic!("nothing breaks `{id}`"));
         let mut evidence = agreeing();
         change(&mut evidence);
-        let verdict = judge.decide(&evidence).verdict;
+        let verdict = evaluator.decide(&evidence).verdict;
         assert!(
             matches!(verdict, Verdict::Fails | Verdict::InPart),
             "{id}: {verdict}"
@@ -67,14 +69,14 @@ fn on_the_right_side(claim: &Claim, finding: &Finding) -> bool {
 
 #[test]
 fn what_a_claim_says_it_needs_is_what_decides_it() {
-    for judge in claims().unwrap() {
-        let claim = &judge.claim;
-        let met = judge.decide(&agreeing());
+    for evaluator in claims().unwrap() {
+        let claim = &evaluator.claim;
+        let met = evaluator.decide(&agreeing());
         assert!(on_the_right_side(claim, &met), "{}: {met:?}", claim.id);
         let (_, change) = BREAKS.iter().find(|(name, _)| *name == claim.id).unwrap();
         let mut evidence = agreeing();
         change(&mut evidence);
-        let broken = judge.decide(&evidence);
+        let broken = evaluator.decide(&evidence);
         let by_upper_bound = claim.at_most.is_some_and(|most| broken.value > most);
         assert!(
             !on_the_right_side(claim, &broken) || by_upper_bound,
@@ -86,23 +88,28 @@ fn what_a_claim_says_it_needs_is_what_decides_it() {
 
 #[test]
 fn only_numbers_that_the_paper_prints_have_a_deviation() {
-    for judge in claims().unwrap() {
-        let finding = judge.decide(&agreeing());
-        let printed = !judge.claim.expected.is_empty();
-        assert_eq!(finding.expected.is_some(), printed, "{}", judge.claim.id);
+    for evaluator in claims().unwrap() {
+        let finding = evaluator.decide(&agreeing());
+        let printed = !evaluator.claim.expected.is_empty();
         assert_eq!(
-            judge.claim.needs == Needs::Within,
+            finding.expected.is_some(),
             printed,
             "{}",
-            judge.claim.id
+            evaluator.claim.id
+        );
+        assert_eq!(
+            evaluator.claim.needs == Needs::Within,
+            printed,
+            "{}",
+            evaluator.claim.id
         );
     }
 }
 
 #[test]
 fn the_page_has_every_number_of_a_claim_in_one_unit() {
-    let judged = judge_all(&claims().unwrap(), &agreeing());
-    let page = claims_markdown(&judged, "as made up");
+    let evaluated = evaluate_all(&claims().unwrap(), &agreeing());
+    let page = claims_markdown(&evaluated, "as made up");
     for line in [
         "- Computed: 0.119434 Pa s (kinematic viscosity times density).",
         "- The paper: 0.119 Pa s. Deviation: +0.000434 Pa s.",
@@ -162,8 +169,8 @@ fn oils_either_way_at_one_speed_alone_are_half_of_the_main_result() {
 
 #[test]
 fn a_page_of_claims_says_above_its_table_what_a_failure_means() {
-    let judged = judge_all(&claims().unwrap(), &agreeing());
-    let page = claims_markdown(&judged, MEANING);
+    let evaluated = evaluate_all(&claims().unwrap(), &agreeing());
+    let page = claims_markdown(&evaluated, MEANING);
     let table = page.find("| claim |").unwrap();
     assert!(page.find("does not give").unwrap() < table);
 }
@@ -233,9 +240,9 @@ fn claims_without_numbers_are_not_decidable() {
         viscosity_over_modulus_s: f64::NAN,
         ..Evidence::default()
     };
-    for judge in claims().unwrap() {
-        let verdict = judge.decide(&nothing).verdict;
-        assert_eq!(verdict, Verdict::NotDecidable, "{}", judge.claim.id);
+    for evaluator in claims().unwrap() {
+        let verdict = evaluator.decide(&nothing).verdict;
+        assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
     }
 }
 
@@ -287,8 +294,8 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     let mut draw = printed.clone();
     draw.viscosity_over_modulus_s = 1.6e-7;
     let draws = [printed.clone(), draw];
-    let judged = judge_all_rounded(&claims().unwrap(), &printed, &draws);
-    let relaxation = judged
+    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &draws);
+    let relaxation = evaluated
         .iter()
         .find(|j| j.claim.id == "relaxation-time")
         .unwrap();
@@ -296,13 +303,16 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     assert_eq!(relaxation.verdict, Verdict::NotDecidable);
     let rounded = relaxation.rounded.as_ref().unwrap();
     assert_eq!(rounded.range, Some((1.5e-7, 1.6e-7)));
-    let other = judged.iter().find(|j| j.claim.id == "gear-below").unwrap();
+    let other = evaluated
+        .iter()
+        .find(|j| j.claim.id == "gear-below")
+        .unwrap();
     assert_eq!(other.verdict, Verdict::Holds);
 }
 
 /// The verdict on motor oil's ratios when one draw computes them to 1e-6 and
 /// the lowest of them is off 1 by this much.
-fn motor_above_with_a_draw(off: f64) -> Judged {
+fn motor_above_with_a_draw(off: f64) -> EvaluatedClaim {
     let printed = agreeing();
     let mut draw = printed.clone();
     each(&mut draw, "motor", |p| {
@@ -312,25 +322,25 @@ fn motor_above_with_a_draw(off: f64) -> Judged {
         }
     });
     assert!(decide("motor-above", &draw).is_open());
-    let judged = judge_all_rounded(&claims().unwrap(), &printed, &[draw]);
-    let motor = judged.into_iter().find(|j| j.claim.id == "motor-above");
+    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &[draw]);
+    let motor = evaluated.into_iter().find(|j| j.claim.id == "motor-above");
     motor.unwrap()
 }
 
 #[test]
 fn a_draw_that_is_too_coarse_to_tell_but_lies_on_the_same_side_flips_nothing() {
-    let judged = motor_above_with_a_draw(1e-7);
-    assert_eq!(judged.verdict, Verdict::Holds, "{judged:?}");
-    assert_eq!(judged.rounded.unwrap().open, 1);
+    let evaluated = motor_above_with_a_draw(1e-7);
+    assert_eq!(evaluated.verdict, Verdict::Holds, "{evaluated:?}");
+    assert_eq!(evaluated.rounded.unwrap().open, 1);
 }
 
 #[test]
 fn a_draw_on_the_other_side_flips_however_coarse_it_is() {
-    let judged = motor_above_with_a_draw(-1e-7);
-    assert_eq!(judged.finding.verdict, Verdict::Holds);
-    assert_eq!(judged.verdict, Verdict::NotDecidable);
+    let evaluated = motor_above_with_a_draw(-1e-7);
+    assert_eq!(evaluated.finding.verdict, Verdict::Holds);
+    assert_eq!(evaluated.verdict, Verdict::NotDecidable);
     // One ratio of several is below 1 then.
-    assert_eq!(judged.rounded.unwrap().verdicts, [0, 1, 0, 0]);
+    assert_eq!(evaluated.rounded.unwrap().verdicts, [0, 1, 0, 0]);
 }
 
 #[test]
@@ -338,10 +348,10 @@ fn the_page_tells_the_range_of_what_rounding_flips_and_how_many_draws_have_a_val
     let printed = agreeing();
     let mut draw = printed.clone();
     each(&mut draw, "pump", |p| p.tof_incident_s *= 1.1);
-    let judged = judge_all_rounded(&claims().unwrap(), &printed, &[printed.clone(), draw]);
-    let crossing = judged.iter().find(|j| j.claim.id == "pump-crossing");
+    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &[printed.clone(), draw]);
+    let crossing = evaluated.iter().find(|j| j.claim.id == "pump-crossing");
     assert_eq!(crossing.unwrap().verdict, Verdict::NotDecidable);
-    let page = claims_markdown(&judged, "as made up");
+    let page = claims_markdown(&evaluated, "as made up");
     let line =
         "2 draws: holds in 1, fails in 1; computed: 1.09999 to 1.09999 m/s in the 1 that have it.";
     assert!(page.contains(line), "{page}");
@@ -351,8 +361,8 @@ fn the_page_tells_the_range_of_what_rounding_flips_and_how_many_draws_have_a_val
 fn there_are_more_than_fifteen_claims_and_each_says_why() {
     let all = claims().unwrap();
     assert!(all.len() > 15);
-    for judge in all {
-        let claim = judge.claim;
+    for evaluator in all {
+        let claim = evaluator.claim;
         for text in [&claim.statement, &claim.paper, &claim.value, &claim.reason] {
             assert!(text.len() > 4, "{claim:?}");
         }

@@ -81,7 +81,7 @@ fn accuracy(curve: &Curve) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// What a fit is judged by: the value, its margin and their accuracy.
+/// What a fit is evaluated by: the value, its margin and their accuracy.
 type Measure<'a> = &'a dyn Fn(&Curve, Branch) -> Option<(f64, f64, f64)>;
 
 fn each_fit(claim: &Claim, evidence: &Evidence, measure: Measure<'_>) -> Finding {

@@ -36,7 +36,7 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("ratio-has-dips", ratios::has_dips),
     ("oil-either-way", ratios::either_way),
     ("ratios-differ", trends::ratios_differ),
-    ("trends-alike", trends::alike),
+    ("trends-alike", trends::same_trends),
     ("trend-against-viscosity", trends::against_viscosity),
     (
         "viscosity-orders-ratios",

@@ -83,7 +83,7 @@ fn weights(at: &[f64]) -> Vec<f64> {
 }
 
 /// The two ratio curves correlate by more than the threshold.
-pub(super) fn alike(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn same_trends(claim: &Claim, evidence: &Evidence) -> Finding {
     let [one, other] = &claim.cases[..] else {
         return missing();
     };
@@ -101,15 +101,15 @@ pub(super) fn alike(claim: &Claim, evidence: &Evidence) -> Finding {
 /// its viscosity is nearer to the third's. The accuracies of the two
 /// correlations add up.
 pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
-    let [one, alike, other] = &claim.cases[..] else {
+    let [one, similar, other] = &claim.cases[..] else {
         return missing();
     };
     let correlations = (
-        correlation(evidence, one, alike),
+        correlation(evidence, one, similar),
         correlation(evidence, one, other),
     );
     let viscosity = |case: &str| Some(evidence.oil(case)?.dynamic_viscosity_pa_s().ln());
-    let viscosities = (viscosity(one), viscosity(alike), viscosity(other));
+    let viscosities = (viscosity(one), viscosity(similar), viscosity(other));
     let ((Some(near), Some(far)), (Some(a), Some(b), Some(c))) = (correlations, viscosities) else {
         return missing();
     };
@@ -123,7 +123,7 @@ pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
     }
     let mut worst = Worst::none();
     worst.see(0.0, value, accuracy, || {
-        format!("{one} with {alike} {near:.3}, with {other} {far:.3}")
+        format!("{one} with {similar} {near:.3}, with {other} {far:.3}")
     });
     worst.finding(tally)
 }

@@ -46,11 +46,11 @@ fn the_closest_reading_is_scored_without_what_rounding_leaves_open_too() {
     let scan = made_up(Vec::new());
     let (page, all) = (scan_markdown(&scan), scan.claims.len());
     // The default reading meets nothing, the closest everything but two.
-    let told = format!(
+    let listed = format!(
         "(‡ below, 2 claims; † in the default reading): {} against 0.",
         all - 2
     );
-    assert!(page.contains(&told), "{page}");
+    assert!(page.contains(&listed), "{page}");
     assert_eq!(page.matches("| ‡ holds |").count(), 2);
 }
 

@@ -44,9 +44,11 @@ fn peaks(difference: f64, accuracy: f64) -> Evidence {
 
 #[test]
 fn shots_are_as_accurate_as_it_takes_to_tell_the_side_and_no_more() {
-    let judges: Vec<Judge> = claims().unwrap();
-    let overlap = judges.into_iter().filter(|j| j.claim.id == "peaks-overlap");
-    let overlap: Vec<Judge> = overlap.collect();
+    let evaluators: Vec<Evaluator> = claims().unwrap();
+    let overlap = evaluators
+        .into_iter()
+        .filter(|j| j.claim.id == "peaks-overlap");
+    let overlap: Vec<Evaluator> = overlap.collect();
     // Two standard errors are allowed.
     for (difference, expected) in [(1.0, 1), (1.999, 2), (1.999_999_999, 3)] {
         let asked = RefCell::new(Vec::new());
@@ -58,7 +60,7 @@ fn shots_are_as_accurate_as_it_takes_to_tell_the_side_and_no_more() {
         assert_eq!(asked.borrow()[..], [1e-2, 1e-4, 1e-6][..expected]);
         let finding = overlap[0].decide(&evidence);
         assert_eq!(finding.leaning, Verdict::Holds);
-        // The last one is nearer than the finest accuracy can tell.
+        // The last one is nearer than the finest accuracy can resolve.
         assert_eq!(finding.is_open(), difference > 1.9999, "{finding:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
 use hertzchain::gauge::Gauged;
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
 use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
 
 /// Speeds at which an oil's curve is drawn.
@@ -99,7 +99,7 @@ fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) ->
         unit * [k, a][of]
     };
     let values: Vec<f64> = speeds.iter().map(value).collect();
-    let colour = Colour::PALETTE[number % Colour::PALETTE.len()];
+    let (colour, _) = case_look(&oil.name, number);
     let dashes = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted];
     Series::line(&oil.name, &speeds, &values)
         .colour(colour)

@@ -1,6 +1,6 @@
 //! Figures of what was measured.
 
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series};
+use hertzchain_figures::{Chart, Dash, Figure, Legend, Series, case_look};
 use hertzchain_measure::signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
 use hertzchain_measure::{Case, Curves, Example, SpeedRow};
 
@@ -98,19 +98,19 @@ fn with_curve(
     let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
         known.iter().map(value).collect()
     };
+    let (colour, marker) = case_look(&case.name, number);
     // A single shot may have no error: then there is no bar.
     let bar = |error: f64| if error.is_finite() { error } else { 0.0 };
     let speeds = column(&|point| point.0.speed_m_s.value);
     let times = column(&|point| 1e6 * point.1.value);
     let points = Series::points(&case.name, &speeds, &times)
-        .marker(marker(number))
+        .marker(marker)
         .y_error(&column(&|point| 1e6 * bar(point.1.sigma)))
         .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
     let fitted = column(&|point| match law {
         Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
         Err(_) => f64::NAN,
     });
-    let colour = colour(number);
     let dash = match law.as_ref().map(|law| case.supports(law)) {
         Ok(Ok(Some(false))) => Dash::Dashed,
         _ => Dash::Solid,
@@ -119,23 +119,6 @@ fn with_curve(
     chart
         .with(points.colour(colour))
         .with(line.colour(colour).width(FIT_WIDTH))
-}
-
-fn colour(number: usize) -> Colour {
-    Colour::PALETTE[number % Colour::PALETTE.len()]
-}
-
-fn marker(number: usize) -> Marker {
-    const ALL: [Marker; 4] = [
-        Marker::Circle,
-        Marker::Triangle,
-        Marker::Square,
-        Marker::Diamond,
-    ];
-    ALL.into_iter()
-        .cycle()
-        .nth(number)
-        .unwrap_or(Marker::Circle)
 }
 
 /// Ratios of times to the reference's, with error bars.
@@ -158,9 +141,10 @@ pub(super) fn ratios(curves: &Curves, reference: &str) -> Figure {
             let speeds: Vec<f64> = ratios.iter().map(|ratio| ratio.speed).collect();
             let values: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.value).collect();
             let errors: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.sigma).collect();
+            let (colour, marker) = case_look(&wet.case, number);
             Series::points(&wet.case, &speeds, &values)
-                .marker(marker(number))
-                .colour(colour(number))
+                .marker(marker)
+                .colour(colour)
                 .y_error(&errors)
         };
         incident = incident.with(series(&wet.incident));

@@ -7,11 +7,11 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
-use hertzchain_paper::claims::{Judged, MEANING, Verdict, computed_text};
+use hertzchain_paper::claims::{EvaluatedClaim, MEANING, Verdict, computed_text};
 use hertzchain_paper::figures::{captions, figures};
 use hertzchain_paper::readings::Scan;
 use hertzchain_paper::reproduce::{
-    Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_leftovers, reproduce,
+    Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_stale_files, reproduce,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     bar.0.finish_and_clear();
     let names: Vec<&str> = folder.names().into_iter().chain([PROVENANCE]).collect();
     let provenance = computed.provenance_json(&names);
-    remove_leftovers(folder.path(), &names).map_err(|error| failure(&error))?;
+    remove_stale_files(folder.path(), &names).map_err(|error| failure(&error))?;
     folder.write(PROVENANCE, provenance.as_bytes())?;
     folder.finish()?;
     print(&text)
@@ -50,6 +50,10 @@ fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
     let figures = figures(computed).map_err(|error| failure(&error))?;
     for (name, figure) in &figures {
         folder.figure(name, figure)?;
+        let pdf = figure
+            .pdf()
+            .map_err(|error| Failure::Ours(format!("{name}.pdf: {error}")))?;
+        folder.write(&format!("{name}.pdf"), &pdf)?;
     }
     folder.write("captions.md", captions(&figures).as_bytes())
 }
@@ -89,7 +93,7 @@ impl Progress for Bar {
 
 /// What was found, and where it lies.
 fn summary(computed: &Reproduction, folder: &Path) -> String {
-    let verdicts = verdicts(&computed.judged);
+    let verdicts = verdicts(&computed.evaluated);
     let mut text = format!("{}\n\n{MEANING}\n\n{verdicts}\n", times(computed));
     if let Some(scan) = &computed.scan {
         text.push_str(&closest(scan));
@@ -98,7 +102,7 @@ fn summary(computed: &Reproduction, folder: &Path) -> String {
     let _ = write!(
         text,
         "\nRead as: {}. Times of flight asked to {:.0e}, reached {:.1e} at worst; computed in {:.0} s.\n\
-         Pictures: figure1 to figure4, space_time and energy (.svg, .png) in {}\n\
+         Pictures: figure1 to figure4, space_time and energy (.svg, .png, .pdf) in {}\n\
          Verdicts one by one: {}\n",
         computed.reading,
         provenance.accuracy_asked,
@@ -135,20 +139,20 @@ fn times(computed: &Reproduction) -> Table {
 }
 
 /// Every claim with its verdict and value.
-fn verdicts(judged: &[Judged]) -> String {
+fn verdicts(evaluated: &[EvaluatedClaim]) -> String {
     let mut table = plain();
     table.set_header(["claim of the paper", "verdict", "computed"]);
-    for judged in judged {
+    for evaluated in evaluated {
         let row = [
-            judged.claim.statement.clone(),
-            judged.verdict.to_string(),
-            computed_text(judged),
+            evaluated.claim.statement.clone(),
+            evaluated.verdict.to_string(),
+            computed_text(evaluated),
         ];
         table.add_row(row);
     }
-    let count = |verdict| judged.iter().filter(|j| j.verdict == verdict).count();
+    let count = |verdict| evaluated.iter().filter(|j| j.verdict == verdict).count();
     let counts = Verdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
-    format!("{table}\n{} claims: {}", judged.len(), counts.join(", "))
+    format!("{table}\n{} claims: {}", evaluated.len(), counts.join(", "))
 }
 
 /// Width of tables where the terminal does not tell its own.

@@ -13,7 +13,7 @@ pub(super) fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
     let paper = preset("paper").map_err(|error| ours(&error))?;
     let design = Design::about(paper);
     let evidence = observe(&design, bar).map_err(|error| ours(&error))?;
-    let claims = RigClaims::judge(&design, &evidence).map_err(|error| ours(&error))?;
+    let claims = RigClaims::evaluate(&design, &evidence).map_err(|error| ours(&error))?;
     let json = format!("{:#}\n", claims.json());
     into.write("rig-claims.json", json.as_bytes())?;
     into.write("rig-claims.md", claims.markdown().as_bytes())?;
@@ -24,7 +24,7 @@ pub(super) fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
     Ok(format!(
         "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
         evidence.rigs.len(),
-        verdicts(&claims.judged),
+        verdicts(&claims.evaluated),
         into.path().join("rig-claims.md").display(),
     ))
 }

@@ -24,8 +24,8 @@ fn left(folder: &Path) -> [bool; 4] {
 #[test]
 fn only_what_an_earlier_run_listed_and_this_one_did_not_write_is_removed() {
     let listed = r#"{"program": "hertzchain", "files": ["tof.csv", "readings.md", "gone.svg"]}"#;
-    let folder = folder("leftovers", listed);
-    remove_leftovers(&folder, &["tof.csv"]).unwrap();
+    let folder = folder("stale_files", listed);
+    remove_stale_files(&folder, &["tof.csv"]).unwrap();
     assert_eq!(left(&folder), [true, false, true, true]);
 }
 
@@ -39,7 +39,7 @@ fn nothing_outside_the_folder_or_below_it_is_removed() {
     let name = beside.file_name().unwrap().to_str().unwrap();
     let listed = listed.replace("..", &format!("../{name}"));
     fs::write(folder.join(PROVENANCE), listed).unwrap();
-    remove_leftovers(&folder, &[]).unwrap();
+    remove_stale_files(&folder, &[]).unwrap();
     let stays = beside.exists();
     fs::remove_file(&beside).unwrap();
     assert!(stays);
@@ -54,7 +54,7 @@ fn a_provenance_of_something_else_removes_nothing() {
         "no JSON",
     ] {
         let folder = folder("other", other);
-        remove_leftovers(&folder, &[]).unwrap();
+        remove_stale_files(&folder, &[]).unwrap();
         assert_eq!(left(&folder), [true; 4], "{other}");
     }
 }

@@ -12,7 +12,7 @@ use std::path::{Component, Path};
 ///
 /// # Errors
 /// The first file that can't be removed.
-pub fn remove_leftovers(folder: &Path, keep: &[&str]) -> Result<(), ReproduceError> {
+pub fn remove_stale_files(folder: &Path, keep: &[&str]) -> Result<(), ReproduceError> {
     let old = listed(&folder.join(PROVENANCE));
     for name in old.iter().filter(|name| !keep.contains(&name.as_str())) {
         let path = folder.join(name);
@@ -49,5 +49,5 @@ fn is_plain(name: &str) -> bool {
 }
 
 #[cfg(test)]
-#[path = "tests/leftovers.rs"]
+#[path = "tests/stale_files.rs"]
 mod tests;
