@@ -109,10 +109,7 @@ pub(crate) fn list<'py, T: IntoPyObject<'py>>(
     Ok(list)
 }
 
-/// The first shot of which there is something to say, what, and of how many.
-pub(crate) type Told = (usize, Vec<String>, usize);
-
-/// What is odd, if anything is.
-pub(crate) fn told(odd: Option<WarningSummary>) -> Option<Told> {
-    odd.map(|odd| (odd.place, odd.lines, odd.shots))
+/// The first shot with warnings, these, and how many shots have any.
+pub(crate) fn summary(warnings: Option<WarningSummary>) -> Option<(usize, Vec<String>, usize)> {
+    warnings.map(|first| (first.place, first.lines, first.shots))
 }

@@ -37,7 +37,7 @@ enum Change {
 ///
 /// References
 /// ----------
-/// Words, signs and units: docs/conventions.md.
+/// Words, signs and units: docs/reference/conventions.md.
 #[pyclass(frozen, module = "hertzchain", name = "Experiment")]
 #[derive(Clone, Debug)]
 pub struct Experiment {

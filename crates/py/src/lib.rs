@@ -4,19 +4,18 @@
 //! become Rust's, results become arrays and dicts, and Python's lock is let go
 //! while anything is computed. The package around this module is in `python/`.
 
+mod batch;
 mod columns;
-mod ensemble;
 mod experiment;
 mod failure;
 mod inference;
 mod job;
 mod json;
 mod law;
+mod options;
 mod recordings;
-mod shards;
 mod shot;
 mod spread;
-mod sweep;
 mod theory;
 
 use pyo3::prelude::*;
@@ -24,7 +23,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _hertzchain {
     #[pymodule_export]
-    use super::ensemble::ensemble;
+    use super::batch::{Run, gather, speeds};
     #[pymodule_export]
     use super::experiment::{Experiment, presets, schema};
     #[pymodule_export]
@@ -32,15 +31,13 @@ mod _hertzchain {
     #[pymodule_export]
     use super::law::Force;
     #[pymodule_export]
-    use super::recordings::{campaign, campaign_series, measure};
+    use super::options::options;
     #[pymodule_export]
-    use super::shards::{Run, gather, shard};
+    use super::recordings::{campaign, campaign_series, measure};
     #[pymodule_export]
     use super::shot::shot;
     #[pymodule_export]
     use super::spread::{Likelihood, fit_spread};
-    #[pymodule_export]
-    use super::sweep::{speeds, sweep};
     #[pymodule_export]
     use super::theory::{check, instruction_set, laws, theory};
 }

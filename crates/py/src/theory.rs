@@ -84,7 +84,7 @@ pub(crate) fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'
 ///
 /// References
 /// ----------
-/// What must be the same on all machines: docs/across-machines.md.
+/// What must be the same on all machines: docs/how-to/many-machines.md.
 #[pyfunction]
 pub(crate) fn instruction_set() -> PyResult<&'static str> {
     Ok(input::instruction_set().map_err(Failed::from)?.name())

@@ -19,7 +19,7 @@ from test_inference import noisy
 import hertzchain as hc
 from hertzchain import _hertzchain as _native
 from hertzchain import distributed
-from hertzchain._posing import csv
+from hertzchain.inference import csv
 
 RIG = ROOT / "crates/sim/tests/small.toml"
 SPEEDS = np.linspace(0.1, 1.0, 120)
@@ -57,7 +57,7 @@ def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path
     whole = hc.ensemble(small, SPEEDS, parameters)
     same(there.load(), whole)
     same(here.load(), whole)
-    assert (there.shards, there.kept, there.poisoned) == (17, 0, {})
+    assert (there.shards, there.kept, there.failed) == (17, 0, {})
     again = distributed.sweep(small, SPEEDS, parameters, folder=tmp_path / "there", client=client, shards=17)
     assert again.kept == 17 and "17 of them kept" in repr(again)
     assert pickled(again) and not again.load().errors
@@ -69,9 +69,9 @@ def test_work_is_cut_so_that_every_thread_has_some(small, client, tmp_path):
     same(there.load(), hc.ensemble(small, SPEEDS))
     few = distributed.sweep(small, SPEEDS[:3], folder=tmp_path / "few", client=client)
     assert few.shards == 3
-    pilots = distributed.sweep(small, SPEEDS, folder=tmp_path / "pilots", client=client, judges="pilots")
+    pilots = distributed.sweep(small, SPEEDS, folder=tmp_path / "pilots", client=client, error_control="calibrated")
     assert pilots.shards == 2
-    same(pilots.load(), hc.ensemble(small, SPEEDS, judges="pilots"))
+    same(pilots.load(), hc.ensemble(small, SPEEDS, error_control="calibrated"))
     alone = distributed.sweep(small, SPEEDS, folder=tmp_path / "alone")
     assert alone.shards == 1
     same(alone.load(), there.load())
@@ -102,7 +102,7 @@ def test_a_campaign_is_cut_by_its_series(client, tmp_path):
     rig = hc.load(RIG)
     series = _native.campaign_series(rig, None)
     run = distributed.campaign(rig, tmp_path / "there", client=client)
-    assert run.shards == min(series, 8) and not run.poisoned
+    assert run.shards == min(series, 8) and not run.failed
     assert distributed.campaign(rig, tmp_path / "here").shards == 1
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
     assert len(recordings(tmp_path / "there")) == series
@@ -161,7 +161,7 @@ def test_workers_killed_twice_lose_nothing_but_time(small, tmp_path):
     speeds = np.linspace(0.1, 1.0, 600)
     with cluster() as local, Client(local) as client, killing(tmp_path, "sweep-*.h5", local) as files:
         run = distributed.sweep(small, speeds, folder=tmp_path, client=client, shards=30)
-    assert run.poisoned == {} and files[1] < 30
+    assert run.failed == {} and files[1] < 30
     same(run.load(), hc.ensemble(small, speeds))
 
 
@@ -171,7 +171,7 @@ def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
     hc.campaign(rig, tmp_path / "here")
     with cluster() as local, Client(local) as client, killing(tmp_path / "there", "*.h5", local):
         run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
-    assert run.poisoned == {}
+    assert run.failed == {}
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
     again = distributed.campaign(rig, tmp_path / "there", shards=6)
     assert again.kept == 6
@@ -234,12 +234,12 @@ def test_a_poisoned_shard_is_told_and_stops_nothing(where, small, client, tmp_pa
     third = next((tmp_path / "clean").glob("sweep-*-3-of-6.h5")).name
     (tmp_path / "run" / third).mkdir(parents=True)
     run = distributed.sweep(small, speeds, folder=tmp_path / "run", client=client, shards=6)
-    assert list(run.poisoned) == [3] and "shard 3 is poisoned" in repr(run)
+    assert list(run.failed) == [3] and "shard 3 failed" in repr(run)
     with pytest.raises(hc.OptionError, match=r"1 of 6 shards are missing"):
         run.load()
     (tmp_path / "run" / third).rmdir()
     mended = distributed.sweep(small, speeds, folder=tmp_path / "run", client=client, shards=6)
-    assert mended.kept == 5 and mended.poisoned == {}
+    assert mended.kept == 5 and mended.failed == {}
     same(mended.load(), clean.load())
 
 
@@ -250,14 +250,14 @@ def test_a_poisoned_series_of_a_campaign_is_told_and_stops_nothing(client, tmp_p
     # A folder where its file should go: no worker can write it.
     (tmp_path / "there" / lost / "in the way").mkdir(parents=True)
     run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
-    (number,) = run.poisoned
-    assert f"shard {number} is poisoned" in repr(run) and lost in run.poisoned[number]
+    (number,) = run.failed
+    assert f"shard {number} is poisoned" in repr(run) and lost in run.failed[number]
     written = {path.name: path.read_bytes() for path in (tmp_path / "there").glob("*.h5") if path.is_file()}
     assert written == {name: data for name, data in recordings(tmp_path / "here").items() if name != lost}
     (tmp_path / "there" / lost / "in the way").rmdir()
     (tmp_path / "there" / lost).rmdir()
     mended = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
-    assert (mended.kept, mended.poisoned) == (5, {})
+    assert (mended.kept, mended.failed) == (5, {})
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
 
 
@@ -271,7 +271,7 @@ def test_a_campaign_goes_on_after_its_scheduler_was_killed(tmp_path):
     assert recordings(tmp_path / "there")
     with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
         run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
-    assert run.kept >= 1 and run.poisoned == {}
+    assert run.kept >= 1 and run.failed == {}
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
 
 
@@ -282,7 +282,7 @@ def test_what_is_odd_comes_back_from_shards(client, tmp_path):
         found = run.load()
     with pytest.warns(hc.ExperimentWarning):
         whole = hc.ensemble(pump, speeds)
-    assert found.odd == whole.odd and found.odd is not None
+    assert found.odd == whole.odd and found.warnings is not None
 
 
 @contextmanager
@@ -304,13 +304,13 @@ def test_a_worker_that_would_compute_other_bits_is_told_and_computes_nothing(sma
         run = distributed.sweep(small, SPEEDS, folder=tmp_path, client=client, shards=2)
         with pytest.raises(hc.OptionError, match="HERTZCHAIN_INSTRUCTION_SET"):
             distributed.fit(data, folder=tmp_path / "fit", client=client, **how)
-    assert list(run.poisoned) == [1, 2] and all("HERTZCHAIN_INSTRUCTION_SET" in why for why in run.poisoned.values())
+    assert list(run.failed) == [1, 2] and all("HERTZCHAIN_INSTRUCTION_SET" in why for why in run.failed.values())
     assert not recordings(tmp_path)
-    assert distributed.sweep(small, SPEEDS, folder=tmp_path / "right", client=client, shards=2).poisoned == {}
+    assert distributed.sweep(small, SPEEDS, folder=tmp_path / "right", client=client, shards=2).failed == {}
 
 
 @pytest.fixture(scope="module")
-def posterior(tmp_path_factory) -> tuple[dict[str, np.ndarray], dict[str, object], hc.Fitted]:
+def posterior(tmp_path_factory) -> tuple[dict[str, np.ndarray], dict[str, object], hc.FitResult]:
     """Data, options, and the fit in this process, every curve computed."""
     row = hc.preset("dry").set({"beads[0].count": 10.0})
     data = noisy("dry", 1)

@@ -61,39 +61,37 @@ def check_sources(name: str, thing: Any) -> None:
     text = inspect.getdoc(thing) or ""
     for key in re.findall(r"\[([A-Z]\w+\d{4})\]", text):
         assert key in KEYS, f"{name}: {key} is not in references.bib"
-    for page in re.findall(r"docs/[\w-]+\.md|experiments/(?=\W)", text):
+    for page in re.findall(r"docs/[\w/-]+\.md|experiments/(?=\W)", text):
         assert (ROOT / page).exists(), f"{name}: {page}"
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_function_tells_its_parameters_returns_errors_and_source(name):
+def test_a_function_documents_its_parameters_returns_and_errors(name):
     thing = FUNCTIONS[name]
     told = sections(thing)
     assert told[""].strip(), name
     wanted = parameters(thing)
     if wanted:
         assert wanted <= described(told["Parameters"]), wanted - described(told["Parameters"])
-    assert told["Returns"].strip() and told["References"].strip()
+    assert told["Returns"].strip()
     # What neither takes nor reads anything can't fail.
     assert "Raises" in told or not wanted
     check_sources(name, thing)
 
 
 @pytest.mark.parametrize("name", CLASSES)
-def test_a_class_tells_its_fields_and_source(name):
+def test_a_class_documents_its_fields(name):
     thing = CLASSES[name]
     told = sections(thing)
     assert told[""].strip()
     fields = {field for field in getattr(thing, "__dataclass_fields__", {}) if not field.startswith("_")}
     own = described(told.get("Attributes", "") + "\n" + told.get("Parameters", ""))
     assert {field.rstrip("_") for field in fields} <= own, fields - own
-    if not issubclass(thing, (Exception, hc.Finding)):
-        assert told["References"].strip()
-        check_sources(name, thing)
+    check_sources(name, thing)
 
 
 @pytest.mark.parametrize("name", CLASSES)
-def test_a_method_tells_what_it_takes_and_returns(name):
+def test_a_method_documents_what_it_takes_and_returns(name):
     for of, member in members(CLASSES[name]):
         if not inspect.isroutine(member):
             continue
@@ -104,13 +102,13 @@ def test_a_method_tells_what_it_takes_and_returns(name):
 
 
 @pytest.mark.parametrize("name", CLASSES)
-def test_a_property_tells_what_it_is(name):
+def test_a_property_is_documented(name):
     for of, member in members(CLASSES[name]):
         if isinstance(member, property) or inspect.isgetsetdescriptor(member):
             assert inspect.getdoc(member), f"{name}.{of}"
 
 
-@pytest.mark.parametrize("module", ["", ".shooting", ".experiment", ".force"])
+@pytest.mark.parametrize("module", ["", ".simulation", ".experiment"])
 def test_examples_give_what_they_say(module):
     found = doctest.testmod(importlib.import_module(f"hertzchain{module}"), optionflags=doctest.ELLIPSIS)
     assert found.failed == 0 and found.attempted > 0

@@ -57,7 +57,7 @@ def test_what_is_odd_is_a_warning():
         (lambda e: hc.sweep(e, "1:2"), "FROM:TO:COUNT"),
         (lambda e: hc.sweep(e, np.ones(100_001)), "at most 100000"),
         (lambda e: hc.shot(e, trace=True, interval_s=1e-18), "sample less often"),
-        (lambda e: hc.sweep(e, [0.1], judges="all"), "pilots"),
+        (lambda e: hc.sweep(e, [0.1], error_control="all"), "calibrated"),
         (lambda e: hc.sweep(e, [0.1], threads=-1), "threads"),
         (lambda e: hc.sweep(e, [0.1], progress=7), "progress"),
         (lambda e: hc.ensemble(e, ["0.1"]), "real numbers"),

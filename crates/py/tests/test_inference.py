@@ -7,7 +7,7 @@ import pytest
 from conftest import ROOT, pickled
 
 import hertzchain as hc
-from hertzchain._posing import csv
+from hertzchain.inference import csv
 
 ERROR_S = 3e-7
 
@@ -129,6 +129,20 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     gauged = hc.gauge(wet, dry_data, model="motor")
     assert gauged.details == told and gauged.verdict in repr(gauged)
     assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
+
+
+def test_a_measurement_is_fitted_in_memory_as_from_its_file(tmp_path):
+    row = hc.load(ROOT / "crates/sim/tests/small.toml")
+    hc.campaign(row, tmp_path / "records")
+    measured = hc.measure(tmp_path / "records")
+    how = {"free": "steel.eta", "case": "dry", "speed_error": "0.1mm/s"}
+    measured.save(tmp_path)
+    assert hc.fit(measured, row, **how).details == hc.fit(tmp_path / "speeds.csv", row, **how).details
+
+
+def test_an_unknown_option_is_named_with_the_nearest(dry_data):
+    with pytest.raises(TypeError, match="'speed_eror'; did you mean 'speed_error'"):
+        hc.fit(dry_data, "dry", free="B", speed_eror=1e-4)
 
 
 def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):

@@ -18,7 +18,7 @@ SPEEDS = np.array([0.2, 0.5, 1.0])
 # Of no computation: what goes in, what goes wrong, and parts of what is told.
 NO_RESULTS = {
     hc.Beads, hc.Contacts, hc.Experiment, hc.FarEnd, hc.ForceLaw, hc.Law, hc.Material, hc.PowerOfSpeed, hc.Striker,
-    hc.Finding, hc.Row, hc.ExperimentError, hc.ExperimentWarning, hc.HertzchainError, hc.InternalError, hc.OptionError,
+    hc.Finding, hc.Result, hc.Row, hc.ExperimentError, hc.ExperimentWarning, hc.HertzchainError, hc.InternalError, hc.OptionError,
 }  # fmt: skip
 
 
@@ -33,13 +33,13 @@ def results(folder) -> dict[type, Any]:
     small, dry = hc.build(SMALL), noisy("dry", 1, 3)
     shot, swept = hc.shot(small, trace=True), hc.sweep(small, SPEEDS)
     with pytest.warns(hc.ExperimentWarning):
-        odd = hc.ensemble(hc.preset("pump"), [0.1, 0.5])
+        warned = hc.ensemble(hc.preset("pump"), [0.1, 0.5])
     fitted = hc.fit(dry, free="eta,B")
     campaigned = hc.campaign(hc.load(RIG), folder / "records")
     measured = hc.measure(folder / "records")
     theory = hc.theory(small)
     found = [
-        shot, shot.trace, swept, swept.power_law_incident, odd, odd.odd, fitted, fitted.parameters["B"],
+        shot, shot.trace, swept, swept.power_law_incident, warned, warned.warnings, fitted, fitted.parameters["B"],
         hc.design(dry, free="eta,B", picks=1), hc.gauge(noisy("motor", 2, 2), dry, model="motor"), campaigned, measured,
         measured.cases["dry"], theory, theory.groups[0], hc.laws("damping_cubic")[0],
         distributed.sweep(small, SPEEDS, folder=folder / "shards", shards=2),
@@ -47,7 +47,7 @@ def results(folder) -> dict[type, Any]:
     return {type(result): result for result in found}
 
 
-CLASSES = [found for _, found in inspect.getmembers(hc, inspect.isclass) if found not in NO_RESULTS] + [distributed.Distributed]
+CLASSES = [found for _, found in inspect.getmembers(hc, inspect.isclass) if found not in NO_RESULTS] + [distributed.DistributedResult]
 each = pytest.mark.parametrize("of", CLASSES, ids=lambda of: of.__name__)
 
 
@@ -66,9 +66,9 @@ def test_a_result_is_a_dataset_of_xarray_with_units(of, results):
     for name in data.variables:
         # Of parameters a unit each.
         units = data[name].attrs.get("units")
-        if of is hc.Fitted and name in ("parameter", "other"):
+        if of is hc.FitResult and name in ("parameter", "other"):
             continue
-        if of is hc.Measured and name == "record":
+        if of is hc.MeasureResult and name == "record":
             continue
         assert units and (isinstance(units, str) or len(units) == data.sizes["parameter"]), name
 
@@ -77,7 +77,7 @@ def test_a_result_is_a_dataset_of_xarray_with_units(of, results):
 def test_a_result_prints_well(of, results):
     text = repr(results[of])
     # Not as Python would print a dataclass, arrays and all.
-    assert not text.startswith(f"{of.__name__}(") or of is hc.Odd
+    assert not text.startswith(f"{of.__name__}(") or of is hc.WarningSummary
     assert len(text) < 6000 and "array(" not in text and " object at 0x" not in text
     assert "{" not in text.replace("^{", "")
 
@@ -91,12 +91,12 @@ def test_units_are_those_of_the_numbers(results):
     units: Callable[[type], dict[str, str]] = lambda of: results[of].to_pandas().attrs["units"]
     assert units(hc.Shot)["tof_incident_s"] == "s" and units(hc.Shot)["wall_peak_n"] == "N"
     assert units(hc.PowerLaw) == {**dict.fromkeys(units(hc.PowerLaw), "1"), "prefactor_s": "s", "prefactor_error_s": "s", "prefactor_accuracy_s": "s"}
-    assert units(hc.Parameter)["value"] == "kg s/m^2" and units(hc.Fitted)["measured"] == "s"
-    assert units(hc.Designed)["eta"] == "Pa s" and units(hc.Measured)["tof_incident_sigma_s"] == "s"
-    assert units(hc.Measured)["wall_peak_v"] == "V" and units(hc.Campaigned)["bytes"] == "B"
-    fitted = results[hc.Fitted].to_xarray()
+    assert units(hc.Parameter)["value"] == "kg s/m^2" and units(hc.FitResult)["measured"] == "s"
+    assert units(hc.DesignResult)["eta"] == "Pa s" and units(hc.MeasureResult)["tof_incident_sigma_s"] == "s"
+    assert units(hc.MeasureResult)["wall_peak_v"] == "V" and units(hc.CampaignResult)["bytes"] == "B"
+    fitted = results[hc.FitResult].to_xarray()
     assert fitted["value"].attrs["units"] == fitted["unit"].values.tolist() == ["Pa s", "kg s/m^2"]
-    assert results[hc.Gauged].to_xarray()["stiffness_error"].attrs["units"] == "N/m^1.5"
+    assert results[hc.GaugeResult].to_xarray()["stiffness_error"].attrs["units"] == "N/m^1.5"
 
 
 def test_tables_hold_the_numbers_of_the_result(results):
@@ -104,6 +104,6 @@ def test_tables_hold_the_numbers_of_the_result(results):
     assert law.to_pandas()["exponent"][0] == law.exponent and law.to_xarray()["prefactor_s"].values[0] == law.prefactor_s
     description = results[hc.Description]
     assert description.to_pandas()["value"].tolist() == [row.value for group in description for row in group.rows]
-    design = results[hc.Designed]
+    design = results[hc.DesignResult]
     assert design.to_pandas()["information_nats"].tolist() == [one["information_nats"] for one in design.ranked]
-    assert results[distributed.Distributed].to_pandas()["poisoned"].tolist() == [False, False]
+    assert results[distributed.DistributedResult].to_pandas()["failed"].tolist() == [False, False]

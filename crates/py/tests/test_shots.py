@@ -7,7 +7,7 @@ import pytest
 from conftest import pickled
 
 import hertzchain as hc
-from hertzchain._table import unit
+from hertzchain.results import unit
 
 NUMBERS = ["tof_incident_s", "tof_reflected_s", "accuracy_reached", "duration_s"]
 
@@ -37,9 +37,9 @@ def test_a_sweep_has_the_bits_of_the_command_line(cli, dry):
 
 def test_pilots_and_the_striker_are_those_of_the_command_line(cli, dry):
     told = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:45", "--judges", "pilots")
-    found = hc.sweep(dry, "0.2:1:45", judges="pilots")
+    found = hc.sweep(dry, "0.2:1:45", error_control="calibrated")
     assert found.tof_incident_s.tolist() == [point["tof_incident_s"] for point in told["points"]]
-    assert found.pilots == told["pilots"]
+    assert found.calibration == told["pilots"]
     told = cli("sweep", "--preset", "dry", "--speeds", "0.2,0.5", "--rebound")
     rebounds = [point["striker_rebound"]["end_m_s"] for point in told["points"]]
     assert hc.sweep(dry, [0.2, 0.5], rebound=True).columns["striker_rebound_m_s"].tolist() == rebounds
@@ -109,8 +109,8 @@ def test_results_depend_on_no_threads(small):
 def test_unjudged_shots_are_as_right_as_was_asked(small):
     speeds = np.linspace(0.2, 1.0, 20)
     exact = [hc.shot(small, float(speed), accuracy=1e-9).tof_incident_s for speed in speeds]
-    for judges in ("each", "pilots", "none"):
-        found = hc.ensemble(small, speeds, accuracy=1e-6, judges=judges)
+    for error_control in ("per-shot", "calibrated", "none"):
+        found = hc.ensemble(small, speeds, accuracy=1e-6, error_control=error_control)
         # The accuracy asked for is the tolerance.
         assert np.allclose(found.tof_incident_s, exact, rtol=1e-6, atol=0)
 
@@ -129,13 +129,13 @@ def test_what_is_odd_is_warned_of_once_a_call_and_told():
     pump, speeds = hc.preset("pump"), np.array([[0.5, 0.1], [0.05, 0.6]])
     with pytest.warns(hc.ExperimentWarning, match="Poisson ratio") as warned:
         found = hc.ensemble(pump, speeds)
-    assert len(warned) == 1 and found.odd is not None
-    assert (found.odd.index, found.odd.shots) == ((0, 1), 2)
-    assert "Poisson ratio" in found.odd.lines[0] and "odd" in repr(found)
+    assert len(warned) == 1 and found.warnings is not None
+    assert (found.warnings.index, found.warnings.shots) == ((0, 1), 2)
+    assert "Poisson ratio" in found.warnings.messages[0] and "warnings" in repr(found)
     with pytest.warns(hc.ExperimentWarning, match="another shot"):
         swept = hc.sweep(pump, speeds.ravel())
-    assert sorted(swept.warnings) == [1, 2] and swept.warnings[1] == found.odd.lines
-    assert hc.ensemble(pump, [0.5, 0.6]).odd is None
+    assert sorted(swept.warnings) == [1, 2] and swept.warnings[1] == found.warnings.messages
+    assert hc.ensemble(pump, [0.5, 0.6]).warnings is None
 
 
 def test_traces_are_sampled_where_asked(small):
@@ -160,7 +160,7 @@ def test_results_convert_with_units(small):
     assert data["tof_incident_s"].attrs["units"] == "s" and data["wall_peak_n"].attrs["units"] == "N"
     assert data["speed_m_s"].attrs["units"] == "m/s"
     assert [unit(f"tof_incident_s{of}") for of in ("", "_error", "_deviation")] == ["s", "s", "s"]
-    assert unit("wall_over_passing_error") == unit("tof_incident_s_error", dimensionless=True) == "1"
+    assert unit("wall_over_passing_err") == unit("tof_incident_s_error", dimensionless=True) == "1"
     table = swept.to_pandas()
     assert table.index.name == "speed_m_s" and table.attrs["units"]["tof_reflected_s"] == "s"
     found = hc.ensemble(small, [[0.2], [0.4]], {"young_modulus": [200e9, 210e9, 220e9]})

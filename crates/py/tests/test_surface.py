@@ -60,7 +60,7 @@ def refused_or(call):
 def test_arrays_of_any_shape_and_type(data, shape, dtype):
     elements = st.sampled_from([0.5, 1.0, 2.0]) if np.dtype(dtype).kind == "f" else None
     speeds = data.draw(hnp.arrays(dtype, shape, elements=elements))
-    found = refused_or(lambda: hc.ensemble(CHAIN, speeds, judges="none"))
+    found = refused_or(lambda: hc.ensemble(CHAIN, speeds, error_control="none"))
     if found is not None:
         assert found.tof_incident_s.shape == speeds.shape
     refused_or(lambda: hc.sweep(CHAIN, speeds))
@@ -69,13 +69,13 @@ def test_arrays_of_any_shape_and_type(data, shape, dtype):
 @few
 @given(hnp.arrays("f8", hnp.array_shapes(min_dims=1, max_dims=3, max_side=4)))
 def test_numbers_of_any_size(values):
-    found = refused_or(lambda: hc.ensemble(CHAIN, values, judges="none"))
+    found = refused_or(lambda: hc.ensemble(CHAIN, values, error_control="none"))
     if found is not None:
         missing = np.zeros(found.shape, dtype=bool)
         for index in found.errors:
             missing[index] = True
         assert not np.isfinite(found.tof_incident_s[missing]).any()
-    refused_or(lambda: hc.ensemble(CHAIN, 1.0, {NAME: values}, judges="none"))
+    refused_or(lambda: hc.ensemble(CHAIN, 1.0, {NAME: values}, error_control="none"))
 
 
 @few
@@ -95,8 +95,8 @@ def test_memory_of_any_layout_gives_the_same_bits(rows, columns, layout):
         "broadcast": np.broadcast_to(plain[:1], (rows, columns)),
     }[layout]
     whole = plain if layout != "broadcast" else np.repeat(plain[:1], rows, axis=0)
-    expected = hc.ensemble(CHAIN, whole, judges="none").tof_incident_s
-    found = hc.ensemble(CHAIN, made, judges="none")
+    expected = hc.ensemble(CHAIN, whole, error_control="none").tof_incident_s
+    found = hc.ensemble(CHAIN, made, error_control="none")
     assert np.array_equal(found.tof_incident_s, expected)
     assert np.array_equal(made, whole)
 

@@ -1,103 +1,236 @@
-"""Keywords as options of the command line, so that both have the same words."""
+"""Keyword options: declared in Rust, documented and checked here."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, Literal, Protocol, runtime_checkable
+from difflib import get_close_matches
+from inspect import Parameter, signature
+from numbers import Integral
+from textwrap import wrap
+from typing import Any, Literal, Protocol, TypedDict, TypeVar, runtime_checkable
 
+from . import _hertzchain as _native
 from .errors import OptionError
 
-Solver = Literal["adaptive", "rk4", "verlet"]
+Path_ = str | os.PathLike[str]
+Quantity = str | float
 Pick = Literal["peak", "flank-10", "flank-50", "cross-correlation"]
-Value = str | float | int
-Assignments = Mapping[str, Value | tuple[Value, Value]]
+Assignments = Mapping[str, Quantity | tuple[Quantity, Quantity]]
+Observable = Literal["incident", "reflected", "wall-ratio", "returning-ratio"]
+Filter = Literal["first", "butterworth2", "butterworth3", "butterworth4", "bessel2", "bessel3", "bessel4"]
+Polarity = Literal["positive", "negative"]
+ErrorControl = Literal["per-shot", "calibrated"]
 
 
-@runtime_checkable
-class Updating(Protocol):
-    """A bar of progress such as tqdm's."""
+class EnsembleOptions(TypedDict, total=False):
+    """Options of `ensemble`."""
 
-    def update(self, n: float | None = 1) -> object: ...
+    accuracy: float | None
+    duration: Quantity | None
+    pick: Pick | None
+
+
+class ShotOptions(EnsembleOptions, total=False):
+    """Options of `shot` and `sweep`."""
+
+    solver: Literal["adaptive", "rk4", "verlet"] | None
+    step: Quantity | None
+    check: bool
+
+
+class MeasureOptions(TypedDict, total=False):
+    """Options of `measure`."""
+
+    rate: Quantity | None
+    trust_rate: bool
+    channel: str | int | Iterable[str | int]
+    time_unit: str | None
+    shot_samples: int | None
+    level: Quantity | None
+    whole: bool
+    rows: Literal["samples", "shots", "channels"] | None
+    method: Literal["local", "onset", "correlation", "shape"]
+    onset: Quantity
+    beads: int | None
+    sensor: int | None
+    polarity: Polarity | None
+    wall_polarity: Polarity | None
+    smooth: Quantity | None
+    low_pass: Quantity | None
+    filter: Filter | None
+    ac_coupling: Quantity | None
+    rig: Path_ | None
+    shots: Path_ | None
+    speed_error: Quantity | None
+    speed_gap: Quantity
+    reference: str
+    keep_dubious: bool
+    high_pass: Quantity | None
+    bandwidth: Quantity | None
+    bandwidth_order: str | None
+
+
+class CurveOptions(TypedDict, total=False):
+    """Options of `fit`, `design` and `gauge`."""
+
+    use: Observable | Iterable[Observable]
+    speed_error: Quantity | None
+    tof_error: Quantity | None
+    ratio_error: Quantity | None
+    error_shots: int | Literal["known"] | None
+    accuracy: float
+    threads: int | None
+
+
+class ModelOptions(CurveOptions, total=False):
+    """Options of `fit` and `design`."""
+
+    case: str | None
+    start: Assignments | None
+    bounds: Assignments | None
+    prior: Assignments | None
+    scale: Assignments | None
+    fixed: Assignments | None
+
+
+class FitOptions(ModelOptions, total=False):
+    """Options of `fit`."""
+
+    method: Literal["covariance", "profile", "posterior"]
+    against: Mapping[str, str | Iterable[str]] | None
+    robust: bool
+    starts: int
+    steps: int
+    direct: bool
+    seed: int
+    shots: Path_ | None
+    rate: Quantity | None
+    channel: str | int | Iterable[str | int]
+    low_pass: Quantity | None
+    filter: Filter | None
+    most_shots: int
+
+
+class DesignOptions(ModelOptions, total=False):
+    """Options of `design`."""
+
+    target: str | Iterable[str] | None
+    speeds: str | Iterable[float] | None
+    preloads: Iterable[Quantity]
+    sensors: Iterable[int] | None
+    costs: Mapping[str, float] | None
+    picks: int
+
+
+class GaugeOptions(CurveOptions, total=False):
+    """Options of `gauge`."""
+
+    wet_case: str | None
+    dry_case: str | None
+    dry_free: str | Iterable[str]
+    own: str | Iterable[str]
+    form: Literal["each", "power"]
+
+
+# Python's names for options that the command line names otherwise.
+_NAMES = {"fixed": "set"}
+_BETWEEN = {"bounds": ":", "prior": "+-"}
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def with_options(verb: str, declared: type) -> Callable[[Function], Function]:
+    """Completes signature and docstring of a function that takes ``**options``.
+
+    Names and types are those of ``declared``; defaults and descriptions are Rust's.
+    """
+    known = {name: (default, text) for name, default, text in _native.options(verb)}
+
+    def complete(function: Function) -> Function:
+        keywords, lines = [], []
+        for name, kind in _annotations(declared).items():
+            default, text = known[_NAMES.get(name, name)]
+            keywords.append(Parameter(name, Parameter.KEYWORD_ONLY, default=_plain(default)))
+            lines += [f"    {name} : {kind}", *wrap(f"{text}.", 100, initial_indent=" " * 8, subsequent_indent=" " * 8)]
+        own = [one for one in signature(function).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
+        taken = {one.name for one in own}
+        merged = [*own, *(one for one in keywords if one.name not in taken)]
+        function.__signature__ = signature(function).replace(parameters=merged)  # type: ignore[attr-defined]
+        if function.__doc__ is not None:
+            function.__doc__ = function.__doc__.replace("    **options", "\n".join(lines), 1)
+        return function
+
+    return complete
+
+
+def _annotations(declared: type) -> dict[str, str]:
+    """Names of the options of a class with their types as text."""
+    kinds = declared.__annotations__.items()
+    return {name: getattr(kind, "__forward_arg__", str(kind)) for name, kind in kinds}
+
+
+def _plain(default: str | None) -> Any:
+    """A default as Python writes it."""
+    if default in (None, "true", "false"):
+        return None if default is None else default == "true"
+    for number in (int, float):
+        try:
+            return number(default)
+        except ValueError:
+            pass
+    return tuple(default.split(",")) if "," in default else default
+
+
+def words(verb: str, declared: type, given: Mapping[str, Any]) -> list[str]:
+    """Options as the extension reads them; None and False are absent."""
+    known = _annotations(declared)
+    made: list[str] = []
+    for name, value in given.items():
+        if name not in known:
+            near = get_close_matches(name, known, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise TypeError(f"{verb}() got an unexpected keyword argument {name!r}{hint}")
+        made += _words(name, value)
+    return made
+
+
+def _words(name: str, value: Any) -> list[str]:
+    option = "--" + _NAMES.get(name, name).replace("_", "-")
+    if value is None or value is False:
+        return []
+    if value is True:
+        return [option]
+    if name in ("step", "duration") and not isinstance(value, str):
+        return [f"{option}={text(value)} s"]
+    if isinstance(value, Mapping):
+        between = _BETWEEN.get(name, ",")
+        return [f"{option}={key}={_joined(one, between)}" for key, one in value.items()]
+    if isinstance(value, Iterable) and not isinstance(value, (str, bytes)) and getattr(value, "ndim", 1):
+        return [f"{option}={_joined(value, ',')}"] if name == "speeds" else [f"{option}={text(one)}" for one in value]
+    return [f"{option}={text(value)}"]
+
+
+def _joined(value: Any, between: str) -> str:
+    if isinstance(value, Iterable) and not isinstance(value, (str, bytes)):
+        return between.join(map(text, value))
+    return text(value)
 
 
 def text(value: object) -> str:
     """A value as a user would type it, with all its digits."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, (bool,)):
-        raise OptionError(f"{value!r} is neither a number nor a text")
-    if isinstance(value, (int, float)) or hasattr(value, "__float__"):
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)  # type: ignore[return-value]
+    if isinstance(value, Integral) and not isinstance(value, bool):
+        return str(int(value))
+    if hasattr(value, "__float__") and not isinstance(value, bool):
         return repr(float(value))  # type: ignore[arg-type]
     raise OptionError(f"{value!r} is neither a number nor a text")
 
 
-def words(**options: object) -> list[str]:
-    """``name=value`` as ``--name=value``; None and False are left out."""
-    told: list[str] = []
-    for name, value in options.items():
-        option = "--" + name.rstrip("_").replace("_", "-")
-        if value is None or value is False:
-            continue
-        if value is True:
-            told.append(option)
-        elif isinstance(value, (str, os.PathLike)):
-            told.append(f"{option}={os.fspath(value)}")
-        elif isinstance(value, int):
-            told.append(f"{option}={value}")
-        else:
-            told.append(f"{option}={text(value)}")
-    return told
-
-
-def listed(name: str, values: str | Iterable[str] | None) -> list[str]:
-    """Names separated by commas."""
-    if values is None:
-        return []
-    joined = values if isinstance(values, str) else ",".join(values)
-    return [f"--{name}={joined}"] if joined else []
-
-
-def assigned(name: str, values: Assignments | None, between: str) -> list[str]:
-    """``{number: value}`` as ``--name=number=value``; pairs with a sign between."""
-
-    def one(value: Value | tuple[Value, Value]) -> str:
-        if isinstance(value, tuple):
-            return between.join(text(part) for part in value)
-        return text(value)
-
-    return [f"--{name}={key}={one(value)}" for key, value in (values or {}).items()]
-
-
-def how(
-    accuracy: float | None,
-    solver: Solver | None,
-    step: str | float | None,
-    duration: str | float | None,
-    pick: Pick | None,
-    check: bool,
-) -> list[str]:
-    """How shots are computed."""
-    return words(
-        accuracy=accuracy,
-        solver=solver,
-        step=_time(step),
-        duration=_time(duration),
-        pick=pick,
-        check=check,
-    )
-
-
-def _time(value: str | float | None) -> str | None:
-    """Numbers are in seconds; a dimensionless experiment takes plain text only."""
-    if value is None or isinstance(value, str):
-        return value
-    return f"{text(value)} s"
-
-
 def count(name: str, value: int | None, least: int = 0, most: int = 1024) -> int:
-    """A whole number; none is 0."""
+    """A whole number; 0 for None."""
     if value is None:
         return 0
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
@@ -105,33 +238,32 @@ def count(name: str, value: int | None, least: int = 0, most: int = 1024) -> int
     return value
 
 
+@runtime_checkable
+class Updating(Protocol):
+    """A progress bar such as tqdm's."""
+
+    def update(self, n: float | None = 1) -> object: ...
+
+
 @contextmanager
 def progress(wanted: object, total: int | None, unit: str) -> Iterator[Any]:
-    """What is to be told of progress; a bar that was drawn for it is closed in the end.
+    """The function to call with progress; a bar that was drawn for it is closed in the end.
 
     ``True`` draws tqdm's bar; something with ``update``, or any function, is
     called with what was done since the last time.
     """
-    update, bar = _teller(wanted, total, unit)
-    try:
-        yield update
-    finally:
-        if bar is not None:
-            bar.close()
-
-
-def _teller(wanted: object, total: int | None, unit: str) -> tuple[Any, Any]:
     if wanted is None or wanted is False:
-        return None, None
-    if wanted is True:
+        yield None
+    elif wanted is True:
         try:
             from tqdm.auto import tqdm
         except ImportError:
-            raise ModuleNotFoundError("progress=True draws tqdm's bar: pip install tqdm, or give a function that is told of progress") from None
-        bar = tqdm(total=total, unit=unit)
-        return bar.update, bar
-    if isinstance(wanted, Updating):
-        return wanted.update, None
-    if callable(wanted):
-        return wanted, None
-    raise OptionError(f"progress = {wanted!r}: expected True, a bar with `update`, or a function")
+            raise ModuleNotFoundError("progress=True draws tqdm's bar: pip install tqdm, or give a function to call with progress") from None
+        with tqdm(total=total, unit=unit) as bar:
+            yield bar.update
+    elif isinstance(wanted, Updating):
+        yield wanted.update
+    elif callable(wanted):
+        yield wanted
+    else:
+        raise OptionError(f"progress = {wanted!r}: expected True, a bar with `update`, or a function")

@@ -18,49 +18,63 @@ from __future__ import annotations
 import os
 import pickle
 import socket
-from collections.abc import Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _dask
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from ._posing import FitOptions, assumed, kept, modelled, table, words
-from ._table import Tabled, lines, warned
-from .curves import Ensemble, Odd
-from .errors import OptionError
-from .inferred import Fitted
-from .inferring import fitted
-from .shooting import broadcast, units_of
+from .errors import HertzchainError, InternalError, OptionError
+from .inference import assumed, fit_result, modelled, resumed, table
+from .results import Ensemble, FitResult, Result
+from .simulation import asked, broadcast, gathered
 
 if TYPE_CHECKING:
-    from dask.distributed import Client
+    from dask.distributed import Client, Future
     from typing_extensions import Unpack
 
-__all__ = ["Distributed", "campaign", "fit", "sweep"]
+__all__ = ["DistributedResult", "campaign", "fit", "sweep"]
 
+# Most shots of a shard: it takes seconds, of which a scheduler spends less than 2 %.
 SHOTS_A_SHARD = 20_000
-"""Most shots of a shard: so many that it takes seconds, and a scheduler spends less than 2 % on it."""
-
+# Least shards for each thread of the workers, so that they end together although some are slower.
 SHARDS_A_THREAD = 4
-"""Shards for each thread of the workers, or more: they end together although some are slower."""
-
+# Each is a file and a task of some ms.
 MOST_SHARDS = 1_000_000
-"""Each is a file and a task of some ms."""
-
+# Threads assumed of a cluster whose workers are yet to come.
 UNKNOWN = 16
-"""Threads that a cluster is taken to have whose workers are yet to come."""
+# Most points of the model in a batch.
+POINTS = 32
+# Shards submitted for each thread of the workers: enough that none waits.
+AHEAD = 4
+# How often a shard is computed again that raised something that is not ours: a disk may have been full.
+RETRIES = 3
+# Seconds between counts of the workers; they come and go.
+LOOK_S = 5.0
+GONE = "the cluster is gone: finished shards are in the folder, and the same call goes on with them"
+
+Outcome = tuple[int, "bool | str"]
+"""Number of a shard, and whether it was there before or why it failed."""
+Task = Callable[..., Outcome]
+Arguments = Callable[[int], tuple[Any, ...]]
+"""Of the task of a shard's number."""
+Batches = list[tuple[str, list[list[float]]]]
+"""Names and points."""
+
+
 
 @dataclass(frozen=True, repr=False)
-class Distributed(Tabled):
-    """What a distributed run has done: a table of its shards; its numbers are what `load` gives.
+class DistributedResult(Result):
+    """Outcome of a distributed run: a table of its shards; `load` returns its numbers.
 
     Attributes
     ----------
@@ -70,12 +84,8 @@ class Distributed(Tabled):
         How many the run has.
     kept : int
         Shards that were there before, whole.
-    poisoned : dict of int to str
+    failed : dict of int to str
         Shards by number from 1 that could not be computed, and why; the rest is there.
-
-    References
-    ----------
-    Shards, their names and what becomes of those that fail: docs/across-machines.md.
     """
 
     _index = "shard"
@@ -83,7 +93,7 @@ class Distributed(Tabled):
     folder: Path
     shards: int
     kept: int
-    poisoned: dict[int, str]
+    failed: dict[int, str]
     _run: _native.Run | None = None
     _experiment: Experiment | None = None
     _shape: tuple[int, ...] = ()
@@ -101,58 +111,36 @@ class Distributed(Tabled):
         ------
         OptionError
             Shards that are missing, damaged, or of several runs; a campaign's.
-
-        Warns
-        -----
-        ExperimentWarning
-            What is odd about the first such shot, and of how many; it is in ``Ensemble.odd``.
         """
         if self._run is None or self._experiment is None:
             raise OptionError("recordings of a campaign are measured, not loaded: see hertzchain.measure")
-        run = self._run
         found = _native.gather(str(self.folder))
-        shape = self._shape
-        columns = {name: column.reshape(shape) for name, column in found["columns"].items() if name != "speed_m_s"}
-        values = run.values()
-        odd = Odd.of(found["odd"], shape)
-        if odd is not None:
-            warned(odd.lines, odd.shots)
-        return Ensemble(
-            experiment=self._experiment.name,
-            shape=shape,
-            speed_m_s=run.speeds().reshape(shape),
-            parameters={name: value.reshape(shape) for name, value in zip(self._names, values, strict=True)},
-            columns=columns,
-            errors={tuple(int(i) for i in np.unravel_index(at, shape)): why for at, why in found["errors"]},
-            units=units_of(self._experiment, self._names),
-            odd=odd,
-            dimensionless=self._experiment.is_dimensionless,
-        )
+        found["columns"].pop("speed_m_s")
+        found |= {"speed_m_s": self._run.speeds(), "values": self._run.values()}
+        return gathered(self._experiment, self._shape, self._names, found)
 
     def _columns(self) -> dict[str, list[Any]]:
         numbers = list(range(1, self.shards + 1))
-        why = [self.poisoned.get(number, "") for number in numbers]
-        return {"shard": numbers, "poisoned": [bool(said) for said in why], "why": why}
+        return {"shard": numbers, "failed": [at in self.failed for at in numbers], "why": [self.failed.get(at, "") for at in numbers]}
 
-    def __repr__(self) -> str:
+    def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {"shards": f"{self.shards}, {self.kept} of them kept"}
-        rows |= {f"shard {number} is poisoned": why for number, why in self.poisoned.items()}
-        return lines(f"Distributed run in {self.folder}", rows)
+        return f"Distributed run in {self.folder}", rows | {f"shard {at} failed": why for at, why in self.failed.items()}
 
 
 @lru_cache(maxsize=4)
 def _read(path: str) -> tuple[Any, str]:
-    """What is to be computed, from its file, and its name here; a worker reads it once."""
+    """Work from its file, and its name here; a worker reads it once."""
     work = pickle.loads(Path(path).read_bytes())
     return work, work.name
 
 
 def _opened(path: str, name: str) -> Any:
-    """What is to be computed, if it has the same bits here as where its name comes from."""
+    """Work from its file, if it has the same bits here as where its name comes from."""
     work, own = _read(path)
     if own != name:
         raise OptionError(
-            f"the worker on {socket.gethostname()} would compute other bits: what it was sent as {name} is {own} there, by its "
+            f"the worker on {socket.gethostname()} would compute other bits: the work named {name} is {own} there, by its "
             f"build of hertzchain and its instruction set ({_native.instruction_set()}); install one build everywhere, and name "
             "one instruction set for all machines in HERTZCHAIN_INSTRUCTION_SET"
         )
@@ -160,7 +148,7 @@ def _opened(path: str, name: str) -> Any:
 
 
 def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
-    """Its file, whole or not at all, by a name that no other work has."""
+    """Writes work atomically; returns its file, by a name that no other work has."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder.resolve() / f"run-{work.name}.pickle"
     beside = path.with_name(f".{path.name}.{uuid4().hex}.part")
@@ -170,18 +158,18 @@ def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
 
 
 def _threads(client: Client | None) -> int:
-    """Threads of a shard: one of a worker's, of which each computes a shard; all (0) in process."""
+    """Threads of a shard: one on a worker, whose threads compute a shard each; all (0) in process."""
     return 0 if client is None else 1
 
 
 def _parts(most: int, least: int, a_thread: int, client: Client | None) -> int:
-    """Into how many parts work of at most so many is cut, so that all threads of the workers have some."""
-    threads = 0 if client is None else _dask.threads(client) or UNKNOWN
+    """Number of parts of work, at most ``most``, so that all threads of the workers have some."""
+    threads = 0 if client is None else _cluster_threads(client) or UNKNOWN
     return max(1, least, min(most, a_thread * threads))
 
 
 def _cut(folder: Path, name: str) -> int | None:
-    """Into how many shards a run was cut of which there are some in its folder: it goes on with these."""
+    """Number of shards of a run that has some in its folder already: it resumes with these."""
     found = [path.stem.rpartition("-of-")[2] for path in folder.glob(f"sweep-{name}-*-of-*.h5")]
     return int(max(found, key=found.count)) if found else None
 
@@ -189,7 +177,7 @@ def _cut(folder: Path, name: str) -> int | None:
 def _shard(path: str, name: str, number: int, of: int, threads: int) -> tuple[int, bool | str]:
     """Computes a shard of a sweep on a worker."""
     folder = str(Path(path).parent)
-    return _dask.poisoned_or(number, lambda: _native.shard(_opened(path, name), number, of, folder, threads, None))
+    return _outcome_of(number, lambda: _opened(path, name).shard(number, of, folder, threads))
 
 
 def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> tuple[int, bool | str]:
@@ -201,7 +189,7 @@ def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | 
             raise OptionError("; ".join(done["failed"]))
         return done["kept"] > 0 and done["run"] == 0
 
-    return _dask.poisoned_or(number, kept)
+    return _outcome_of(number, kept)
 
 
 def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:
@@ -220,14 +208,14 @@ def sweep(
     accuracy: float | None = None,
     pick: options.Pick | None = None,
     rebound: bool = False,
-    judges: Literal["each", "pilots"] = "each",
+    error_control: options.ErrorControl = "per-shot",
     progress: object = None,
-) -> Distributed:
+) -> DistributedResult:
     """Computes shots over arrays of speeds and of named numbers on a cluster.
 
     Parameters
     ----------
-    experiment, speed, parameters, accuracy, pick, rebound, judges
+    experiment, speed, parameters, accuracy, pick, rebound, error_control
         As for `hertzchain.ensemble`: speeds in m/s and numbers in SI, broadcast to one shape.
     folder : path
         Where shards go, seen by all workers under this name. The same folder
@@ -236,45 +224,44 @@ def sweep(
         Everything stays in this process when absent.
     shards : int, optional
         Parts of the run. When absent, as many as the folder has some of; else four for each
-        thread of the workers (one with ``judges="pilots"``, whose pilots each shard computes),
-        and no part of more than 20,000 shots.
+        thread of the workers (one with ``error_control="calibrated"``, whose calibration shots each
+        shard computes), and no part of more than 20,000 shots.
     progress : bool, bar or function, optional
-        Told of shards.
+        Called with finished shards.
 
     Returns
     -------
-    Distributed
-        ``load`` puts the shards together; poisoned ones are told and stop nothing.
+    DistributedResult
+        ``load`` puts the shards together; failed ones are listed and stop nothing.
 
     Raises
     ------
     OptionError, ExperimentError
         Arrays and names that do not fit.
     ConnectionError
-        The scheduler is lost: the same call goes on where this one stood.
+        The scheduler is gone: the same call resumes.
 
     Notes
     -----
-    All workers must have the build and the instruction set of whoever calls: where
-    they have not, shards are poisoned. A shard has the bits of ``hertzchain sweep --shard i/n``.
+    All workers must have the build and the instruction set of the caller: otherwise
+    shards fail. A shard has the bits of ``hertzchain sweep --shard i/n``.
 
     References
     ----------
-    Shards, clusters and what they cost: docs/across-machines.md.
+    Shards, clusters and what they cost: docs/how-to/many-machines.md.
     """
     speeds, named = broadcast(experiment, speed, parameters)
-    how = options.how(accuracy, None, None, None, pick, False)
-    asked = {"options": how, "rebound": bool(rebound), "judges": judges, "threads": 0}
-    run = _native.Run(experiment, speeds, list(named), list(named.values()), asked)
+    how = options.words("sweep", options.EnsembleOptions, {"accuracy": accuracy, "pick": pick})
+    run = _native.Run(experiment, speeds, list(named), list(named.values()), asked(how, rebound, error_control))
     path = _written(run, Path(folder))
     if shards is None:
         least = -(-speeds.size // SHOTS_A_SHARD)
-        a_thread = 1 if judges == "pilots" else SHARDS_A_THREAD
+        a_thread = 1 if error_control == "calibrated" else SHARDS_A_THREAD
         shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, a_thread, client)
     of = options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, of, "shard") as update:
-        kept, poisoned = _dask.run(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
-    return Distributed(Path(folder), of, kept, poisoned, run, experiment, speeds.shape, tuple(named))
+        kept, failed = _run_all(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
+    return DistributedResult(Path(folder), of, kept, failed, run, experiment, speeds.shape, tuple(named))
 
 
 def campaign(
@@ -285,7 +272,7 @@ def campaign(
     shards: int | None = None,
     seed: int | None = None,
     progress: object = None,
-) -> Distributed:
+) -> DistributedResult:
     """Runs a campaign's series on a cluster; recordings are the bytes of a run in one process.
 
     Parameters
@@ -297,40 +284,39 @@ def campaign(
     client : dask.distributed.Client, optional
         Everything stays in this process when absent.
     shards : int, optional
-        Parts into which series are dealt. When absent, four for each thread of the workers,
+        Parts into which series are split. When absent, four for each thread of the workers,
         and no more than there are series; one without a client.
     progress : bool, bar or function, optional
-        Told of shards.
+        Called with finished shards.
 
     Returns
     -------
-    Distributed
-        Shards that can't be computed are told in it; the others' recordings are in the folder.
+    DistributedResult
+        Shards that can't be computed are listed in it; the others' recordings are in the folder.
 
     Raises
     ------
     OptionError, ExperimentError
         As for `hertzchain.campaign`, where no shard can be run.
     ConnectionError
-        The scheduler is lost: the same call goes on where this one stood.
+        The scheduler is gone: the same call resumes.
 
     References
     ----------
-    Series and their files: docs/rig.md; shards: docs/across-machines.md.
+    Series and their files: docs/explanation/rig.md; shards: docs/how-to/many-machines.md.
     """
     into = str(Path(out).resolve())
     series = _native.campaign_series(experiment, seed)
     shards = _parts(series, 1, SHARDS_A_THREAD, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, shards, "shard") as update:
-        kept, poisoned = _dask.run(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
-    if len(poisoned) == shards:
-        raise OptionError(next(iter(poisoned.values())))
-    return Distributed(Path(out), shards, kept, poisoned)
+        kept, failed = _run_all(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
+    if len(failed) == shards:
+        raise OptionError(next(iter(failed.values())))
+    return DistributedResult(Path(out), shards, kept, failed)
 
 
-POINTS = 32
-"""Most points of the model in a batch."""
 
+@options.with_options("fit", options.FitOptions)
 def fit(
     data: Any,
     model: Experiment | str | None = None,
@@ -340,8 +326,8 @@ def fit(
     client: Client | None = None,
     points: int | None = None,
     progress: object = None,
-    **how: Unpack[FitOptions],
-) -> Fitted:
+    **how: Unpack[options.FitOptions],
+) -> FitResult:
     """Fits contact parameters with the model's curves computed on a cluster.
 
     Residuals of the descent, the profiles or the sampler's walkers are computed in
@@ -359,13 +345,13 @@ def fit(
     points : int, optional
         Most points of a batch. There are smaller ones where not every thread would have one.
     progress : bool, bar or function, optional
-        Told of curves.
-    **how
-        As for `hertzchain.fit`, but ``direct``, which is meant, and ``against``.
+        Called with finished curves.
+    **options
+        ``direct`` is always true; ``against`` is not available.
 
     Returns
     -------
-    Fitted
+    FitResult
         With the bits of ``hertzchain.fit(..., direct=True)``.
 
     Raises
@@ -373,22 +359,140 @@ def fit(
     OptionError, ExperimentError
         As for `hertzchain.fit`; batches that no worker could compute.
     ConnectionError
-        The scheduler is lost: the same call goes on with what was saved.
+        The scheduler is gone: the same call resumes.
 
     References
     ----------
-    The sampler: [GoodmanWeare2010], docs/inferring.md; batches: docs/across-machines.md.
+    The sampler: [GoodmanWeare2010], docs/explanation/inference.md; batches: docs/how-to/many-machines.md.
     """
     into = Path(folder).resolve()
     how["direct"] = True
-    told = [*words(**how), *options.listed("free", free), *kept(into)]
+    names = [free] if isinstance(free, str) else free
+    words = [*options.words("fit", options.FitOptions, how), *(f"--free={name}" for name in names), *resumed(into)]
     name, text = table(data)
-    likelihood = _native.Likelihood((name, text), modelled(model), [*told, "--", name])
+    likelihood = _native.Likelihood((name, text), modelled(model), [*words, "--", name])
     size = POINTS if points is None else options.count("points", points, 1)
     workers, compute = 1, None
     if client is not None:
-        compute = _dask.batches(_outcomes, (_written(likelihood, into), likelihood.name), client)
-        workers = _dask.threads(client) or UNKNOWN
+        compute = _batches((_written(likelihood, into), likelihood.name), client)
+        workers = _cluster_threads(client) or UNKNOWN
     with options.progress(progress, None, "curve") as update:
         found = _native.fit_spread(likelihood, size, workers, compute, update)
-        return fitted({**found, "assumed_model": assumed(model=(model, "dry"))})
+        return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})
+
+
+def _outcome_of(number: int, kept: Callable[[], bool]) -> Outcome:
+    """A shard's outcome; errors of input are returned and not retried, a full disk is raised."""
+    try:
+        return number, kept()
+    except InternalError:
+        raise
+    except HertzchainError as error:
+        return number, str(error)
+
+
+def _run_all(task: Task, arguments: Arguments, of: int, client: Client | None, update: Any) -> tuple[int, dict[int, str]]:
+    """Runs all shards; returns how many were there before, and why others failed."""
+    kept, failed = 0, dict[int, str]()
+    results = _in_process(task, arguments, of) if client is None else _on_workers(task, arguments, of, client)
+    for number, outcome in results:
+        if isinstance(outcome, str):
+            failed[number] = outcome
+        else:
+            kept += outcome
+        if update is not None:
+            update(1)
+    return kept, dict(sorted(failed.items()))
+
+
+def _in_process(task: Task, arguments: Arguments, of: int) -> Iterator[Outcome]:
+    for number in range(1, of + 1):
+        try:
+            outcome = task(*arguments(number))
+        except Exception as error:  # as on a worker: reported, and the others go on
+            outcome = number, f"{type(error).__name__}: {error}"
+        yield outcome
+
+
+def _on_workers(task: Task, arguments: Arguments, of: int, client: Client) -> Iterator[Outcome]:
+    """Submits shards as others finish, so that a scheduler never has them all."""
+    from dask.distributed import as_completed
+
+    waiting = iter(range(1, of + 1))
+    # Keys of this call alone: a scheduler that has a key does not compute it again.
+    call = uuid4().hex
+    numbers: dict[Any, int] = {}
+    counted_at, room = -LOOK_S, AHEAD
+
+    def submit() -> Iterator[Future]:
+        nonlocal counted_at, room
+        if time.monotonic() - counted_at > LOOK_S:
+            counted_at, room = time.monotonic(), AHEAD * max(1, _cluster_threads(client))
+        for number in islice(waiting, max(0, room - len(numbers))):
+            key = f"hertzchain-shard-{call}-{number}-of-{of}"
+            numbers[key] = number
+            yield client.submit(task, *arguments(number), key=key, pure=False, retries=RETRIES)
+
+    with _connected():
+        running = as_completed(list(submit()))
+        for future in running:
+            # A worker died before its result was fetched: the shard is computed again.
+            if future.status in ("lost", "pending"):
+                running.add(future)
+                continue
+            number = numbers.pop(future.key)
+            if future.status == "finished":
+                yield future.result()
+            elif future.status == "error":
+                error = future.exception()
+                yield number, f"{type(error).__name__}: {error}"
+            else:
+                raise ConnectionError(GONE)
+            future.release()
+            for following in submit():
+                running.add(following)
+
+
+@contextmanager
+def _connected(*also: type[OSError]) -> Iterator[None]:
+    """Raises `ConnectionError` where the scheduler dies: it may do so at any time."""
+    from dask.distributed import CancelledError
+    from distributed.comm import CommClosedError
+
+    try:
+        yield
+    except (CommClosedError, CancelledError, *also) as error:
+        raise ConnectionError(GONE) from error
+
+
+def _cluster_threads(client: Client) -> int:
+    """Threads of all workers."""
+    # No worker's own error can come of this one, so any error is one of the connection.
+    with _connected(OSError):
+        known: Any = client.nthreads()
+    return sum(known.values())
+
+
+def _batches(work: tuple[str, str], client: Client) -> Callable[[Batches], Callable[[float], Any]]:
+    """The function that submits batches of points; it returns a function that waits for them."""
+    from dask.distributed import TimeoutError, wait
+
+    call = uuid4().hex
+
+    def compute(named: Batches) -> Callable[[float], Any]:
+        keys = ((f"hertzchain-batch-{call}-{name}", points) for name, points in named)
+        with _connected():
+            futures = [client.submit(_outcomes, *work, points, key=key, pure=False, retries=RETRIES) for key, points in keys]
+
+        def waiting(seconds: float) -> Any:
+            """Outcomes in order, or None if some are not finished."""
+            try:
+                with _connected():
+                    wait(futures, timeout=seconds)
+                    return client.gather(futures)
+            except TimeoutError:
+                return None
+
+        return waiting
+
+    return compute

@@ -3,45 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import Any
 
-__all__ = [
-    "ExperimentError",
-    "ExperimentWarning",
-    "Finding",
-    "HertzchainError",
-    "InternalError",
-    "OptionError",
-]
-
-
-class RawFinding(TypedDict):
-    """A finding as the extension tells it."""
-
-    file: str
-    line: int
-    text: str
-    message: str
-    expected: str
-    help: str | None
-    report: str
-
+__all__ = ["ExperimentError", "ExperimentWarning", "Finding", "HertzchainError", "InternalError", "OptionError"]
 
 _KEY = re.compile(r"`([^`]+)`")
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing to say about an experiment file: what, where, what was expected.
+    """One mistake in an experiment file, or a warning about it.
 
     Attributes
     ----------
-    file : str
-        Name of the file or of the experiment.
-    line : int
-        Line in it, from 1.
+    file, line : str, int
+        Name of the file or of the experiment, and the line in it, from 1.
     key : str or None
         The key that it is about, where it is about one.
     text : str
@@ -63,25 +41,14 @@ class Finding:
     help: str | None
     report: str
 
-    @classmethod
-    def of(cls, raw: RawFinding) -> Finding:
-        """From the extension's own.
-
-        Parameters
-        ----------
-        raw : dict
-            As the extension tells it.
-
-        Returns
-        -------
-        Finding
-            With the key that its message names.
-        """
-        named = _KEY.search(raw["message"])
-        return cls(key=named.group(1) if named else None, **raw)
-
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.message}: {self.expected}"
+
+
+def findings(raw: Sequence[Mapping[str, Any]]) -> tuple[Finding, ...]:
+    """Findings of the extension, each with the key that its message names."""
+    keys = [_KEY.search(one["message"]) for one in raw]
+    return tuple(Finding(key=key.group(1) if key else None, **one) for key, one in zip(keys, raw, strict=True))
 
 
 class HertzchainError(Exception):
@@ -99,22 +66,22 @@ class ExperimentError(HertzchainError, ValueError):
 
     findings: tuple[Finding, ...]
 
-    def __init__(self, report: str, findings: Sequence[RawFinding]) -> None:
+    def __init__(self, report: str, raw: Sequence[Mapping[str, Any]]) -> None:
         super().__init__(report)
-        self.findings = tuple(Finding.of(raw) for raw in findings)
-        self._raw = list(findings)
+        self.findings = findings(raw)
+        self._raw = list(raw)
 
-    def __reduce__(self) -> tuple[type[ExperimentError], tuple[str, list[RawFinding]]]:
+    def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (str(self), self._raw))
 
 
 class OptionError(HertzchainError, ValueError):
-    """A number or a name that a verb does not take; the text says what it takes."""
+    """A number or a name that a function does not accept; the text lists what it accepts."""
 
 
 class InternalError(HertzchainError, RuntimeError):
-    """Not the user's mistake: a full disk, a lack of threads, or a mistake of ours."""
+    """Not the user's mistake: a full disk, a lack of threads, or a defect of hertzchain."""
 
 
 class ExperimentWarning(UserWarning):
-    """What is odd about an experiment, such as a law out of its range."""
+    """A warning about an experiment, such as a law outside its range of validity."""

@@ -1,15 +1,19 @@
-"""Experiments: from files, from dicts, from objects."""
+"""Experiments: from files, from dicts, from objects; their description, theory and laws."""
 
 from __future__ import annotations
 
+import json
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 from . import _hertzchain as _native
+from . import _options as options
 from ._hertzchain import Experiment
-from ._toml import text as toml
-from .errors import OptionError
+from .errors import ExperimentWarning, OptionError, findings
+from .results import Description, Group, LawInfo, Row
 
 __all__ = [
     "Beads",
@@ -21,10 +25,13 @@ __all__ = [
     "PowerOfSpeed",
     "Striker",
     "build",
+    "check",
+    "laws",
     "load",
     "preset",
     "presets",
     "schema",
+    "theory",
 ]
 
 Quantity = float | str
@@ -42,10 +49,6 @@ class PowerOfSpeed:
         Its value at 1 m/s, in SI or as text with a unit.
     exponent : float
         Of the speed.
-
-    References
-    ----------
-    Effective numbers of oils: [Labbe2017].
     """
 
     prefactor: Quantity
@@ -70,10 +73,6 @@ class Material:
         In kg/m³; needed where beads have no mass.
     shear_viscosity, bulk_viscosity : float or str, optional
         η₁ and η₂ in Pa s; η₂ is η₁ where it is left out.
-
-    References
-    ----------
-    Viscosities of a body: [Goldobin2015].
     """
 
     young_modulus: Quantity | PowerOfSpeed = field(metadata=_si("Pa"))
@@ -97,10 +96,6 @@ class Beads:
         Name of a material.
     mass : float or str, optional
         In kg; by the density when absent.
-
-    References
-    ----------
-    Which bead is which: docs/conventions.md.
     """
 
     count: int = field(metadata=_si(""))
@@ -123,7 +118,7 @@ class Law:
 
     References
     ----------
-    Each law's own: `hertzchain.laws`; docs/physics.md.
+    Each law's own: `hertzchain.laws`; docs/explanation/physics.md.
 
     Examples
     --------
@@ -171,10 +166,6 @@ class Contacts:
         Name of an effective one, in place of both sides'.
     wet : bool, optional
         Whether readings take it for wet.
-
-    References
-    ----------
-    Wet and dry contacts of the paper: [Labbe2017]; readings: docs/physics.md.
     """
 
     laws: Sequence[str | Law]
@@ -209,10 +200,6 @@ class Striker:
         In m and kg.
     material : str, optional
         Name of a material.
-
-    References
-    ----------
-    Its weight loads nothing at rest: docs/conventions.md.
     """
 
     speed: Quantity = field(metadata=_si("m/s"))
@@ -233,10 +220,6 @@ class FarEnd:
         Of a half-bead in m, of a stop in kg.
     material : str, optional
         Name of a material.
-
-    References
-    ----------
-    Ends of chains: docs/conventions.md; the paper's stop: [Labbe2017].
     """
 
     kind: str = field(default="half-bead", metadata=_si(""))
@@ -289,10 +272,6 @@ def load(path: str | os.PathLike[str]) -> Experiment:
         Every mistake in the file at once, each with its line, underlined.
     OptionError
         A file that can't be read.
-
-    References
-    ----------
-    Keys and units of the file: `schema`, docs/conventions.md.
     """
     return Experiment.open(path)
 
@@ -314,10 +293,6 @@ def preset(name: str) -> Experiment:
     ------
     OptionError
         A name that no preset has.
-
-    References
-    ----------
-    The paper's chains: [Labbe2017]; each file of experiments/ names its own.
     """
     return Experiment.preset(name)
 
@@ -329,10 +304,6 @@ def presets() -> dict[str, str]:
     -------
     dict of str to str
         Titles by name.
-
-    References
-    ----------
-    The files of experiments/, which name their sources.
     """
     return dict(_native.presets())
 
@@ -344,10 +315,6 @@ def schema() -> str:
     -------
     str
         JSON, with every key, its unit and what it means.
-
-    References
-    ----------
-    Words and signs: docs/conventions.md.
     """
     return _native.schema()
 
@@ -391,10 +358,6 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
     ... )
     >>> chain.beads
     20
-
-    References
-    ----------
-    Keys and units: `schema`, docs/conventions.md; laws: `laws`.
     """
     if isinstance(tables, str):
         if more:
@@ -402,4 +365,155 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
         return Experiment.from_text(name, tables)
     whole = {**(tables or {}), **more}
     parts = {key: _part(value) for key, value in whole.items()}
-    return Experiment.from_text(name, toml(parts))
+    return Experiment.from_text(name, _toml(parts))
+
+
+def _toml(tables: Mapping[str, object]) -> str:
+    """TOML of plain values, tables and lists of tables, so that mistakes in them have a line."""
+    plain = {key: value for key, value in tables.items() if not _is_table(value)}
+    lines = [f"{_key(key)} = {_inline(value)}" for key, value in plain.items()]
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            lines += _table(_key(key), value)
+        elif _is_table(value):
+            for member in value:  # type: ignore[attr-defined]
+                lines += ["", f"[[{_key(key)}]]", *_fields(member)]
+    return "\n".join(lines).strip() + "\n"
+
+
+def _is_table(value: object) -> bool:
+    if isinstance(value, Mapping):
+        return True
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        return False
+    return len(value) > 0 and all(isinstance(member, Mapping) for member in value)
+
+
+def _table(name: str, fields: Mapping[str, object]) -> list[str]:
+    nested = {key: value for key, value in fields.items() if isinstance(value, Mapping)}
+    if nested and len(nested) == len(fields):
+        tables = [_table(f"{name}.{_key(key)}", value) for key, value in nested.items()]
+        return [line for table in tables for line in table]
+    return ["", f"[{name}]", *_fields(fields)]
+
+
+def _fields(fields: Mapping[str, object]) -> list[str]:
+    return [f"{_key(key)} = {_inline(value)}" for key, value in fields.items()]
+
+
+def _key(key: str) -> str:
+    bare = key.isascii() and key.replace("-", "").replace("_", "").isalnum()
+    return key if bare else json.dumps(key)
+
+
+def _inline(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        # JSON's strings are TOML's, but for what JSON writes as two halves.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, Mapping):
+        members = ", ".join(f"{_key(key)} = {_inline(member)}" for key, member in value.items())
+        return f"{{ {members} }}"
+    if isinstance(value, Sequence):
+        return f"[{', '.join(_inline(member) for member in value)}]"
+    try:
+        return repr(float(value))  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        kind = type(value).__name__
+        raise OptionError(f"an experiment holds no {kind}; expected texts, numbers, lists, dicts") from None
+
+
+def check(experiment: Experiment, speed: float | str | None = None) -> Description:
+    """Describes an experiment in SI with what follows from it; runs nothing.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        The chain and its striker.
+    speed : float or str, optional
+        Speed of the striker in m/s, or a text with a unit; the experiment's own when absent.
+
+    Returns
+    -------
+    Description
+        Groups of names, values in SI and units.
+
+    Raises
+    ------
+    ExperimentError
+        What the physics rejects, at its place in the experiment.
+    OptionError
+        A text that is no speed.
+
+    Warns
+    -----
+    ExperimentWarning
+        Warnings about the experiment at this speed.
+
+    References
+    ----------
+    Words and signs: docs/reference/conventions.md.
+    """
+    return _description(_native.check(experiment, None if speed is None else options.text(speed)))
+
+
+def theory(experiment: Experiment, speed: float | str | None = None) -> Description:
+    """Theory of a chain: exact solitary wave, normal modes, band gap, restitution.
+
+    Parameters
+    ----------
+    experiment, speed
+        As for `check`.
+
+    Returns
+    -------
+    Description
+        Groups of names, values in SI and units.
+
+    Raises
+    ------
+    ExperimentError, OptionError
+        As for `check`, which has the same warnings.
+
+    References
+    ----------
+    Long waves: [Nesterenko1983]; the exact solitary wave: [FrieseckeWattis1994], [EnglishPego2005];
+    restitution: [Goldobin2015]. See docs/explanation/physics.md.
+    """
+    return _description(_native.theory(experiment, None if speed is None else options.text(speed)))
+
+
+def _description(found: Mapping[str, Any]) -> Description:
+    reported = findings(found["warnings"])
+    for warning in reported:
+        warnings.warn(warning.report, ExperimentWarning, stacklevel=3)
+    groups = (Group(group["title"], tuple(Row(**row) for row in group["rows"])) for group in found["groups"])
+    return Description(tuple(groups), reported)
+
+
+def laws(name: str | None = None) -> list[LawInfo]:
+    """Every contact law of the registry, or the one of this name.
+
+    Parameters
+    ----------
+    name : str, optional
+        One law's.
+
+    Returns
+    -------
+    list of LawInfo
+        Equations, parameters with SI units, validity, source.
+
+    Raises
+    ------
+    OptionError
+        A name that no law has.
+
+    References
+    ----------
+    Each law's own, in its ``reference``; how laws are added: docs/how-to/add-a-contact-law.md.
+    """
+    return [LawInfo(**law) for law in _native.laws(name)]

@@ -1,26 +1,199 @@
-"""What a shot gives: numbers in SI as NumPy arrays."""
+"""Results: numbers in SI as NumPy arrays, for pandas, xarray, files and people."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+import io
+import json
+import os
+import warnings as _warnings
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ._table import Floats, Tabled, dataset, frame, lines, number, short, unit
-from .errors import Finding
+from .errors import ExperimentWarning, Finding
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["PowerLaw", "Shot", "Trace"]
+__all__ = [
+    "CampaignResult",
+    "Case",
+    "Description",
+    "DesignResult",
+    "Ensemble",
+    "FitResult",
+    "GaugeResult",
+    "Group",
+    "LawInfo",
+    "MeasureResult",
+    "Parameter",
+    "PowerLaw",
+    "Result",
+    "Row",
+    "Shot",
+    "Sweep",
+    "Trace",
+    "WarningSummary",
+]
+
+Floats = NDArray[np.float64]
+Variable = tuple[tuple[str, ...], Any]
+"""Names of dimensions, and values."""
+
+_ENDINGS = {"_beads_per_s": "beads/s", "_m_s": "m/s", "_s": "s", "_n": "N", "_j": "J", "_m": "m", "_v": "V"}
+
+
+def unit(name: str, dimensionless: bool = False) -> str:
+    """SI unit of a column by the end of its name, of its uncertainty too; "1" for plain numbers."""
+    if dimensionless:
+        return "1"
+    for suffix in ("_sigma", "_error", "_deviation", "_err", "_std"):
+        name = name.replace("_sigma", "").removesuffix(suffix)
+    return next((unit for ending, unit in _ENDINGS.items() if name.endswith(ending)), "1")
+
+
+class Result:
+    """Base of all results: a table with units for pandas, xarray, files and people."""
+
+    _index: ClassVar[str | None] = None
+    _dimension: ClassVar[str] = "row"
+
+    def _columns(self) -> Mapping[str, Sequence[Any] | NDArray[Any]]:
+        """The table: columns of one length."""
+        raise NotImplementedError
+
+    def _variables(self) -> Mapping[str, Variable]:
+        """What xarray gets; the table over its index."""
+        of = self._index or self._dimension
+        return {name: ((of,), _array(values)) for name, values in self._columns().items()}
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return () if self._index is None else (self._index,)
+
+    def _units(self) -> Mapping[str, Any]:
+        """Units of columns and variables whose names do not end in theirs."""
+        return {}
+
+    def _attributes(self) -> Mapping[str, Any]:
+        return {}
+
+    def _summary(self) -> tuple[str, Mapping[str, str]]:
+        """Title and rows as printed."""
+        raise NotImplementedError
+
+    def _unit(self, name: str) -> Any:
+        return self._units().get(name) or unit(name, getattr(self, "dimensionless", False))
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units of the table's columns, by name."""
+        return {name: self._unit(name) for name in self._columns()}
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The table for pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Units of all columns, by name, in ``attrs["units"]``.
+        """
+        import pandas as pd
+
+        made = pd.DataFrame(dict(self._columns()))
+        made.attrs["units"] = self.units
+        return made if self._index is None else made.set_index(self._index)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The numbers for xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            One variable a column, its unit in ``attrs["units"]``.
+        """
+        import xarray as xr
+
+        coordinates = self._coordinates()
+        made = {name: (*part, {"units": self._unit(name)}) for name, part in self._variables().items()}
+        attributes = {name: value for name, value in self._attributes().items() if value is not None}
+        data = {name: part for name, part in made.items() if name not in coordinates}
+        return xr.Dataset(data, {name: made[name] for name in coordinates}, attributes)
+
+    def save(self, path: str | os.PathLike[str]) -> list[Path]:
+        """Writes the table as CSV; or, into a file that ends in ``.json``, all of ``details``.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        path = Path(path)
+        if path.suffix == ".json":
+            whole = getattr(self, "details", None) or {name: _array(values).tolist() for name, values in self._columns().items()}
+            path.write_text(json.dumps(whole, indent=2, default=str), encoding="utf-8")
+        else:
+            text = io.StringIO()
+            writer = csv.writer(text, lineterminator="\n")
+            columns = self._columns()
+            writer.writerows([list(columns), *zip(*columns.values(), strict=True)])
+            path.write_text(text.getvalue(), encoding="utf-8")
+        return [path]
+
+    def __getattr__(self, name: str) -> Any:
+        # Keys of the program's JSON that have no attribute of their own.
+        try:
+            return self.__dict__["details"][name]
+        except KeyError:
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}") from None
+
+    def __repr__(self) -> str:
+        title, rows = self._summary()
+        width = max((len(name) for name in rows), default=0)
+        return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
+
+    def _span(self, values: Floats, name: str) -> str:
+        """Least and largest number of a column with its unit."""
+        finite = values[np.isfinite(values)]
+        of = self._unit(name)
+        end = "" if of == "1" else f" {of}"
+        return f"{short(finite.min())} … {short(finite.max())}{end}" if finite.size else "–"
+
+
+def _array(values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
+    """As an array of one dimension; lists and dicts stay what they are."""
+    if isinstance(values, np.ndarray):
+        return values
+    if all(isinstance(value, (bool, int, float, str)) for value in values):
+        return np.array(values)
+    made = np.empty(len(values), dtype=object)
+    made[:] = list(values)
+    return made
+
+
+def number(value: float | None) -> float:
+    """NaN for None."""
+    return float("nan") if value is None else value
+
+
+def short(value: float | None, digits: int = 6) -> str:
+    """A number for people; a dash for None."""
+    return "–" if value is None or np.isnan(value) else f"{value:.{digits}g}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trace:
-    """What sensors show while a shot runs.
+class Trace(Result):
+    """Sampled signals of sensors during a shot.
 
     Attributes
     ----------
@@ -33,11 +206,9 @@ class Trace:
         The energy budget along the way in J, at its own ``time_s``.
     dimensionless : bool
         Whether K = m = 1 stands for SI: all units are then "1".
-
-    References
-    ----------
-    What sensors show: docs/conventions.md.
     """
+
+    _index = "time_s"
 
     time_s: Floats
     signals: dict[str, Floats]
@@ -64,7 +235,7 @@ class Trace:
     def __getitem__(self, sensor: str) -> Floats:
         return self.signals[sensor]
 
-    def stacked(self, kind: str) -> tuple[np.ndarray[Any, Any], Floats]:
+    def stacked(self, kind: str) -> tuple[NDArray[Any], Floats]:
         """Signals of all sensors of a kind as one array.
 
         Parameters
@@ -84,44 +255,20 @@ class Trace:
         rows = [self.signals[found[number]] for number in numbers]
         return numbers, np.array(rows, dtype=float).reshape(len(rows), self.time_s.size)
 
-    def to_xarray(self) -> xr.Dataset:
-        """Signals as xarray has them.
+    def _columns(self) -> dict[str, Floats]:
+        return {"time_s": self.time_s, **self.signals}
 
-        Returns
-        -------
-        xarray.Dataset
-            One variable a sensor over ``time_s``, its unit in ``attrs["units"]``.
-        """
-        made = dataset(
-            {name: (("time_s",), signal) for name, signal in self.signals.items()},
-            {"time_s": (("time_s",), self.time_s)},
-            self.dimensionless,
-            {},
-        )
-        for name in self.signals:
-            made[name].attrs["units"] = self.unit(name)
-        return made
+    def _units(self) -> dict[str, str]:
+        return {name: self.unit(name) for name in self.signals}
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Signals as pandas has them.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One column a sensor; the index is the time in s; units in ``attrs["units"]``.
-        """
-        units = {name: self.unit(name) for name in self.signals}
-        return frame({"time_s": self.time_s, **self.signals}, self.dimensionless, "time_s", units)
-
-    def __repr__(self) -> str:
-        rows = {name: f"{short(float(np.max(np.abs(signal))))} {self.unit(name)} at most" for name, signal in self.signals.items()}
-        until = f"{self.time_s.size} samples until {short(float(self.time_s[-1]) if self.time_s.size else None)} s"
-        return lines(f"Trace of {until}", rows)
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {name: f"{short(np.max(np.abs(signal)))} {self.unit(name)} at most" for name, signal in self.signals.items()}
+        return f"Trace of {self.time_s.size} samples until {short(self.time_s[-1] if self.time_s.size else None)} s", rows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Shot:
-    """One impact, followed to its end.
+class Shot(Result):
+    """One impact, followed to its end. Definitions: docs/reference/conventions.md.
 
     Attributes
     ----------
@@ -132,7 +279,7 @@ class Shot:
     tof_incident_s, tof_reflected_s : float or None
         Times of flight in s: from the sensor bead to the wall, and back.
     accuracy_asked, accuracy_reached : float or None
-        Relative error that times of flight may have; its bound reached, only if it was checked.
+        Relative error allowed in times of flight; its bound reached, only if it was checked.
     pulse_speed_beads_per_s : float or None
         Beads a second between sensor bead and wall.
     passage : dict
@@ -152,18 +299,13 @@ class Shot:
     solver, tolerance, step_s, force_passes, steps
         How it was computed: in words, error allowed a step, its length in s, counts.
     notes : list of str
-        What a reader must know.
+        Remarks, such as a bound that was not reached.
     warnings : tuple of Finding
-        What is odd about the experiment at this speed.
+        Warnings about the experiment at this speed.
     trace : Trace or None
-        What was sampled.
+        Sampled signals.
     dimensionless : bool
         Whether K = m = 1 stands for SI.
-
-    References
-    ----------
-    How times of flight, peaks and the budget are defined: docs/conventions.md; how they
-    are computed: docs/numerics.md, with the pair of [DormandPrince1980].
     """
 
     experiment: str
@@ -189,54 +331,47 @@ class Shot:
     trace: Trace | None = None
     dimensionless: bool = False
 
-    def to_xarray(self) -> xr.Dataset:
-        """What was sampled, as xarray has it.
-
-        Returns
-        -------
-        xarray.Dataset
-            One variable a sensor over ``time_s`` with its unit in ``attrs["units"]``; the
-            shot's numbers, in SI, are attributes of the whole.
-        """
-        empty = Trace(np.empty(0), {}, {}, self.dimensionless)
-        made = (self.trace or empty).to_xarray()
-        made.attrs.update({name: value for name, value in self._numbers().items() if value is not None})
-        return made
-
-    def to_pandas(self) -> pd.Series:
-        """The shot's numbers as pandas has them.
+    def to_pandas(self) -> pd.Series:  # type: ignore[override]
+        """The shot's numbers for pandas.
 
         Returns
         -------
         pandas.Series
             By name, NaN where there is none; units in ``attrs["units"]``.
         """
-        import pandas as pd
-
-        made = pd.Series({name: number(value) for name, value in self._numbers().items()}, name=self.experiment)
-        made.attrs["units"] = {name: unit(name, self.dimensionless) for name in self._numbers()}
+        table = super().to_pandas()
+        made = table.iloc[0].rename(self.experiment)
+        made.attrs["units"] = self.units
         return made
 
-    def _numbers(self) -> dict[str, Any]:
+    def _variables(self) -> Mapping[str, Variable]:
+        return {} if self.trace is None else self.trace._variables()
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return () if self.trace is None else self.trace._coordinates()
+
+    def _units(self) -> dict[str, str]:
+        return {} if self.trace is None else self.trace._units()
+
+    def _attributes(self) -> dict[str, Any]:
+        return self._numbers()
+
+    def _columns(self) -> dict[str, list[float]]:
+        return {name: [number(value)] for name, value in self._numbers().items()}
+
+    def _numbers(self) -> dict[str, float | None]:
+        names = ("speed_m_s", "tof_incident_s", "tof_reflected_s", "accuracy_reached", "pulse_speed_beads_per_s")
+        pulses = {"sensor_peak_n": "incident", "wall_peak_n": "wall", "reflected_peak_n": "reflected"}
         return {
-            "speed_m_s": self.speed_m_s,
-            "tof_incident_s": self.tof_incident_s,
-            "tof_reflected_s": self.tof_reflected_s,
-            "accuracy_reached": self.accuracy_reached,
-            "pulse_speed_beads_per_s": self.pulse_speed_beads_per_s,
-            "sensor_peak_n": self.passage.get("incident", {}).get("value"),
-            "wall_peak_n": (self.passage.get("wall") or {}).get("value"),
-            "returning_peak_n": (self.passage.get("reflected") or {}).get("value"),
+            **{name: getattr(self, name) for name in names},
+            **{name: (self.passage.get(pulse) or {}).get("value") for name, pulse in pulses.items()},
             "striker_rebound_m_s": (self.striker_rebound or {}).get("end_m_s"),
             "duration_s": self.duration_s,
         }
 
-    def __repr__(self) -> str:
-        si = not self.dimensionless
-        rows = {
-            "incident ToF": f"{short(self.tof_incident_s, 9)}{' s' if si else ''}",
-            "reflected ToF": f"{short(self.tof_reflected_s, 9)}{' s' if si else ''}",
-        }
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        second, speed_unit = ("", "") if self.dimensionless else (" s", " m/s")
+        rows = {"incident ToF": f"{short(self.tof_incident_s, 9)}{second}", "reflected ToF": f"{short(self.tof_reflected_s, 9)}{second}"}
         if missing := self.passage.get("missing"):
             rows = {"no time of flight": str(missing)}
         if self.accuracy_reached is not None:
@@ -244,12 +379,12 @@ class Shot:
         if self.energy:
             rows["energy residual"] = f"{short(self.energy['relative_residual'], 2)} of the input"
         rows |= {"note": note for note in self.notes}
-        speed = "" if self.speed_m_s is None else f" at {short(self.speed_m_s)}{' m/s' if si else ''}"
-        return lines(f"Shot of {self.experiment}{speed}", rows)
+        speed = "" if self.speed_m_s is None else f" at {short(self.speed_m_s)}{speed_unit}"
+        return f"Shot of {self.experiment}{speed}", rows
 
 
 @dataclass(frozen=True, repr=False)
-class PowerLaw(Tabled):
+class PowerLaw(Result):
     """``tof = prefactor_s * (speed in m/s)**exponent``, by least squares of logarithms.
 
     Attributes
@@ -257,21 +392,17 @@ class PowerLaw(Tabled):
     prefactor_s, exponent : float
         The time of flight at 1 m/s in s; −1/5 for Hertz contacts alone.
     prefactor_error_s, exponent_error : float or None
-        Standard errors by the scatter; None where two speeds tell none.
+        Standard errors by the scatter; None for two speeds.
     prefactor_accuracy_s, exponent_accuracy : float or None
-        What the accuracies of the times of flight alone leave open.
+        Errors that the accuracies of the times of flight allow.
     covariance : list of list of float or None, shape (2, 2)
         Of the logarithm of the prefactor and the exponent.
     r_squared : float or None
-        Share of the scatter that the law explains.
+        Coefficient of determination.
     residuals : list of float
         Relative differences of the times from the law, speed by speed.
     dimensionless : bool
         Whether K = m = 1 stands for SI.
-
-    References
-    ----------
-    Scaling of Hertz chains: [Nesterenko1983]; the paper's curves: [Labbe2017].
     """
 
     prefactor_s: float
@@ -286,51 +417,767 @@ class PowerLaw(Tabled):
     dimensionless: bool = False
 
     def __call__(self, speed_m_s: Any) -> Any:
-        """Times of flight by the law.
-
-        Parameters
-        ----------
-        speed_m_s : array_like
-            Speeds in m/s, of any shape.
-
-        Returns
-        -------
-        ndarray
-            Times of flight in s, of the same shape.
-        """
+        """Times of flight in s by the law, of the shape of the speeds."""
         return self.prefactor_s * np.asarray(speed_m_s, dtype=float) ** self.exponent
-
-    @classmethod
-    def of(cls, found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw | None:
-        """From the extension's own.
-
-        Parameters
-        ----------
-        found : mapping
-            As the program's JSON has it.
-        dimensionless : bool
-            Whether K = m = 1 stands for SI.
-
-        Returns
-        -------
-        PowerLaw or None
-            None where no law goes through.
-        """
-        if "missing" in found:
-            return None
-        known: dict[str, Any] = {name: found.get(name) for name in cls.__dataclass_fields__}
-        return cls(**known | {"residuals": found.get("residuals") or [], "dimensionless": dimensionless})
 
     def _columns(self) -> dict[str, list[float]]:
         names = ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s", "exponent", "exponent_error", "exponent_accuracy", "r_squared")
         return {name: [number(getattr(self, name))] for name in names}
 
-    def _units(self) -> dict[str, str]:
-        return {name: "1" if self.dimensionless else "s" for name in ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s")}
-
     def __repr__(self) -> str:
-        def told(value: float, error: float | None) -> str:
+        def reported(value: float, error: float | None) -> str:
             return short(value) if error is None else f"({short(value)} ± {short(error, 2)})"
 
-        unit = "" if self.dimensionless else " s"
-        return f"PowerLaw {told(self.prefactor_s, self.prefactor_error_s)}{unit} · v^{told(self.exponent, self.exponent_error)}"
+        second = "" if self.dimensionless else " s"
+        return f"PowerLaw {reported(self.prefactor_s, self.prefactor_error_s)}{second} · v^{reported(self.exponent, self.exponent_error)}"
+
+
+def power_law(found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw | None:
+    """A power law of the program's JSON; None for fewer than two speeds."""
+    if "missing" in found:
+        return None
+    known: dict[str, Any] = {name: found.get(name) for name in PowerLaw.__dataclass_fields__}
+    return PowerLaw(**known | {"residuals": found.get("residuals") or [], "dimensionless": dimensionless})
+
+
+class _Shots(Result):
+    """Columns of many shots, those of the times of flight by name."""
+
+    columns: dict[str, Floats]
+
+    def __getitem__(self, column: str) -> Floats:
+        return self.columns[column]
+
+    @property
+    def tof_incident_s(self) -> Floats:
+        """Incident times of flight in s."""
+        return self.columns["tof_incident_s"]
+
+    @property
+    def tof_reflected_s(self) -> Floats:
+        """Reflected times of flight in s."""
+        return self.columns["tof_reflected_s"]
+
+    @property
+    def accuracy_reached(self) -> Floats:
+        """Bounds on the relative errors of times of flight; NaN without error control."""
+        return self.columns["accuracy_reached"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(_Shots):
+    """Shots of one chain at several speeds. All arrays have shape (speeds,); NaN is missing.
+
+    Attributes
+    ----------
+    experiment : str
+        Its name.
+    speed_m_s : ndarray
+        Speeds of the striker in m/s.
+    tof_incident_s, tof_reflected_s : ndarray
+        Times of flight in s.
+    accuracy_reached : ndarray
+        Bounds on their relative errors.
+    columns : dict of str to ndarray
+        Everything: times of flight, peaks in N, widths in s, pulse speed,
+        rebound in m/s, duration in s, and time and height of the highest
+        maximum that could be the arrival instead (``competing_time_s``,
+        ``competing_peak_n``), or the reflected pulse's peak
+        (``competing_reflected_*``).
+    power_law_incident, power_law_reflected : PowerLaw or None
+        None where fewer than two speeds have a time of flight.
+    calibration : dict or None
+        The step that calibration shots chose, with ``error_control="calibrated"``.
+    errors : dict of int to str
+        Why speeds, by index, have no shot.
+    warnings : dict of int to list of str
+        Warnings about the chain at speeds, by index.
+    dimensionless : bool
+        Whether K = m = 1 stands for SI.
+    """
+
+    _index = "speed_m_s"
+
+    experiment: str
+    speed_m_s: Floats
+    columns: dict[str, Floats]
+    power_law_incident: PowerLaw | None
+    power_law_reflected: PowerLaw | None
+    calibration: dict[str, Any] | None
+    errors: dict[int, str]
+    warnings: dict[int, list[str]]
+    dimensionless: bool = False
+
+    def _columns(self) -> dict[str, Floats]:
+        return {"speed_m_s": self.speed_m_s, **self.columns}
+
+    def _attributes(self) -> dict[str, Any]:
+        return {"experiment": self.experiment}
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {name: self._span(self.columns[name], name) for name in ("tof_incident_s", "tof_reflected_s", "accuracy_reached")}
+        for name, law in (("incident", self.power_law_incident), ("reflected", self.power_law_reflected)):
+            if law is not None:
+                rows[f"{name} law"] = f"{short(law.prefactor_s)} · v^{short(law.exponent)}"
+        if self.errors:
+            rows["failed"] = f"{len(self.errors)} speeds"
+        if self.warnings:
+            rows["warnings"] = f"at {len(self.warnings)} of {self.speed_m_s.size} speeds, first: {'; '.join(next(iter(self.warnings.values())))}"
+        return f"Sweep of {self.experiment} over {self.speed_m_s.size} speeds", rows
+
+
+@dataclass(frozen=True)
+class WarningSummary(Result):
+    """Warnings about the chain in some shots of many, by the first of them.
+
+    Attributes
+    ----------
+    index : tuple of int
+        Index of the first such shot.
+    messages : list of str
+        Its warnings, as the program prints them, such as a law out of its range.
+    shots : int
+        How many shots have warnings.
+    """
+
+    index: tuple[int, ...]
+    messages: list[str]
+    shots: int
+
+    def _columns(self) -> dict[str, list[Any]]:
+        return {"index": [self.index], "messages": ["\n".join(self.messages)], "shots": [self.shots]}
+
+    def __str__(self) -> str:
+        return f"first of {self.shots} at {self.index}: {'; '.join(self.messages)}"
+
+
+def warn(messages: Sequence[str], shots: int) -> None:
+    """One warning for all shots of a call that have any."""
+    if messages:
+        others = {1: "", 2: "\n(similar warnings for another shot)"}.get(shots, f"\n(similar warnings for {shots - 1} other shots)")
+        _warnings.warn("\n".join(messages) + others, ExperimentWarning, stacklevel=3)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ensemble(_Shots):
+    """Shots over arrays of speeds and of named numbers, broadcast against each other.
+
+    Attributes
+    ----------
+    experiment : str
+        Its name.
+    shape : tuple of int
+        The common shape; every column has it.
+    speed_m_s : ndarray
+        Speeds of the striker in m/s.
+    parameters : dict of str to ndarray
+        Named numbers in SI.
+    columns : dict of str to ndarray
+        As in `Sweep`; NaN is missing.
+    errors : dict of tuple to str
+        Why there is no shot, by index.
+    parameter_units : dict of str to str
+        SI units of the named numbers.
+    warnings : WarningSummary or None
+        Warnings about the chain in some shots, such as a law out of its range.
+    dimensionless : bool
+        Whether K = m = 1 stands for SI.
+    """
+
+    experiment: str
+    shape: tuple[int, ...]
+    speed_m_s: Floats
+    parameters: dict[str, Floats]
+    columns: dict[str, Floats]
+    errors: dict[tuple[int, ...], str]
+    parameter_units: dict[str, str]
+    warnings: WarningSummary | None = None
+    dimensionless: bool = False
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return ("speed_m_s", *self.parameters)
+
+    def _inputs(self) -> dict[str, Floats]:
+        return {"speed_m_s": self.speed_m_s, **self.parameters}
+
+    def _columns(self) -> dict[str, Floats]:
+        return {name: np.ravel(values) for name, values in (self._inputs() | self.columns).items()}
+
+    def _variables(self) -> dict[str, Variable]:
+        # Inputs that follow one axis become its coordinates.
+        axes = tuple(f"axis_{at}" for at in range(len(self.shape)))
+        inputs = {name: _along(values, axes) for name, values in self._inputs().items()}
+        return inputs | {name: (axes, values) for name, values in self.columns.items()}
+
+    def _units(self) -> dict[str, str]:
+        return self.parameter_units
+
+    def _attributes(self) -> dict[str, Any]:
+        return {"experiment": self.experiment}
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        columns = self._inputs() | {name: self.columns[name] for name in ("tof_incident_s", "tof_reflected_s")}
+        rows = {name: self._span(values, name) for name, values in columns.items()}
+        if self.errors:
+            rows["failed"] = str(len(self.errors))
+        if self.warnings is not None:
+            rows["warnings"] = str(self.warnings)
+        return f"Ensemble of {self.experiment}, shape {self.shape}", rows
+
+
+def _along(values: Floats, axes: tuple[str, ...]) -> Variable:
+    """The axes along which values change, and the values along them."""
+    if values.size == 0:
+        return axes, values
+
+    def changes(axis: int) -> bool:
+        first = np.take(values, [0], axis=axis)
+        return not np.array_equal(np.broadcast_to(first, values.shape), values, equal_nan=True)
+
+    varied = [axis for axis in range(values.ndim) if changes(axis)]
+    at = tuple(slice(None) if axis in varied else 0 for axis in range(values.ndim))
+    return tuple(axes[axis] for axis in varied), np.asarray(values[at])
+
+
+@dataclass(frozen=True, repr=False)
+class CampaignResult(Result):
+    """Outcome of a campaign's run: a table of one row.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the recordings are, one HDF5 file a series.
+    kept, run : int
+        Series that were there before, and series run now.
+    shots : int
+        Shots run now.
+    bytes : int
+        Size of all recordings of this part.
+    failed : list of str
+        Series that can't be computed, each with the reason; the others are there.
+    seed : int
+        Of all that is random.
+    """
+
+    folder: Path
+    kept: int
+    run: int
+    shots: int
+    bytes: int
+    failed: list[str]
+    seed: int
+
+    @property
+    def files(self) -> list[Path]:
+        """The recordings, by name."""
+        return sorted(self.folder.glob("*.h5"))
+
+    def _columns(self) -> dict[str, list[Any]]:
+        counts = {name: [getattr(self, name)] for name in ("kept", "run", "shots", "bytes")}
+        return {"folder": [str(self.folder)], **counts, "failed": [len(self.failed)], "seed": [self.seed]}
+
+    def _units(self) -> dict[str, str]:
+        return {"bytes": "B"}
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {"series": f"{self.run} run now, {self.kept} kept", "shots": str(self.shots), "size": f"{self.bytes / 1e6:.3g} MB", "seed": str(self.seed)}
+        return f"Campaign in {self.folder}", rows | {f"failed {at}": why for at, why in enumerate(self.failed, 1)}
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Case(Result):
+    """A measured curve: one row a speed.
+
+    Attributes
+    ----------
+    name : str
+        Name of the case, such as ``"dry"``.
+    columns : dict of str to ndarray, shape (speeds,)
+        ``speed_m_s``, ``tof_incident_s`` … with ``*_error`` for standard errors, and
+        ``tof_correlation`` of those of both times, which share the wall's pick.
+    power_law_incident, power_law_reflected : PowerLaw or None
+        Weighted fits.
+    """
+
+    _index = "speed_m_s"
+
+    name: str
+    columns: dict[str, Floats]
+    power_law_incident: PowerLaw | None
+    power_law_reflected: PowerLaw | None
+
+    def __getitem__(self, column: str) -> Floats:
+        return self.columns[column]
+
+    def _columns(self) -> dict[str, Floats]:
+        return self.columns
+
+    def _attributes(self) -> dict[str, Any]:
+        return {"case": self.name}
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {name: self._span(self.columns[name], name) for name in ("speed_m_s", "tof_incident_s", "tof_reflected_s")}
+        return f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", rows
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class MeasureResult(Result):
+    """Times of flight of a set of recordings; `fit` takes it as data.
+
+    Attributes
+    ----------
+    shots : list of dict
+        Every record: file, case, times of flight with errors in s, peaks in V, flags.
+    cases : dict of str to Case
+        One curve a case.
+    tables : dict of str to str
+        The program's tables as text: ``shots.csv``, ``speeds.csv`` …
+    details : dict
+        Everything else of ``measure --json``: ratios of cases, notes, the amplifier's
+        low-pass, what table and recordings do not find in each other (``unmatched``).
+    refused : list of str
+        Files that could not be read.
+    verdict : str or None
+        What was refused or not found, as the program ends with.
+    """
+
+    _dimension = "record"
+
+    shots: list[dict[str, Any]]
+    cases: dict[str, Case]
+    tables: dict[str, str]
+    details: dict[str, Any]
+    refused: list[str]
+    verdict: str | None
+
+    def _columns(self) -> dict[str, NDArray[Any] | list[str]]:
+        titles, *rows = csv.reader(io.StringIO(self.tables["shots.csv"]))
+        return {title: _numbers([row[at] for row in rows]) for at, title in enumerate(titles)}
+
+    def save(self, path: str | os.PathLike[str]) -> list[Path]:
+        """Writes the tables into a folder; tables without rows are left out.
+
+        Parameters
+        ----------
+        path : path
+            The folder, made if need be.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        Path(path).mkdir(parents=True, exist_ok=True)
+        written = {Path(path) / name: text for name, text in self.tables.items() if text.count("\n") > 1}
+        for file, text in written.items():
+            file.write_text(text, encoding="utf-8")
+        return list(written)
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        timed = sum("missing" not in shot for shot in self.shots)
+        rows = {"times of flight": f"{timed} of {len(self.shots)} records"}
+        rows |= {case.name or "(unnamed)": f"{case['speed_m_s'].size} speeds" for case in self.cases.values()}
+        return "Measured", rows | ({"refused": str(len(self.refused))} if self.refused else {})
+
+
+def _numbers(cells: list[str]) -> NDArray[Any] | list[str]:
+    """Cells of a column, with all their digits where they are numbers; NaN where they are empty."""
+    try:
+        if all(cell.isdigit() for cell in cells):
+            return np.array(cells, dtype=int)
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return cells
+
+
+@dataclass(frozen=True, repr=False)
+class Parameter(Result):
+    """A fitted number.
+
+    Attributes
+    ----------
+    name, unit : str
+        As the fit names it, and its SI unit.
+    value : float
+        At the best fit.
+    standard_error : float or None
+        By the covariance; None where the data do not determine it, and at a bound.
+    determined : bool
+        Whether the data determine it; if not, its value is one of many that fit as well.
+    at_bound : bool
+        Whether the best fit lies at one of its bounds.
+    limit : dict or None
+        Of one at or near a bound, by profile: ``side`` ("at most" or "at least"), ``percent_68``, ``percent_95``.
+    start, lower, upper, scale : float or None
+        Where it started, its bounds, a change that matters.
+    prior : dict or None
+        Its prior distribution.
+    """
+
+    name: str
+    unit: str
+    value: float
+    standard_error: float | None
+    determined: bool
+    at_bound: bool
+    limit: dict[str, Any] | None
+    start: float
+    lower: float | None
+    upper: float | None
+    scale: float
+    prior: dict[str, float] | None
+
+    def _columns(self) -> dict[str, list[Any]]:
+        numbers = {name: [number(getattr(self, name))] for name in self._units()}
+        return {"name": [self.name], "unit": [self.unit], **numbers, "determined": [self.determined], "at_bound": [self.at_bound]}
+
+    def _units(self) -> dict[str, str]:
+        return dict.fromkeys(("value", "standard_error", "start", "lower", "upper", "scale"), self.unit)
+
+    def __str__(self) -> str:
+        error = "not determined" if self.standard_error is None else f"± {short(self.standard_error, 2)}"
+        if self.at_bound:
+            error = "at its bound"
+            if self.limit and self.limit["percent_95"] is not None:
+                error += f", {self.limit['side']} {short(self.limit['percent_95'], 3)} (95 %)"
+        return f"{short(self.value)} {error} {self.unit}".strip()
+
+    def __repr__(self) -> str:
+        return f"{self.name} = {self}"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FitResult(Result):
+    """A fit: parameters with errors, goodness of fit, what is not determined.
+
+    Its table is the measured values beside the fitted ones; xarray gets the parameters,
+    their covariance and samples of a posterior.
+
+    Attributes
+    ----------
+    parameters : dict of str to Parameter
+        In SI, with standard errors by covariance.
+    covariance, correlation : ndarray, shape (parameters, parameters)
+        In products of the parameters' SI units; and without units.
+    rows : dict of str to ndarray, shape (values,)
+        Measured beside fitted. Of times of flight: ``speed_m_s``, ``observable``,
+        ``measured``, ``error``, ``fitted``, ``fitted_error`` (in s, ratios in 1),
+        ``residual`` in standard errors. Of whole pulses, a mean of samples each:
+        ``source``, ``channel``, ``time_s`` after the incident maximum, ``measured_v``,
+        ``error_v``, ``fitted_v``.
+    samples : ndarray of shape (samples, parameters) or None
+        Of the posterior in SI, if that was sampled and has converged.
+    details : dict
+        All of ``fit.json``: goodness of fit, identifiability, profiles,
+        posterior, comparison of models.
+    """
+
+    parameters: dict[str, Parameter]
+    covariance: Floats
+    correlation: Floats
+    rows: dict[str, NDArray[Any]]
+    samples: Floats | None
+    details: dict[str, Any]
+
+    def __getitem__(self, name: str) -> Parameter:
+        return self.parameters[name]
+
+    @property
+    def chi_square(self) -> dict[str, float] | None:
+        """Value, degrees of freedom, probability; None without degrees of freedom."""
+        return self.details["chi_square"]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the descent came to a minimum."""
+        return bool(self.details["converged"])
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return self.rows
+
+    def _units(self) -> dict[str, Any]:
+        # Columns that hold times and ratios have both units; parameters one each.
+        observables = dict.fromkeys(map(str, self.rows.get("observable", np.empty(0)).tolist()))
+        both = " or ".join(dict.fromkeys(unit(name) for name in observables))
+        own = [one.unit for one in self.parameters.values()]
+        return {
+            **dict.fromkeys(("measured", "error", "fitted", "fitted_error"), both),
+            **dict.fromkeys(("value", "standard_error", "samples"), own),
+            "covariance": "products of units",
+        }
+
+    def _variables(self) -> dict[str, Variable]:
+        own = self.parameters.values()
+        over = ("parameter",)
+        made: dict[str, Variable] = {
+            "parameter": (over, list(self.parameters)),
+            "other": (("other",), list(self.parameters)),
+            "value": (over, [one.value for one in own]),
+            "standard_error": (over, [number(one.standard_error) for one in own]),
+            "unit": (over, [one.unit for one in own]),
+            "covariance": ((*over, "other"), self.covariance),
+        }
+        return made if self.samples is None else made | {"samples": (("sample", *over), self.samples)}
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return ("parameter", "other")
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        known = self.details
+        rows = {name: str(parameter) for name, parameter in self.parameters.items()}
+        if (goodness := self.chi_square) is not None:
+            rows["χ²/ν"] = f"{short(goodness['value'], 4)}/{goodness['freedom']}, p = {short(goodness['probability'], 2)}"
+        if (assumed := known.get("assumed")) is not None:
+            rows["assumed"] = assumed
+        rows |= {"not determined": direction["words"] for direction in known["not_determined"]}
+        if not self.converged:
+            rows["warning"] = "the descent did not come to a minimum"
+        if "data" in known:
+            return f"Fit of {known['model']} to {known['data']['values']} values", rows
+        rows |= {"left out": why for why in known["left_out"][:1]}
+        return f"Fit of {known['model']} to whole pulses of {len(known['records'])} records", rows
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class DesignResult(Result):
+    """Suggested measurements: a table of candidates, best first.
+
+    Attributes
+    ----------
+    parameters, parameter_units : list of str
+        The parameters to tighten, and their SI units.
+    ranked : list of dict
+        One measurement more, best first: ``measure``, ``standard_errors``,
+        ``information_nats``.
+    series : list of dict
+        A series, each the best after those before it.
+    details : dict
+        All of ``design.json``: whether the model follows the data, standard errors now, what is
+        not identifiable, which contact each free K or A stands for.
+    assumed_model : str or None
+        The default model that was assumed, where none was named.
+    """
+
+    _index = "measure"
+
+    parameters: list[str]
+    parameter_units: list[str]
+    ranked: list[dict[str, Any]]
+    series: list[dict[str, Any]]
+    details: dict[str, Any]
+    assumed_model: str | None = None
+
+    def _columns(self) -> dict[str, list[Any]]:
+        errors = {name: [number(one["standard_errors"][at]) for one in self.ranked] for at, name in enumerate(self.parameters)}
+        return {"measure": [one["measure"] for one in self.ranked], **errors, "information_nats": [one["information_nats"] for one in self.ranked]}
+
+    def _units(self) -> dict[str, str]:
+        return {**dict(zip(self.parameters, self.parameter_units, strict=True)), "information_nats": "nat"}
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
+        for key, title in NOT_IDENTIFIABLE.items():
+            rows |= {f"{title}, {at}": text for at, text in enumerate(self.details.get(key, ()), 1)}
+        return f"Design for {', '.join(self.parameters)}: measure next", rows
+
+
+NOT_IDENTIFIABLE = {"undetermined": "not determined", "hopeless": "not identifiable", "not_identifiable": "not identifiable"}
+"""Keys of ``design.json`` about null spaces: of the data so far, and of all candidates."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class GaugeResult(Result):
+    """Distances of the known oils from the contacts' K and A: a table of oils, nearest first.
+
+    Attributes
+    ----------
+    verdict : str
+        In a sentence; it can be "none of these".
+    oils : list of dict
+        Known oils, nearest first: distance in standard errors, probability, whether possible.
+    contacts : list of dict
+        Stiffness K in N/m^1.5 and relaxation time A in s, speed by speed; xarray gets these.
+    dry : list of dict
+        Fitted parameters of the dry contacts.
+    details : dict
+        All of ``gauge.json``.
+    """
+
+    verdict: str
+    oils: list[dict[str, Any]]
+    contacts: list[dict[str, Any]]
+    dry: list[dict[str, Any]]
+    details: dict[str, Any]
+
+    def _columns(self) -> dict[str, list[Any]]:
+        names = ("name", "distance", "possible", "probability", "chi_square", "freedom")
+        return {name: [oil[name] for oil in self.oils] for name in names}
+
+    def _units(self) -> dict[str, str]:
+        return {"distance": "standard error", **dict.fromkeys(("stiffness", "stiffness_error"), "N/m^1.5")}
+
+    def _variables(self) -> dict[str, Variable]:
+        found = [row for row in self.contacts if "missing" not in row]
+
+        def column(of: str, part: str) -> Variable:
+            return ("speed_m_s",), [number((row.get(of) or {}).get(part)) for row in found]
+
+        return {
+            "speed_m_s": (("speed_m_s",), [row["speed_m_s"] for row in found]),
+            "stiffness": column("stiffness", "value"),
+            "stiffness_error": column("stiffness", "standard_error"),
+            "relaxation_time_s": column("relaxation_time_s", "value"),
+            "relaxation_time_error_s": column("relaxation_time_s", "standard_error"),
+        }
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return ("speed_m_s",)
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {oil["name"]: f"{short(oil['distance'], 3)} standard errors away, {'possible' if oil['possible'] else 'rejected'}" for oil in self.oils}
+        if flags := self.details.get("doubts"):
+            rows["warning"] = flags
+        return self.verdict, rows
+
+
+@dataclass(frozen=True)
+class Row:
+    """A name, its value and unit.
+
+    Attributes
+    ----------
+    name : str
+        What it is.
+    value : float, int, str, bool, list or dict
+        In SI; ranges are pairs, things with parts dicts whose keys name their units.
+    unit : str
+        SI unit; empty for texts and plain numbers.
+    """
+
+    name: str
+    value: Any
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{_readable(self.value)} {self.unit}".strip()
+
+
+def _readable(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.7g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_readable(part)}" for name, part in value.items())
+    if isinstance(value, (list, tuple)):
+        return " to ".join(map(_readable, value))
+    return str(value)
+
+
+class _Rows(Result):
+    def _groups(self) -> tuple[Group, ...]:
+        raise NotImplementedError
+
+    def _columns(self) -> dict[str, list[Any]]:
+        rows = [(group.title, row) for group in self._groups() for row in group.rows]
+        columns = {of: [getattr(row, of) for _, row in rows] for of in ("name", "value", "unit")}
+        return {"group": [title for title, _ in rows], **columns}
+
+    def _units(self) -> dict[str, str]:
+        return {"value": "as in the column unit"}
+
+
+@dataclass(frozen=True, repr=False)
+class Group(_Rows):
+    """Rows that belong together; ``group[name]`` is one of them.
+
+    Attributes
+    ----------
+    title : str
+        What they are about.
+    rows : tuple of Row
+        In SI.
+    """
+
+    title: str
+    rows: tuple[Row, ...]
+
+    def __getitem__(self, name: str) -> Row:
+        return {row.name: row for row in self.rows}[name]
+
+    def _groups(self) -> tuple[Group, ...]:
+        return (self,)
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        return self.title, {row.name: str(row) for row in self.rows}
+
+
+@dataclass(frozen=True, repr=False)
+class Description(_Rows):
+    """An experiment, or its theory, in groups of numbers; ``found[title]`` is a group.
+
+    Attributes
+    ----------
+    groups : tuple of Group
+        In SI.
+    warnings : tuple of Finding
+        Warnings about the experiment.
+    """
+
+    groups: tuple[Group, ...]
+    warnings: tuple[Finding, ...] = ()
+
+    def __getitem__(self, title: str) -> Group:
+        return {group.title: group for group in self.groups}[title]
+
+    def __iter__(self) -> Iterator[Group]:
+        return iter(self.groups)
+
+    def _groups(self) -> tuple[Group, ...]:
+        return self.groups
+
+    def __repr__(self) -> str:
+        return "\n\n".join(map(repr, self.groups))
+
+
+@dataclass(frozen=True, repr=False)
+class LawInfo(Result):
+    """A contact law: a table of its parameters.
+
+    Attributes
+    ----------
+    name, equation : str
+        As experiment files name it, and its force in plain text.
+    nature : str
+        Elastic, dissipative or elastic–plastic.
+    gated : bool
+        Whether it acts on closed contacts alone.
+    validity : str
+        Its range of validity.
+    reference : str
+        Its key in references.bib.
+    source : dict or None
+        The reference: authors, title, journal, volume, pages, year.
+    parameters : list of dict
+        Name, meaning, SI unit, least value, default, whether it is required.
+    """
+
+    _index = "name"
+
+    name: str
+    equation: str
+    nature: str
+    gated: bool
+    validity: str
+    reference: str
+    source: dict[str, Any] | None
+    parameters: list[dict[str, Any]]
+
+    def _columns(self) -> dict[str, list[Any]]:
+        names = ("name", "meaning", "unit", "default", "least", "required")
+        return {name: [parameter.get(name) for parameter in self.parameters] for name in names}
+
+    def _units(self) -> dict[str, str]:
+        return dict.fromkeys(("default", "least"), "as in the column unit")
+
+    def _summary(self) -> tuple[str, dict[str, str]]:
+        rows = {"equation": self.equation, "kind": self.nature, "validity": self.validity, "source": f"[{self.reference}]"}
+        return self.name, rows | {one["name"]: f"{one['meaning']} [{one['unit']}]" for one in self.parameters}

@@ -1,0 +1,695 @@
+"""Figures of publication quality with matplotlib; each function returns axes.
+
+``pip install hertzchain[plot]``. Functions draw into axes they are given, or into
+a new figure in the style of this package, `STYLE`, which is there for other figures, too::
+
+    with hertzchain.plot.style():
+        ...
+"""
+
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import wraps
+from inspect import signature
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from numpy.typing import NDArray
+
+from .errors import ExperimentWarning
+from .experiment import preset
+from .results import Case, FitResult, Floats, PowerLaw, Shot, Sweep, Trace
+from .simulation import shot as simulate
+from .simulation import sweep
+
+__all__ = [
+    "STYLE",
+    "corner",
+    "figure2",
+    "figure3",
+    "figure4",
+    "fit",
+    "ratios",
+    "signals",
+    "space_time",
+    "style",
+    "times_of_flight",
+]
+
+Given = ParamSpec("Given")
+Drawn = TypeVar("Drawn")
+
+STYLE = str(Path(__file__).with_name("hertzchain.mplstyle"))
+"""Path of the style sheet."""
+
+MICRO = 1e6
+COLUMN = 3.35
+MARKERS = ("o", "s", "^", "D", "v")
+OILS = {"pump": "^", "gear": "s", "motor": "o"}
+
+
+def style() -> AbstractContextManager[None]:
+    """The package's style within a ``with`` block.
+
+    Returns
+    -------
+    context manager
+        Gives matplotlib's settings back in the end.
+
+    References
+    ----------
+    The style sheet at `STYLE`: columns of 85 mm, as journals of physics have.
+    """
+    # A backend that is loaded within the context loses with it what it has set: Jupyter's the
+    # interactive mode, without which no later figure is shown. This loads it and draws nothing new.
+    plt.draw_if_interactive()
+    return plt.style.context(STYLE)
+
+
+def styled(draw: Callable[Given, Drawn]) -> Callable[Given, Drawn]:
+    """In the package's style, unless it draws into given axes."""
+
+    @wraps(draw)
+    def within(*args: Given.args, **kwargs: Given.kwargs) -> Drawn:
+        given = signature(draw).bind(*args, **kwargs).arguments
+        own = given.get("ax") is None and given.get("axes") is None
+        with style() if own else nullcontext():
+            return draw(*args, **kwargs)
+
+    return within
+
+
+def on_axes(ax: Axes | None, height: float = 2.5) -> Axes:
+    """The axes that are given, or a new figure's."""
+    return plt.subplots(figsize=(COLUMN, height))[1] if ax is None else ax
+
+
+def time_scale(dimensionless: bool) -> tuple[float, str]:
+    """What times are multiplied by, and the unit behind their name."""
+    return (1.0, "") if dimensionless else (MICRO, " (µs)")
+
+
+def colour_of(at: int) -> str:
+    """One of the style's colours: named "C0" it would be whichever is the first when the figure is saved."""
+    return to_hex(f"C{at % 7}")
+
+
+@styled
+def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes | None = None) -> Axes:
+    """Signals of sensors against time.
+
+    Parameters
+    ----------
+    shot : Shot or Trace
+        With sampled sensors: ``hertzchain.shot(..., trace=True)``.
+    sensors : sequence of str, optional
+        Which; all forces when absent.
+    ax : Axes, optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    Axes
+        Times in µs; forces in N, velocities in m/s or displacements in m.
+
+    Raises
+    ------
+    ValueError
+        A shot without a trace.
+    KeyError
+        A sensor that was not sampled.
+
+    References
+    ----------
+    The paper's Fig. 2: [Labbe2017].
+    """
+    trace = _trace(shot)
+    shown = list(sensors or [name for name in trace.signals if trace.unit(name) in ("N", "1")])
+    ax = on_axes(ax)
+    scale, unit = time_scale(trace.dimensionless)
+    for name in shown:
+        ax.plot(scale * trace.time_s, trace[name], label=_label(name))
+    ax.set_xlabel(f"Time{unit}")
+    of = trace.unit(shown[0]) if shown else "N"
+    ax.set_ylabel("Signal" if of == "1" else f"{ {'N': 'Force', 'm/s': 'Velocity', 'm': 'Displacement'}[of] } ({of})")
+    ax.margins(x=0)
+    if len(shown) > 1:
+        ax.legend()
+    return ax
+
+
+def _trace(shot: Shot | Trace) -> Trace:
+    trace = shot.trace if isinstance(shot, Shot) else shot
+    if trace is None:
+        raise ValueError("the shot has no trace: compute it with hertzchain.shot(..., trace=True)")
+    return trace
+
+
+def _label(sensor: str) -> str:
+    kind, number = sensor.rsplit("_", 1)
+    return f"bead {number} plus wall" if kind == "bead_plus_wall" else f"{kind} {number}"
+
+
+@styled
+def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None) -> Axes:
+    """Space–time map: a signal of every contact or body over time.
+
+    Parameters
+    ----------
+    shot : Shot or Trace
+        With several sensors of the kind: ``trace=[f"contact_{i}" for i in range(41)]``.
+    kind : {"contact", "velocity", "position", "bead"}
+        Which signals.
+    ax : Axes, optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    Axes
+        Times in µs; contacts or bodies upward; the signal as colour.
+
+    Raises
+    ------
+    ValueError
+        A shot without a trace, or with fewer than two such sensors.
+
+    References
+    ----------
+    Maps of pulses in space and time: [Nesterenko2001].
+    """
+    trace = _trace(shot)
+    numbers, values = trace.stacked(kind)
+    if numbers.size < 2:
+        raise ValueError(f"a map needs several sensors of kind {kind!r}; the trace has {numbers.size}")
+    ax = on_axes(ax, 2.7)
+    scale, unit = time_scale(trace.dimensionless)
+    signed = bool(values.min() < -0.05 * values.max())
+    most = float(np.abs(values).max())
+    mesh = ax.pcolormesh(
+        scale * trace.time_s,
+        numbers,
+        values,
+        shading="nearest",
+        rasterized=True,
+        cmap="RdBu_r" if signed else None,
+        vmin=-most if signed else 0.0,
+        vmax=most,
+    )
+    ax.grid(False)
+    ax.set_xlabel(f"Time{unit}")
+    ax.set_ylabel("Contact" if kind == "contact" else "Bead")
+    of = trace.unit(f"{kind}_0")
+    name = {"contact": "Force", "bead": "Force", "velocity": "Velocity", "position": "Displacement"}[kind]
+    figure = ax.get_figure()
+    if figure is not None:
+        figure.colorbar(mesh, ax=ax, label=name if of == "1" else f"{name} ({of})", pad=0.02)
+    return ax
+
+
+Curve = Sweep | Case
+"""A computed curve, or a measured one."""
+
+
+def columns_of(curve: Curve) -> Mapping[str, Floats]:
+    return curve.columns | {"speed_m_s": curve.speed_m_s} if isinstance(curve, Sweep) else curve.columns
+
+
+def _points(ax: Axes, curve: Curve, column: str, factor: float, **look: Any) -> None:
+    """A line of computed numbers, or measured ones with their errors."""
+    columns = columns_of(curve)
+    speeds, values = columns["speed_m_s"], factor * columns[column]
+    if isinstance(curve, Sweep):
+        look.pop("marker", None)
+        ax.plot(speeds, values, **look)
+        return
+    look.pop("linestyle", None)
+    ax.errorbar(
+        speeds, values, factor * columns[f"{column}_error"], columns["speed_error_m_s"], linestyle="none", elinewidth=0.6, **look
+    )
+
+
+@styled
+def times_of_flight(
+    curves: Curve | Mapping[str, Curve], laws: bool = False, logarithmic: bool = True, ax: Axes | None = None
+) -> Axes:
+    """Incident and reflected times of flight against speed.
+
+    Parameters
+    ----------
+    curves : Sweep, Case, or mapping of str to these
+        Computed curves are lines, measured ones points with error bars. The
+        reflected times have dashes, or hollow points.
+    laws : bool
+        Draw the power laws beside them.
+    logarithmic : bool
+        Both axes logarithmic.
+    ax : Axes, optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    Axes
+        Speeds in m/s, times in µs.
+
+    Raises
+    ------
+    KeyError
+        A curve without such a column.
+
+    References
+    ----------
+    The paper's Fig. 3: [Labbe2017].
+    """
+    ax = on_axes(ax)
+    named = curves if isinstance(curves, Mapping) else {"": curves}
+    dimensionless = all(isinstance(curve, Sweep) and curve.dimensionless for curve in named.values())
+    scale, unit = time_scale(dimensionless)
+    for at, (name, curve) in enumerate(named.items()):
+        colour = colour_of(at)
+        ends = [("incident", "tof_incident_s", "-", colour), ("reflected", "tof_reflected_s", "--", "none")]
+        for end, column, dashes, face in ends:
+            label = f"{name} {end}".strip()
+            _points(ax, curve, column, scale, color=colour, linestyle=dashes, marker=MARKERS[at % 5], markerfacecolor=face, label=label)
+            law: PowerLaw | None = getattr(curve, f"power_law_{end}")
+            if laws and law is not None:
+                speeds = np.geomspace(*_ends(columns_of(curve)["speed_m_s"]), 50)
+                ax.plot(speeds, scale * law(speeds), color="0.6", linewidth=0.7, zorder=1)
+    ax.set_xlabel("Speed of the striker" if dimensionless else "Speed of the striker (m/s)")
+    ax.set_ylabel(f"Time of flight{unit}")
+    if logarithmic:
+        _log_axes(ax)
+    ax.legend()
+    return ax
+
+
+def _ends(values: Floats) -> tuple[float, float]:
+    return float(np.min(values)), float(np.max(values))
+
+
+def _log_axes(ax: Axes) -> None:
+    """Logarithmic axes with plain numbers."""
+    ax.set(xscale="log", yscale="log")
+    for axis in (ax.xaxis, ax.yaxis):
+        formatter = ScalarFormatter()
+        formatter.set_scientific(False)
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0, 7.0)))
+        axis.set_major_formatter(formatter)
+        axis.set_minor_formatter(NullFormatter())
+
+
+CONTINUED = np.log(1.02)
+"""How far a curve is continued beyond its ends, in ln(speed)."""
+
+
+def _continued(at: Floats, x: Floats, y: Floats) -> Floats:
+    """A curve between its points and, along its last chords, a little beyond; infinite farther out."""
+    found = np.interp(at, x, y)
+    for end, inner, outside in ((0, 1, x[0] - at), (-1, -2, at - x[-1])):
+        slope = (y[end] - y[inner]) / (x[end] - x[inner]) if x.size > 1 else 0.0
+        found = np.where(outside > 0.0, y[end] + slope * (at - x[end]), found)
+        found = np.where(outside > CONTINUED, np.inf, found)
+    return found
+
+
+@styled
+def ratios(
+    wet: Mapping[str, Curve], dry: Curve, end: str = "incident", markers: Mapping[str, str] | None = None, ax: Axes | None = None
+) -> Axes:
+    """Times of flight of wet chains over those of the dry one, against speed.
+
+    Parameters
+    ----------
+    wet : mapping of str to Sweep or Case
+        By name of the oil.
+    dry : Sweep or Case
+        Over the same speeds: it is interpolated in logarithms, and continued by 2 % of a speed.
+        Ratios beyond are not drawn.
+    end : {"incident", "reflected"}
+        Whose times of flight.
+    markers : mapping of str to str, optional
+        By name of the oil.
+    ax : Axes, optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    Axes
+        Speeds in m/s, ratios without a unit, errors of measured ones.
+
+    Raises
+    ------
+    KeyError
+        A curve without such a column.
+
+    Warns
+    -----
+    ExperimentWarning
+        Ratios that are not drawn.
+
+    References
+    ----------
+    The paper's Fig. 4: [Labbe2017].
+    """
+    ax = on_axes(ax)
+    column = f"tof_{end}_s"
+    reference = columns_of(dry)
+    order = np.argsort(reference["speed_m_s"])
+    known = np.log(reference["speed_m_s"][order]), np.log(reference[column][order])
+    for at, (name, curve) in enumerate(wet.items()):
+        columns = columns_of(curve)
+        speeds = columns["speed_m_s"]
+        times = _continued(np.log(speeds), *known)
+        if beyond := int(np.isinf(times).sum()):
+            text = f"{beyond} of {speeds.size} ratios of {name} are not drawn: the dry curve has no times of flight at their speeds"
+            warnings.warn(text, ExperimentWarning, stacklevel=3)
+        ratio = columns[column] / np.exp(np.where(np.isinf(times), np.nan, times))
+        marker = (markers or {}).get(name, MARKERS[at % 5])
+        ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
+    ax.axhline(1.0, color="0.3", linewidth=0.6)
+    ax.set_xlabel("Speed of the striker (m/s)")
+    ax.set_ylabel(f"{end.capitalize()} ToF, wet / dry")
+    ax.legend()
+    return ax
+
+
+BAND = 1.96
+"""Standard errors to either side of a band: 95 %."""
+
+
+@styled
+def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
+    """Data with the fitted curve and its 95 % band; residuals in standard errors below.
+
+    Of a fit of whole pulses, the first recording's.
+
+    Parameters
+    ----------
+    fitted : FitResult
+        By `hertzchain.fit`.
+    axes : sequence of Axes, optional
+        Two, to draw into; a new figure's when absent.
+
+    Returns
+    -------
+    ndarray of Axes, shape (2,)
+        Speeds in m/s against times in µs, or times in µs against V; residuals below.
+
+    Raises
+    ------
+    ValueError
+        Axes that are not two.
+
+    References
+    ----------
+    Bands by the covariance: docs/explanation/inference.md.
+    """
+    if axes is None:
+        sizes = {"height_ratios": (2.2, 1)}
+        axes = plt.subplots(2, 1, figsize=(COLUMN, 3.6), sharex=True, gridspec_kw=sizes)[1]
+    upper, lower = made = np.asarray(axes).ravel()
+    upper.xaxis.set_tick_params(which="both", labelbottom=False)
+    lower.axhline(0.0, color="0.3", linewidth=0.6)
+    lower.set_ylabel("Residual (σ)")
+    if "source" in fitted.rows:
+        _fitted_pulses(upper, lower, fitted)
+        return made
+    for at, observable in enumerate(dict.fromkeys(fitted.rows["observable"].tolist())):
+        _fitted_curve(upper, lower, fitted, str(observable), at)
+    is_time = all(str(name).startswith("tof") for name in fitted.rows["observable"])
+    upper.set_ylabel("Time of flight (µs)" if is_time else "Observable")
+    upper.legend()
+    lower.set_xlabel("Speed of the striker (m/s)")
+    lower.set_xscale("log")
+    lower.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    lower.xaxis.set_major_formatter(ScalarFormatter())
+    lower.xaxis.set_minor_formatter(NullFormatter())
+    return made
+
+
+def _fitted_curve(upper: Axes, lower: Axes, fitted: FitResult, observable: str, at: int) -> None:
+    own = fitted.rows["observable"] == observable
+    rows = {name: values[own] for name, values in fitted.rows.items()}
+    order = np.argsort(rows["speed_m_s"])
+    rows = {name: values[order] for name, values in rows.items()}
+    scale = MICRO if observable.startswith("tof") else 1.0
+    colour, speeds = colour_of(at), rows["speed_m_s"]
+    curve, spread = scale * rows["fitted"], scale * BAND * rows["fitted_error"]
+    name = observable.removeprefix("tof_").removesuffix("_s").replace("_", " ")
+    upper.fill_between(speeds, curve - spread, curve + spread, color=colour, alpha=0.2, linewidth=0)
+    upper.plot(speeds, curve, color=colour)
+    upper.errorbar(speeds, scale * rows["measured"], scale * rows["error"], rows["speed_error_m_s"], color=colour, linestyle="none", marker=MARKERS[at % 5], elinewidth=0.6, label=name)
+    lower.plot(speeds, rows["residual"], color=colour, linestyle="none", marker=MARKERS[at % 5])
+
+
+def _fitted_pulses(upper: Axes, lower: Axes, fitted: FitResult) -> None:
+    own = fitted.rows["source"] == fitted.rows["source"][0]
+    rows = {name: values[own] for name, values in fitted.rows.items()}
+    for at, channel in enumerate(np.unique(rows["channel"])):
+        here = rows["channel"] == channel
+        time, measured, fit = (rows[name][here] for name in ("time_s", "measured_v", "fitted_v"))
+        upper.plot(MICRO * time, measured, color=colour_of(at), linestyle="none", marker=".", markersize=2, label="recorded")
+        upper.plot(MICRO * time, fit, color="0.2", linewidth=0.8, label="fitted")
+        lower.plot(MICRO * time, (measured - fit) / rows["error_v"][here], color=colour_of(at), linestyle="none", marker=".", markersize=2)
+    upper.set_ylabel("Signal (V)")
+    upper.legend()
+    upper.margins(x=0)
+    lower.set_xlabel("Time after the incident maximum (µs)")
+
+
+@styled
+def corner(fitted: FitResult, bins: int = 40, axes: NDArray[Any] | None = None) -> NDArray[Any]:
+    """The posterior of each parameter and pair, with the best fit and the covariance's ellipses.
+
+    Parameters
+    ----------
+    fitted : FitResult
+        With ``method="posterior"``; without samples the covariance is all that is drawn.
+    bins : int
+        Of each histogram.
+    axes : ndarray of Axes, shape (parameters, parameters), optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    ndarray of Axes, shape (parameters, parameters)
+        In SI units of the parameters; the upper triangle is switched off.
+
+    Raises
+    ------
+    ValueError
+        Axes of another shape.
+
+    References
+    ----------
+    Samples by [GoodmanWeare2010]: docs/explanation/inference.md.
+    """
+    names = list(fitted.parameters)
+    count = len(names)
+    if axes is None:
+        side = max(COLUMN, 1.5 * count)
+        axes = plt.subplots(count, count, figsize=(side, side), squeeze=False)[1]
+    made = np.asarray(axes).reshape(count, count)
+    for row in range(count):
+        for column in range(count):
+            ax = made[row, column]
+            if column > row:
+                ax.axis("off")
+            elif column == row:
+                _marginal(ax, fitted, row, bins)
+            else:
+                _pair(ax, fitted, (column, row), bins)
+            _corner_labels(ax, fitted, (row, column), count)
+    return made
+
+
+def _range(fitted: FitResult, at: int) -> tuple[float, float]:
+    """What is shown of a parameter: four standard errors, or where its samples are."""
+    best = list(fitted.parameters.values())[at].value
+    spread = float(np.sqrt(fitted.covariance[at, at]))
+    if fitted.samples is None:
+        return best - 4 * spread, best + 4 * spread
+    low, high = np.quantile(fitted.samples[:, at], (0.001, 0.999))
+    return float(low), float(high)
+
+
+def _marginal(ax: Axes, fitted: FitResult, at: int, bins: int) -> None:
+    low, high = _range(fitted, at)
+    best = list(fitted.parameters.values())[at].value
+    spread = float(np.sqrt(fitted.covariance[at, at]))
+    grid = np.linspace(low, high, 200)
+    normal = np.exp(-0.5 * ((grid - best) / spread) ** 2) / (spread * np.sqrt(2 * np.pi))
+    if fitted.samples is not None:
+        ax.hist(fitted.samples[:, at], bins, range=(low, high), density=True, color=colour_of(0), alpha=0.35)
+    ax.plot(grid, normal, color=colour_of(1), linewidth=0.8)
+    ax.axvline(best, color="0.3", linewidth=0.6)
+    ax.set(xlim=(low, high), yticks=[])
+    ax.grid(False)
+
+
+def _pair(ax: Axes, fitted: FitResult, pair: tuple[int, int], bins: int) -> None:
+    ranges = [_range(fitted, at) for at in pair]
+    centre = [list(fitted.parameters.values())[at].value for at in pair]
+    if fitted.samples is not None:
+        cells, x, y = np.histogram2d(fitted.samples[:, pair[0]], fitted.samples[:, pair[1]], bins=bins, range=ranges)
+        ax.pcolormesh(x, y, cells.T, cmap="Blues", rasterized=True)
+    part = fitted.covariance[np.ix_(pair, pair)]
+    values, vectors = np.linalg.eigh(part)
+    angle = np.linspace(0, 2 * np.pi, 200)
+    circle = np.array([np.cos(angle), np.sin(angle)])
+    # Radii that hold 68 % and 95 % of a normal distribution of two numbers.
+    for radius in (1.515, 2.448):
+        edge = vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * circle) * radius
+        ax.plot(centre[0] + edge[0], centre[1] + edge[1], color=colour_of(1), linewidth=0.8)
+    ax.plot(*centre, marker="+", color="0.2")
+    ax.set(xlim=ranges[0], ylim=ranges[1])
+    ax.grid(False)
+
+
+def _corner_labels(ax: Axes, fitted: FitResult, place: tuple[int, int], count: int) -> None:
+    row, column = place
+    parameters = list(fitted.parameters.values())
+
+    def label(at: int) -> str:
+        unit = parameters[at].unit.replace("^2", "²").replace("^3", "³")
+        return f"{parameters[at].name}\n({unit})" if unit else parameters[at].name
+
+    if row == count - 1:
+        ax.set_xlabel(label(column))
+    else:
+        ax.tick_params(labelbottom=False)
+    if column == 0 and row > 0:
+        ax.set_ylabel(label(row))
+    elif column < row:
+        ax.tick_params(labelleft=False)
+    ax.locator_params(axis="x", nbins=3)
+    if column < row:
+        ax.locator_params(axis="y", nbins=3)
+    ax.ticklabel_format(style="sci", scilimits=(-2, 3), useMathText=True)
+
+
+FIGURE_2 = {"dry": 0.1368, "pump": 1.1520, "gear": 0.1396, "motor": 0.3993}
+"""Chains and speeds in m/s of the paper's Fig. 2."""
+
+
+@styled
+def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
+    """The paper's Fig. 2, as its model gives it: one channel that adds sensor bead and wall.
+
+    Dry, and with pump, gear and motor oil, at the paper's speeds.
+
+    Parameters
+    ----------
+    axes : sequence of Axes, optional
+        Four, to draw into; a new figure's when absent.
+
+    Returns
+    -------
+    ndarray of Axes, shape (4,)
+        Times in µs, forces in N.
+
+    References
+    ----------
+    Fig. 2 of [Labbe2017].
+    """
+    if axes is None:
+        axes = plt.subplots(2, 2, figsize=(2 * COLUMN, 4.2))[1].ravel()
+    made = np.asarray(axes).ravel()
+    for ax, letter, (name, speed) in zip(made, "abcd", FIGURE_2.items(), strict=True):
+        chain = preset(name)
+        channel = f"bead_plus_wall_{chain.sensor_bead}"
+        found = simulate(chain, speed, trace=[channel], interval_s=1e-6)
+        signals(found, ax=ax)
+        if (reflected := found.passage.get("reflected")) is not None:
+            # What comes later, until the striker is away for good, is no part of the figure.
+            ax.set_xlim(0.0, 1.6 * MICRO * reflected["time_s"])
+        ax.set_title(f"({letter}) {name}, {speed:.4f} m/s", loc="left")
+    return made
+
+
+def _paper_speeds(count: int) -> Floats:
+    """Speeds of the paper's range in m/s, in equal ratios."""
+    return np.geomspace(0.075, 1.23, count)
+
+
+@styled
+def figure3(speeds: Floats | None = None, ax: Axes | None = None) -> Axes:
+    """The paper's Fig. 3: dry times of flight with the full model and without the cubic term.
+
+    Incident below, reflected above; the same in logarithms as an inset.
+
+    Parameters
+    ----------
+    speeds : ndarray of shape (speeds,), optional
+        In m/s; the paper's range when absent.
+    ax : Axes, optional
+        To draw into; a new figure's when absent.
+
+    Returns
+    -------
+    Axes
+        Speeds in m/s, times in µs.
+
+    Raises
+    ------
+    OptionError
+        Speeds that no shot can have.
+
+    References
+    ----------
+    Fig. 3 of [Labbe2017].
+    """
+    speeds = _paper_speeds(40) if speeds is None else speeds
+    curves = {"full model": sweep(preset("dry"), speeds), "without cubic term": sweep(preset("hertz-viscoelastic"), speeds)}
+    ax = times_of_flight(curves, logarithmic=False, ax=on_axes(ax, 2.9))
+    ax.get_legend().remove()  # type: ignore[union-attr]
+    inset = times_of_flight(curves, ax=ax.inset_axes((0.46, 0.47, 0.53, 0.51)))
+    handles, labels = inset.get_legend_handles_labels()
+    inset.get_legend().remove()  # type: ignore[union-attr]
+    inset.set(xlabel="", ylabel="")
+    inset.tick_params(labelsize=6)
+    inset.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    inset.xaxis.set_major_formatter("{x:g}")
+    ax.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
+    return ax
+
+
+@styled
+def figure4(speeds: Floats | None = None, ax: Axes | None = None) -> Axes:
+    """The paper's Fig. 4: incident times of flight of wet chains over the dry ones, by the model.
+
+    Parameters
+    ----------
+    speeds, ax
+        As for `figure3`.
+
+    Returns
+    -------
+    Axes
+        Speeds in m/s, ratios without a unit.
+
+    Raises
+    ------
+    OptionError
+        Speeds that no shot can have.
+
+    References
+    ----------
+    Fig. 4 of [Labbe2017].
+    """
+    speeds = _paper_speeds(16) if speeds is None else speeds
+    wet = {name: sweep(preset(name), speeds) for name in OILS}
+    ax = ratios(wet, sweep(preset("dry"), speeds), markers=OILS, ax=ax)
+    ax.set_xscale("log")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(ScalarFormatter())
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    return ax

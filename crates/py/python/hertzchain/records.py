@@ -1,0 +1,179 @@
+"""Records: made on a virtual rig, and measured."""
+
+from __future__ import annotations
+
+import os
+import warnings as _warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
+from threading import Thread
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _hertzchain as _native
+from . import _options as options
+from ._hertzchain import Experiment
+from .errors import ExperimentWarning, OptionError
+from .results import CampaignResult, Case, MeasureResult, number, power_law
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+__all__ = ["campaign", "measure"]
+
+
+def campaign(
+    experiment: Experiment,
+    out: options.Path_,
+    *,
+    shard: str = "1/1",
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: object = None,
+) -> CampaignResult:
+    """Runs a campaign on a virtual rig: taps and shots, recorded as by a real one.
+
+    Files are the same bytes whatever the number of threads; an interrupted run resumes.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        With a ``[campaign]``, such as ``hertzchain.preset("paper")``.
+    out : path
+        Folder to write recordings into.
+    shard : str
+        Only the i-th of n parts, as ``"i/n"``: every n-th series.
+    seed : int, optional
+        In place of the experiment's.
+    threads, progress
+        As for `sweep`; progress counts shots.
+
+    Returns
+    -------
+    CampaignResult
+        Where recordings are and how many; series that can't be computed are listed in it.
+
+    Raises
+    ------
+    OptionError, ExperimentError
+        An experiment that no rig can do, a folder with something else in it.
+    InternalError
+        A recording that can't be written.
+
+    Warns
+    -----
+    ExperimentWarning
+        A record that ends before the wave is back, a rate of few samples a pulse.
+
+    References
+    ----------
+    The rig and its runs: docs/explanation/rig.md, after [Labbe2017].
+    """
+    with options.progress(progress, None, "shot") as update:
+        done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)
+    for text in done.pop("warnings"):
+        _warnings.warn(text, ExperimentWarning, stacklevel=2)
+    return CampaignResult(folder=Path(out), **done)
+
+
+@options.with_options("measure", options.MeasureOptions)
+def measure(
+    records: options.Path_ | Iterable[options.Path_] | NDArray[Any],
+    *,
+    threads: int | None = None,
+    progress: object = None,
+    **how: Unpack[options.MeasureOptions],
+) -> MeasureResult:
+    """Measures times of flight on recordings of any rig, with errors and curves.
+
+    Parameters
+    ----------
+    records : path, iterable of paths, or ndarray
+        Files (HDF5 of a campaign, text, NPY, NPZ, WAV, TDMS) or folders of them;
+        or volts as an array of shape (samples,) or (shots, samples), with ``rate``;
+        ``rows`` states what else rows of an array are.
+    threads, progress
+        As for `sweep`; progress counts records.
+    **options
+
+    Returns
+    -------
+    MeasureResult
+        Times in s with standard errors, peaks in V, bit for bit those of ``hertzchain measure
+        --json``. Bad records are listed in it one by one, the rest is measured. `fit` takes it as data.
+
+    Raises
+    ------
+    OptionError
+        Options that do not go together, a folder without recordings.
+
+    References
+    ----------
+    How pulses are timed, with which errors: docs/explanation/picking.md.
+    """
+    if isinstance(records, np.ndarray) and records.ndim == 2 and how.get("rows") is None:
+        # The shape of an array of many short shots would mislead.
+        how["rows"] = "shots"
+    words = options.words("measure", options.MeasureOptions, how)
+    with _folder() as folder, options.progress(progress, None, "record") as update:
+        files = _files(records, folder)
+        found = _native.measure([*words, "--", *files], options.count("threads", threads), update)
+    cases = {case.name: case for case in map(_case, found.pop("cases"))}
+    own = {name: found.pop(name) for name in ("shots", "tables", "refused", "verdict")}
+    return MeasureResult(cases=cases, details=found, **own)
+
+
+@contextmanager
+def _folder() -> Iterator[Path]:
+    """A folder for arrays, removed in the background: of a gigabyte that takes a tenth of a second."""
+    folder = mkdtemp(prefix="hertzchain-")
+    try:
+        yield Path(folder)
+    finally:
+        Thread(target=rmtree, args=(folder, True)).start()
+
+
+def _files(records: options.Path_ | Iterable[options.Path_] | NDArray[Any], folder: Path) -> list[str]:
+    if isinstance(records, np.ndarray):
+        if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
+            raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
+        return [_saved(records, folder / "array.npy")]
+    if isinstance(records, (str, os.PathLike)):
+        return [os.fspath(records)]
+    return [os.fspath(record) for record in records]
+
+
+PIECE = 1 << 20
+"""Samples written at once: Ctrl-C works between two pieces."""
+
+
+def _saved(records: NDArray[Any], path: Path) -> str:
+    """Writes an array of any layout as a file of NumPy."""
+    header = {"descr": np.lib.format.dtype_to_descr(records.dtype), "fortran_order": False, "shape": records.shape}
+    table = records.reshape(1, -1) if records.ndim == 1 else records
+    rows, columns = table.shape
+    together = max(1, PIECE // columns)
+    with open(path, "wb") as file:
+        np.lib.format.write_array_header_1_0(file, header)
+        for first in range(0, rows, together):
+            for left in range(0, columns, PIECE):
+                file.write(table[first : first + together, left : left + PIECE].tobytes())
+    return str(path)
+
+
+def _case(raw: Mapping[str, Any]) -> Case:
+    """A curve of the program's JSON: values with their standard errors as columns."""
+    columns: dict[str, list[float]] = {}
+    for row in raw["speeds"]:
+        found = {"speed_m_s": row["speed_m_s"]["value"], "speed_error_m_s": row["speed_m_s"]["sigma"], "shots": row["shots"]}
+        for name in ("tof_incident_s", "tof_reflected_s", "wall_over_passing", "returning_over_passing"):
+            found |= {name: (row[name] or {}).get("mean"), f"{name}_error": (row[name] or {}).get("error")}
+        for name, value in (found | {"tof_correlation": row["tof_correlation"]}).items():
+            columns.setdefault(name, []).append(number(value))
+    laws = (power_law(raw[f"power_law_{end}"]) for end in ("incident", "reflected"))
+    return Case(raw["case"], {name: np.array(values, dtype=float) for name, values in columns.items()}, *laws)
