@@ -154,8 +154,8 @@ def design(
     words = [*options.words("design", options.DesignOptions, how), *_free(free), "--", name]
     with options.progress(progress, None, "curve") as update:
         found = _native.design((name, text), modelled(model), words, update)
-    own = (found["parameters"], found["units"], found["ranked"], found["series"])
-    return DesignResult(*own, found, assumed(model=(model, "dry")))
+    found["assumed_model"] = assumed(model=(model, "dry"))
+    return DesignResult(found["parameters"], found["units"], found["ranked"], found["series"], found)
 
 
 @options.with_options("gauge", options.GaugeOptions)

@@ -953,9 +953,8 @@ class DesignResult(Result):
         A series, each the best after those before it.
     details : dict
         All of ``design.json``: whether the model follows the data, standard errors now, what is
-        not identifiable, which contact each free K or A stands for.
-    assumed_model : str or None
-        The default model that was assumed, where none was named.
+        not identifiable, which contact each free K or A stands for, the default model that was
+        assumed (``assumed_model``).
     """
 
     _index = "measure"
@@ -965,7 +964,6 @@ class DesignResult(Result):
     ranked: list[dict[str, Any]]
     series: list[dict[str, Any]]
     details: dict[str, Any]
-    assumed_model: str | None = None
 
     def _columns(self) -> dict[str, list[Any]]:
         errors = {name: [number(one["standard_errors"][at]) for one in self.ranked] for at, name in enumerate(self.parameters)}
