@@ -118,8 +118,10 @@ impl Page {
             let share = (f32::from(step) + 0.5) / f32::from(SHADES);
             let radius = shade.r().get() * f32::from(step + 1) / f32::from(SHADES);
             let disc = tiny_skia::PathBuilder::from_circle(shade.cx(), shade.cy(), radius);
-            let disc = disc.as_ref().map(outline).unwrap_or_default();
-            self.write(&format!("{} rg {disc}f ", colour_at(shade, share)));
+            if let Some(disc) = disc {
+                let (colour, disc) = (colour_at(shade, share), self::outline(&disc));
+                self.write(&format!("{colour} rg {disc}f "));
+            }
         }
         self.write("Q ");
     }

@@ -5,8 +5,8 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
-use hertzchain::arguments::{How, parsed};
 use hertzchain::failure::{Failure, of_speed};
+use hertzchain::options::{SimulationOptions, parsed};
 use hertzchain::{input, json as results};
 use hertzchain_sim::{
     Batch, BatchOptions, BatchResult, COLUMNS, Column, ErrorControl, Plan, Shard, StudyError,
@@ -40,7 +40,7 @@ pub(crate) struct Asked {
 
 impl Asked {
     fn options(&self, experiment: &Experiment) -> Result<BatchOptions, Failure> {
-        let how: How = parsed("sweep", &self.options)?;
+        let how: SimulationOptions = parsed("sweep", &self.options)?;
         let plan = representative(experiment, &how)?;
         let error_control = match self.error_control.as_str() {
             "per-shot" => ErrorControl::PerShot,
@@ -66,7 +66,7 @@ impl Asked {
 }
 
 /// A plan at the experiment's own speed, to reject options before any work.
-fn representative(experiment: &Experiment, how: &How) -> Result<Plan, Failure> {
+fn representative(experiment: &Experiment, how: &SimulationOptions) -> Result<Plan, Failure> {
     let inner = &experiment.inner;
     inner.needs_striker("shots at several speeds need a chain with a striker")?;
     input::check_times(how, inner)?;

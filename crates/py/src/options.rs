@@ -1,9 +1,9 @@
 //! Options of the verbs, as declared for the command line.
 
 use clap::{Args, Command};
-use hertzchain::arguments::How;
-use hertzchain::arguments::infer::{Design, Fit, Gauge};
-use hertzchain::arguments::measure::Measure;
+use hertzchain::options::{
+    DesignOptions, FitOptions, GaugeOptions, MeasureOptions, SimulationOptions,
+};
 use pyo3::prelude::*;
 
 /// Names, defaults and descriptions of a verb's options.
@@ -11,11 +11,11 @@ use pyo3::prelude::*;
 pub(crate) fn options(verb: &str) -> Vec<(String, Option<String>, String)> {
     let command = Command::new("options");
     let command = match verb {
-        "measure" => Measure::augment_args(command),
-        "fit" => Fit::augment_args(command),
-        "design" => Design::augment_args(command),
-        "gauge" => Gauge::augment_args(command),
-        _ => How::augment_args(command),
+        "measure" => MeasureOptions::augment_args(command),
+        "fit" => FitOptions::augment_args(command),
+        "design" => DesignOptions::augment_args(command),
+        "gauge" => GaugeOptions::augment_args(command),
+        _ => SimulationOptions::augment_args(command),
     };
     let one = |option: &clap::Arg| {
         let flag = !option.get_action().takes_values();

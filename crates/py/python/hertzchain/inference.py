@@ -296,5 +296,5 @@ def resumed(folder: options.Path_ | None) -> list[str]:
     if folder is None:
         return []
     into = Path(folder).resolve()
-    begun = (into / "chain.json").exists() or any((into / "partial").glob("part-*"))
+    begun = (into / "chain.json").exists()
     return [f"--out={into}", *(["--resume"] if begun else [])]
