@@ -19,8 +19,8 @@ mod common;
 use common::{Noise, TRUTH, Truth, model, problem, speeds_between, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
-    Chain, Covariance, Data, Fit, Fitting, Observable, Predicted, Problem, Profiling, Requirements,
-    Sampling, SamplingError, Surrogate, fit, profile,
+    Chain, Covariance, Data, Fit, Fitting, InferError, Observable, Predicted, Problem, Profiling,
+    Requirements, Sampling, Surrogate, fit, profile,
 };
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -320,9 +320,9 @@ fn posterior(
     };
     let mut chain = Chain::start(problem, best, covariance, &how)?;
     let found = chain.lead(problem, &Requirements::default(), MOST_STEPS, &mut |_| {
-        Ok::<(), SamplingError>(())
+        Ok::<(), InferError>(())
     })?;
-    Ok(found?)
+    Ok(found.map_err(|short| short.to_string())?)
 }
 
 /// Most steps of walkers.

@@ -43,7 +43,7 @@ fn a_fit_and_a_chain_have_the_same_bits_whoever_computes_them() {
         let mut other = Chain::start(&spread, &there, &covariance, &how).unwrap();
         other.advance(&spread, 40).unwrap();
         assert!(other == chain, "batches of {size}");
-        assert_eq!(spread.lost(), None);
+        assert_eq!(spread.failure(), None);
     }
 }
 
@@ -85,13 +85,13 @@ fn batches_that_are_lost_for_good_are_told() {
     let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), 8, &compute);
     let mut chain = Chain::start(&spread, &here, &covariance, &Sampling::default()).unwrap();
     chain.advance(&spread, 20).unwrap();
-    assert_eq!(spread.lost(), Some("no worker is left"));
+    assert_eq!(spread.failure(), Some("no worker is left"));
     // Nobody is asked in vain again.
     assert_eq!(calls.into_inner(), 7);
     let short = |batches: &[Batch]| Ok(batches.iter().map(|_| Vec::new()).collect());
     let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), 8, &short);
     assert!(spread.residuals(&[vec![4.0, 0.8]])[0].is_err());
-    assert!(spread.lost().unwrap().contains("other numbers"));
+    assert!(spread.failure().unwrap().contains("other numbers"));
 }
 
 #[test]

@@ -7,9 +7,8 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Aim, Candidate, Compared, Covariance, Criteria, Ending, Fit,
-    Fitting, Folding, Identifiability, Loss, Parameter, Problem, compare, cross_validate,
-    design, fit,
+    Aim, Candidate, Compared, Covariance, Criteria, Ending, Fit, Fitting, Folding, Identifiability,
+    Loss, Parameter, Problem, compare, cross_validate, design, fit,
 };
 
 fn fitted(problem: &dyn Problem) -> Fit {
@@ -31,8 +30,8 @@ fn a_product_is_one_number_and_the_words_say_so() {
     );
     let found = fitted(&data);
     let told = Identifiability::new(&data.parameters, &found, |i| data.residual_label(i));
-    assert_eq!((told.determined(), told.confused.len()), (1, 2));
-    for confusion in &told.confused {
+    assert_eq!((told.determined(), told.unidentifiable.len()), (1, 2));
+    for confusion in &told.unidentifiable {
         assert!(confusion.standard_error.is_infinite());
         // In a combination that leaves a product, relative changes sum to 0;
         // rounding and the error of differences.
@@ -87,8 +86,8 @@ fn weakly_determined_combinations_have_a_standard_error_in_words() {
     let data = Curve::drawn(free, &spaced(0.99, 1.01, 9), 0.02, &[1.0, 1.0], 1, straight);
     let found = fitted(&data);
     let told = Identifiability::new(&data.parameters, &found, |i| format!("row {}", i + 1));
-    assert_eq!(told.confused.len(), 1);
-    let confusion = &told.confused[0];
+    assert_eq!(told.unidentifiable.len(), 1);
+    let confusion = &told.unidentifiable[0];
     assert!(
         (1.0..3.0).contains(&confusion.standard_error),
         "{}",
@@ -200,18 +199,28 @@ fn models_that_cannot_be_compared_are_named() {
         compare(&[of("line", &first), of("other", second)]).unwrap_err()
     };
     second.loss = Loss::Huber { scale: 1.0 };
-    assert!(refused(&second).to_string().starts_with("other was fitted with a robust loss"));
+    assert!(
+        refused(&second)
+            .to_string()
+            .starts_with("other was fitted with a robust loss")
+    );
     second.residuals.pop();
-    assert!(matches!(
-        refused(&second),
-        CompareError::OtherData { found: 14, .. }
-    ));
+    assert!(
+        refused(&second)
+            .to_string()
+            .starts_with("other was fitted to 14 numbers")
+    );
     let alone = Compared {
         name: "line",
         fit: &first,
         cross_validation: None,
     };
-    assert!(compare(&[alone]).unwrap_err().to_string().contains("two models"));
+    assert!(
+        compare(&[alone])
+            .unwrap_err()
+            .to_string()
+            .contains("two models")
+    );
 }
 
 #[test]
@@ -239,10 +248,8 @@ fn folds_keep_groups_together_and_follow_the_seed() {
             ..how(None, 0)
         },
     ] {
-        assert!(matches!(
-            cross_validate(&data, &found, &wrong),
-            Err(FitError::Option { .. })
-        ));
+        let error = cross_validate(&data, &found, &wrong).unwrap_err();
+        assert!(error.to_string().starts_with("number of "), "{error}");
     }
 }
 
@@ -323,21 +330,16 @@ fn designs_say_what_would_determine_the_undetermined() {
     // a alone, to a tenth. Assumed knowledge, squared.
     assert!((told.ranked[0].after[0] - 0.1).abs() < 1e-6);
     let refused = |candidates: &[Candidate], targets: &[usize]| {
-        design(&data.parameters, &found, candidates, targets, 0).unwrap_err()
+        let error = design(&data.parameters, &found, candidates, targets, 0).unwrap_err();
+        error.to_string()
     };
-    assert_eq!(refused(&[], &[0]), DesignError::Nothing);
+    assert!(refused(&[], &[0]).starts_with("name at least one parameter and one candidate"));
     assert_eq!(
         refused(std::slice::from_ref(&alone), &[2]),
-        DesignError::Target {
-            number: 2,
-            parameters: 2
-        }
+        "there is no parameter 2: the fit has 2"
     );
     let free = Candidate { cost: 0.0, ..alone };
-    assert!(matches!(
-        refused(&[free], &[0]),
-        DesignError::Candidate { .. }
-    ));
+    assert!(refused(&[free], &[0]).contains("expected a positive cost"));
 }
 
 type Product = Curve<fn(&[f64], f64) -> f64>;
@@ -364,7 +366,7 @@ fn a_design_ranks_for_what_can_be_determined_where_parameters_can_not() {
     };
     let candidates = [noisy("near", 1e5), noisy("far", 3e7)];
     let told = design(&data.parameters, &found, &candidates, &[0, 1], 2).unwrap();
-    assert_eq!(told.hopeless, [0, 1]);
+    assert_eq!(told.not_identifiable, [0, 1]);
     assert_eq!(told.open, ["a up 1.00 % with b down 0.50 %"]);
     let words = "b up 1.00 % with a up 0.50 %".to_owned();
     assert_eq!(told.aims, [Aim::Combination(words)]);

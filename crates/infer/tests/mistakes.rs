@@ -7,8 +7,7 @@
 
 use crate::toys::{Curve, spaced, straight};
 use hertzchain_infer::{
-    Covariance, Fit, FitError, Fitting, ModelError, Parameter, ParameterError, Prior, Problem,
-    Residuals, fit,
+    Covariance, Fit, Fitting, InferError, ModelError, Parameter, Prior, Problem, Residuals, fit,
 };
 
 type Line = Curve<fn(&[f64], f64) -> f64>;
@@ -22,7 +21,7 @@ fn two() -> Vec<Parameter> {
     vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)]
 }
 
-fn refused(problem: &dyn Problem) -> FitError {
+fn refused(problem: &dyn Problem) -> InferError {
     fit(problem, &Fitting::default())
         .map(|found: Fit| found.point)
         .unwrap_err()
@@ -31,14 +30,8 @@ fn refused(problem: &dyn Problem) -> FitError {
 #[test]
 fn fewer_points_than_parameters_are_refused() {
     let error = refused(&line(two(), 1));
-    assert_eq!(
-        error,
-        FitError::TooFew {
-            data: 1,
-            priors: 0,
-            parameters: 2
-        }
-    );
+    let text = "1 measured numbers and 0 priors cannot determine 2 parameters";
+    assert!(error.to_string().starts_with(text), "{error}");
     assert!(error.to_string().contains("measure more, or free fewer"));
     // As many are enough; a prior counts.
     assert!(fit(&line(two(), 2), &Fitting::default()).is_ok());
@@ -46,7 +39,7 @@ fn fewer_points_than_parameters_are_refused() {
     known[1].prior = Prior::Normal { mean: 1.0, sd: 0.5 };
     assert!(fit(&line(known, 1), &Fitting::default()).is_err_and(|e| {
         // One point at x = 0 says nothing of the slope.
-        matches!(e, FitError::ChangesNothing { name, .. } if name == "b")
+        matches!(e, InferError::ChangesNothing { name, .. } if name == "b")
     }));
 }
 
@@ -59,12 +52,11 @@ fn parameters_that_change_nothing_are_named() {
         error.to_string().starts_with("nu changes no residual"),
         "{error}"
     );
-    assert_eq!(refused(&line(Vec::new(), 5)), FitError::NothingFree);
+    let error = refused(&line(Vec::new(), 5)).to_string();
+    assert!(error.starts_with("no parameter is free"), "{error}");
     let twice = vec![Parameter::new("a", "", 1.0), Parameter::new("a", "", 1.0)];
-    assert_eq!(
-        refused(&line(twice, 5)),
-        FitError::Twice { name: "a".into() }
-    );
+    let error = refused(&line(twice, 5)).to_string();
+    assert!(error.starts_with("a is free twice"), "{error}");
 }
 
 /// Of a parameter that no residual knows, differences leave rounding alone, along which
@@ -76,7 +68,7 @@ fn a_parameter_that_nothing_measures_is_refused_where_it_starts() {
     let found = refused(&line(free, 9));
     let value = 0.7;
     let name = "gain".to_owned();
-    assert_eq!(found, FitError::ChangesNothing { name, value });
+    assert_eq!(found, InferError::ChangesNothing { name, value });
 }
 
 #[test]
@@ -94,27 +86,17 @@ fn a_parameter_without_effect_where_it_starts_alone_is_fitted() {
 #[test]
 fn starts_bounds_scales_and_priors_must_agree() {
     type Change = fn(&mut Parameter);
-    type Kind = fn(&ParameterError) -> bool;
-    let cases: [(Change, Kind); 7] = [
-        (
-            |p| p.lower = 2.0,
-            |e| matches!(e, ParameterError::Start { .. }),
-        ),
-        (
-            |p| p.start = f64::NAN,
-            |e| matches!(e, ParameterError::Start { .. }),
-        ),
-        (
-            |p| p.upper = f64::NAN,
-            |e| matches!(e, ParameterError::Bounds { .. }),
-        ),
+    let cases: [(Change, &str); 7] = [
+        (|p| p.lower = 2.0, "outside its bounds 2 to"),
+        (|p| p.start = f64::NAN, "starts at NaN, outside its bounds"),
+        (|p| p.upper = f64::NAN, "leave nothing between them"),
         (
             |p| (p.lower, p.upper) = (3.0, 1.0),
-            |e| matches!(e, ParameterError::Bounds { .. }),
+            "leave nothing between them",
         ),
         (
             |p| p.scale = 0.0,
-            |e| matches!(e, ParameterError::Scale { .. }),
+            "has the scale 0: expected a positive number",
         ),
         (
             |p| {
@@ -123,7 +105,7 @@ fn starts_bounds_scales_and_priors_must_agree() {
                     sd: -1.0,
                 }
             },
-            |e| matches!(e, ParameterError::Prior { .. }),
+            "is no distribution",
         ),
         (
             |p| {
@@ -132,16 +114,14 @@ fn starts_bounds_scales_and_priors_must_agree() {
                     ln_sd: 0.1,
                 }
             },
-            |e| matches!(e, ParameterError::PriorExcludesStart { deviation, .. } if *deviation > 40.0),
+            "46.1 standard deviations from the middle of its prior",
         ),
     ];
-    for (i, (change, kind)) in cases.into_iter().enumerate() {
+    for (change, expected) in cases.into_iter() {
         let mut free = two();
         change(&mut free[0]);
-        match refused(&line(free, 5)) {
-            FitError::Parameter(error) => assert!(kind(&error), "{i}: {error}"),
-            other => panic!("{i}: {other}"),
-        }
+        let error = refused(&line(free, 5)).to_string();
+        assert!(error.contains(expected), "{expected}: {error}");
     }
 }
 
@@ -177,7 +157,8 @@ fn options_out_of_range_are_refused() {
         },
     ];
     for how in wrong {
-        assert!(matches!(fit(&data, &how), Err(FitError::Option { .. })));
+        let error = fit(&data, &how).unwrap_err().to_string();
+        assert!(error.contains("expected"), "{error}");
     }
     let hasty = Fitting {
         iterations: 0,

@@ -7,7 +7,7 @@
 
 use crate::toys::{Curve, decay, normals, spaced};
 use hertzchain_infer::{
-    Covariance, End, Fit, Fitting, Interval, Parameter, Profile, ProfileError, Profiling, fit,
+    Covariance, End, Fit, Fitting, InferError, Interval, Parameter, Profile, Profiling, fit,
     profile,
 };
 use hertzchain_measure::signal::{Coverage, coverage};
@@ -189,7 +189,7 @@ fn a_profile_that_meets_a_better_fit_says_so() {
     };
     let error = profile(&narrow, &found, &covariance, &[0], &how).unwrap_err();
     assert!(
-        matches!(error, ProfileError::BetterFit { by, .. } if by > 0.1),
+        matches!(error, InferError::BetterFit { by, .. } if by > 0.1),
         "{error}"
     );
     // Several starts find it at once.

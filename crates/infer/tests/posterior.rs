@@ -7,8 +7,8 @@
 
 use crate::toys::{Curve, decay, normals, regression, spaced, straight};
 use hertzchain_infer::{
-    Chain, Covariance, Fit, Fitting, ModelError, Parameter, Prior, Problem, Requirements,
-    Residuals, Sampling, SamplingError, autocorrelation_time, fit, split_r_hat,
+    Chain, Covariance, Fit, Fitting, InferError, ModelError, Parameter, Prior, Problem,
+    Requirements, Residuals, Sampling, autocorrelation_time, fit, split_r_hat,
 };
 use hertzchain_measure::signal::coverage;
 use hertzchain_sim::Stop;
@@ -306,21 +306,20 @@ fn a_chain_saved_and_continued_has_the_bits_of_an_uninterrupted_one() {
     // Damaged files and other parameters are refused.
     let cut = text.replacen("\"steps\":41", "\"steps\":57", 1);
     let mut damaged: Chain = serde_json::from_str(&cut).unwrap();
-    assert_eq!(damaged.advance(&data, 1), Err(SamplingError::Damaged));
+    let error = damaged.advance(&data, 1).unwrap_err().to_string();
+    assert!(error.starts_with("the saved chain is damaged"), "{error}");
     let mut other = line();
     other.parameters[1].name = "c".into();
-    assert!(matches!(
-        read.advance(&other, 1),
-        Err(SamplingError::OtherParameters { .. })
-    ));
+    let error = read.advance(&other, 1).unwrap_err().to_string();
+    assert!(error.contains("the same free parameters"), "{error}");
 }
 
 /// Why a chain was broken off: its state where it was killed, or an error.
 #[derive(Debug)]
 struct Broken(String);
 
-impl From<SamplingError> for Broken {
-    fn from(error: SamplingError) -> Self {
+impl From<InferError> for Broken {
+    fn from(error: InferError) -> Self {
         Self(error.to_string())
     }
 }
@@ -357,7 +356,11 @@ fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
     // Nobody goes on with other data by accident.
     let mut other = line();
     other.y[0] += 1.0;
-    assert_eq!(whole.belongs_to(&other), Err(SamplingError::OtherProblem));
+    let error = whole.belongs_to(&other).unwrap_err().to_string();
+    assert!(
+        error.starts_with("the chain was sampled from other data"),
+        "{error}"
+    );
 }
 
 /// A line whose residuals are computed by as many threads as there are.
@@ -453,6 +456,6 @@ fn sampling_options_out_of_range_are_refused() {
     ];
     for how in wrong {
         let error = Chain::start(&data, &found, &covariance, &how).unwrap_err();
-        assert!(matches!(error, SamplingError::Option { .. }), "{error}");
+        assert!(error.to_string().contains("expected"), "{error}");
     }
 }

@@ -189,7 +189,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let label = |at: usize| three.residual_label(at);
     let found = Identifiability::new(three.parameters(), &best, label);
     assert_eq!(found.determined(), 2, "{:?}", found.singular_values);
-    let advice = three.would_separate(&best);
+    let advice = three.suggested_measurements(&best);
     // Nor reflected times, peaks, other speeds, a push, nor all of it.
     let all = advice.prospects.iter().chain(&advice.together);
     assert_eq!(all.clone().count(), 4, "{advice:?}");
@@ -201,7 +201,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let two = problem(&model(&viscoelastic, &["K", "A"]), data);
     let best = fit(&two, &Fitting::default()).unwrap();
     let found = Identifiability::new(two.parameters(), &best, |at| two.residual_label(at));
-    assert!(found.confused.is_empty());
+    assert!(found.unidentifiable.is_empty());
     let covariance = Covariance::new(two.parameters(), &best);
     for (at, exact) in [8.792_630_379_6e9, 3.385_289_514_9e-7]
         .into_iter()
@@ -213,7 +213,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
 }
 
 #[test]
-fn what_would_separate_confused_numbers_is_foretold_with_their_errors() {
+fn what_suggested_measurements_confused_numbers_is_foretold_with_their_errors() {
     let viscoelastic = preset("hertz-viscoelastic").unwrap();
     let truth = Truth::of(&viscoelastic, &[0.4, 0.5, 0.6]);
     let noise = Noise {
@@ -231,7 +231,7 @@ fn what_would_separate_confused_numbers_is_foretold_with_their_errors() {
     let two = model(&viscoelastic, &["K", "A"]);
     let incident = problem(&two, both.only(&[Observable::Incident]));
     let best = fit(&incident, &Fitting::default()).unwrap();
-    let advice = incident.would_separate(&best);
+    let advice = incident.suggested_measurements(&best);
     assert_eq!((advice.now.determined, advice.combinations), (1, 2));
     let reflected = advice.prospects.iter();
     let mut reflected = reflected.filter(|p| p.measure.starts_with("reflected"));

@@ -2,7 +2,7 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Covariance, Data, DataError, Defaults, Fitting, Parameter, Scatter, Selection, fit, widening,
+    Covariance, Data, Defaults, Fitting, InferError, Parameter, Scatter, Selection, fit, widening,
 };
 use hertzchain_measure::signal::coverage;
 
@@ -49,7 +49,7 @@ fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_els
     }
 }
 
-fn read(text: &str, scatter: Scatter) -> Result<Data, DataError> {
+fn read(text: &str, scatter: Scatter) -> Result<Data, InferError> {
     let defaults = Defaults {
         scatter,
         ..Defaults::default()

@@ -5,9 +5,7 @@ use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::signal::{
     Bandwidth, Flight, QualityFlag, SignalError, SignalOptions, without_systematic,
 };
-use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure,
-};
+use hertzchain_measure::{Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure};
 use std::fs;
 use std::path::{Path, PathBuf};
 

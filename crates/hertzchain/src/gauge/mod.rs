@@ -12,9 +12,7 @@ use crate::input::assumed_preset;
 use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments, WetForm};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
-use hertzchain_infer::gauge::{
-    Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils,
-};
+use hertzchain_infer::gauge::{Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils};
 use hertzchain_measure::records::text;
 use std::path::Path;
 

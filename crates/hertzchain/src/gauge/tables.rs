@@ -193,4 +193,3 @@ fn laws(gauged: &Gauged) -> String {
         .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
     Csv::new(titles.split(',')).with_all(both, line).text()
 }
-

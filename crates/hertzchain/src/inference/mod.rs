@@ -17,7 +17,7 @@ use crate::options::{
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, Defaults, FEWEST_SHOTS, InferError, FreeNumber, FreeNumbers, Model,
+    CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeNumber, FreeNumbers, InferError, Model,
     Observable, Problem, PulseProblem, Scatter, Selection,
 };
 use hertzchain_measure::records::{peek, text};

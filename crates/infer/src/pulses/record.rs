@@ -131,7 +131,12 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, I
     };
     let named = |error: SignalError| InferError::Input(format!("{source}: {error}"));
     let found = measure(channels, interval_s, &SignalOptions::default()).map_err(named)?;
-    let grave = found.found.flags.iter().copied().find(QualityFlag::is_grave);
+    let grave = found
+        .found
+        .flags
+        .iter()
+        .copied()
+        .find(QualityFlag::is_grave);
     if let Some(flag) = grave {
         return InferError::input(format!("{source}: {flag}"));
     }

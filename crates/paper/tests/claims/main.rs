@@ -17,7 +17,7 @@ use hertzchain_paper::claims::{
     claims_markdown, evaluate_all, evaluate_all_rounded, predicate, read,
 };
 
-fn evaluate(id: &str) -> Evaluator {
+fn evaluator(id: &str) -> Evaluator {
     let all = claims().unwrap();
     all.into_iter()
         .find(|evaluator| evaluator.claim.id == id)

@@ -27,7 +27,10 @@ pub(super) fn contacts(gauged: &Gauged) -> Figure {
 /// quantity than what was measured.
 fn tells_both(gauged: &Gauged) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
-    let mut told = gauged.rows.iter().filter_map(|row| row.contact.as_ref().ok());
+    let mut told = gauged
+        .rows
+        .iter()
+        .filter_map(|row| row.contact.as_ref().ok());
     told.any(both)
 }
 
