@@ -135,10 +135,10 @@ pub fn outline(
     calibration: Option<Calibration>,
     [incident, reflected]: [Through<'_>; 2],
 ) -> Json {
-    let pilots = |it: Calibration| json!({"count": it.shots, "accuracy_reached": it.reached, "way": it.to_string()});
+    let calibrated = |it: Calibration| json!({"count": it.shots, "accuracy_reached": it.reached, "way": it.to_string()});
     json!({
         "experiment": experiment.name(),
-        "pilots": calibration.map(pilots),
+        "calibration": calibration.map(calibrated),
         "power_law_incident": fit(incident.0, incident.1.ok()),
         "power_law_reflected": fit(reflected.0, reflected.1.ok()),
     })

@@ -67,7 +67,7 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
         "{text}"
     );
     let second = text.lines().nth(1).unwrap();
-    assert!(second.contains("Look whether --dry names"), "{text}");
+    assert!(second.contains("check that --dry names"), "{text}");
     // Under the verdict, where a long table ends, it is said again.
     let last = text.lines().last().unwrap();
     assert!(last.starts_with("warning: see the first lines"), "{text}");

@@ -131,12 +131,15 @@ fn threads_are_counted_from_1() {
 }
 
 #[test]
-fn a_sweep_judged_by_pilots_says_so() {
+fn a_calibrated_sweep_says_so() {
     let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:100"];
-    let pilots = [&speeds[..], &["--error-control", "calibrated"]].concat();
-    let printed = text(&sweep(&pilots).stdout);
-    assert!(printed.contains("chosen by 40 pilots"), "{printed}");
+    let calibrated = [&speeds[..], &["--error-control", "calibrated"]].concat();
+    let printed = text(&sweep(&calibrated).stdout);
+    assert!(
+        printed.contains("chosen by 40 calibration shots"),
+        "{printed}"
+    );
     let each = sweep(&[&speeds[..], &["--json"]].concat());
     let swept: Value = serde_json::from_slice(&each.stdout).unwrap();
-    assert!(swept["pilots"].is_null());
+    assert!(swept["calibration"].is_null());
 }

@@ -94,7 +94,7 @@ fn what_can_not_be_free_is_told_with_what_could() {
     let dry = preset("dry").unwrap();
     let twice = ["eta", "aisi316.eta"].map(|name| FreeNumber::find(&dry, name, None).unwrap());
     let error = FreeNumbers::new(twice.into()).unwrap_err();
-    assert!(error.to_string().contains("twice"), "{error}");
+    assert!(error.to_string().contains("are the same number"), "{error}");
 }
 
 #[test]

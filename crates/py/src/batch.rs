@@ -189,7 +189,6 @@ impl Run {
             let laws = laws.each_ref().map(|(law, least)| (law, least.clone()));
             let found = results::outline(&self.experiment.inner, calibration, laws);
             let found = json::object(py, &found)?.cast_into::<PyDict>()?;
-            found.set_item("calibration", found.get_item("pilots")?)?;
             errors = rows
                 .failed
                 .into_iter()

@@ -35,11 +35,11 @@ def test_a_sweep_has_the_bits_of_the_command_line(cli, dry):
         assert (ours.prefactor_error_s, ours.exponent_accuracy) == (theirs["prefactor_error_s"], theirs["exponent_accuracy"])
 
 
-def test_pilots_and_the_striker_are_those_of_the_command_line(cli, dry):
-    told = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:45", "--judges", "pilots")
+def test_calibration_and_the_striker_are_those_of_the_command_line(cli, dry):
+    told = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:45", "--error-control", "calibrated")
     found = hc.sweep(dry, "0.2:1:45", error_control="calibrated")
     assert found.tof_incident_s.tolist() == [point["tof_incident_s"] for point in told["points"]]
-    assert found.calibration == told["pilots"]
+    assert found.calibration == told["calibration"]
     told = cli("sweep", "--preset", "dry", "--speeds", "0.2,0.5", "--rebound")
     rebounds = [point["striker_rebound"]["end_m_s"] for point in told["points"]]
     assert hc.sweep(dry, [0.2, 0.5], rebound=True).columns["striker_rebound_m_s"].tolist() == rebounds
