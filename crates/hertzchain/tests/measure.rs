@@ -499,7 +499,7 @@ fn a_measured_curve_is_fitted_in_memory_as_from_its_file() {
         shots: Some(list.clone()),
         ..MeasureOptions::default()
     };
-    let measured = hertzchain::measure(&[folder.clone()], &options).unwrap();
+    let measured = hertzchain::measure(std::slice::from_ref(&folder), &options).unwrap();
     let curve = measured.curve("dry").unwrap();
     let output = measure(&folder, &[".", "--shots", "list.txt", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0));

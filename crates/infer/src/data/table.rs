@@ -502,7 +502,7 @@ impl Reader<'_> {
         }
         let correlation = self.optional(record, self.columns.correlation.as_ref())?;
         if let (Some(value), Some(column)) = (correlation, &self.columns.correlation)
-            && !(value.abs() < 1.0)
+            && (value.is_nan() || value.abs() >= 1.0)
         {
             let what = format!(
                 "{value} is no correlation of two errors; expected a number between -1 and 1"

@@ -5,6 +5,9 @@ use crate::linear::{Svd, combine, dot, norm, svd};
 use crate::{ModelError, Parameter, Problem, Residuals};
 use std::fmt;
 
+/// A point and the residuals around it.
+type Around = (Vec<f64>, Vec<Result<Residuals, ModelError>>);
+
 /// A Levenberg–Marquardt descent [More1978].
 ///
 /// Columns are scaled to unit length; a step solves (JᵀJ + λ) s = −g by singular values, once for
@@ -30,7 +33,7 @@ pub(crate) struct Descent<'a> {
     /// Whether the last step went as the linear model predicts: then fewer are tried.
     is_linear: bool,
     /// Residuals at the neighbours of the point, two for each free parameter, and their steps.
-    pub around: Option<(Vec<f64>, Vec<Result<Residuals, ModelError>>)>,
+    pub around: Option<Around>,
 }
 
 /// When a descent ends: expected fall of the cost at which the minimum counts as reached, and most
