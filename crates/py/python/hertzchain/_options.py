@@ -67,7 +67,6 @@ class MeasureOptions(TypedDict, total=False):
     speed_gap: Quantity
     reference: str
     keep_dubious: bool
-    high_pass: Quantity | None
     bandwidth: Quantity | None
     bandwidth_order: str | None
 
