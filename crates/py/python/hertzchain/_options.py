@@ -67,8 +67,6 @@ class MeasureOptions(TypedDict, total=False):
     speed_gap: Quantity
     reference: str
     keep_dubious: bool
-    bandwidth: Quantity | None
-    bandwidth_order: str | None
 
 
 class CurveOptions(TypedDict, total=False):
