@@ -1,4 +1,4 @@
-"""What Dask costs a shard: the numbers of docs/across-machines.md.
+"""What Dask costs a shard: the numbers of docs/how-to/many-machines.md.
 
     pip install '.[dask]'
     python bench/python/shards.py

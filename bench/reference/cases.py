@@ -24,7 +24,7 @@ def shot(chain, speed, t_end, rtol):
 
 
 def rig_observables(chain, speed, t_end, rtol, sensor=p.SENSOR, beads=p.BEADS):
-    """ToFs, peaks and rebound, all as docs/conventions.md says."""
+    """ToFs, peaks and rebound, all as docs/reference/conventions.md says."""
     run = shot(chain, speed, t_end, rtol)
     out = flight(run, bead_sensor(chain, sensor), contact_sensor(chain, beads))
     apart = first_separation(run)

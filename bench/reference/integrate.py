@@ -316,7 +316,7 @@ def largest(peaks):
 
 
 def flight(run, sensor, wall):
-    """t7, tw, t7r and their heights, as docs/conventions.md defines them."""
+    """t7, tw, t7r and their heights, as docs/reference/conventions.md defines them."""
     at_wall, at_sensor = maxima(run, wall), maxima(run, sensor)
     tw, wall_peak = largest(at_wall)
     t7, peak = largest([p for p in at_sensor if p[0] < tw])

@@ -1,4 +1,4 @@
-"""Material constants to contact constants, as docs/physics.md writes them; and the paper's rig."""
+"""Material constants to contact constants, as docs/explanation/physics.md writes them; and the paper's rig."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-//! The arrival as docs/conventions.md defines it ("Times of flight"), from lists of maxima alone.
+//! The arrival as docs/reference/conventions.md defines it ("Times of flight"), from lists of maxima alone.
 
 use crate::motion::Maximum;
 

@@ -1,4 +1,4 @@
-//! Forces of contacts, written down anew from docs/physics.md: nothing is shared with the crates.
+//! Forces of contacts, written down anew from docs/explanation/physics.md: nothing is shared with the crates.
 
 use crate::row::{Ball, Far, GRAVITY, Law, Material, Row};
 use std::f64::consts::PI;

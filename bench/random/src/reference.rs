@@ -10,7 +10,7 @@ use crate::row::Row;
 const QUICK: f64 = 1e-11;
 const TIGHT: [f64; 2] = [1e-13, 3e-12];
 /// A pulse's height times time is at least this share of the momentum of the lightest body at the
-/// striker's speed: docs/conventions.md.
+/// striker's speed: docs/reference/conventions.md.
 const FAINTEST: f64 = 1e-3;
 /// The reference goes on for this many times what is needed.
 pub(crate) const BEYOND: f64 = 1.02;

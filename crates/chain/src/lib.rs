@@ -3,7 +3,7 @@
 //!
 //! This crate has no files, no clock, no randomness and no threads: the same
 //! input gives the same bits. Symbols and conventions are those of
-//! `docs/conventions.md`: body 0 is the striker, beads are 1..=N, contact `c`
+//! `docs/reference/conventions.md`: body 0 is the striker, beads are 1..=N, contact `c`
 //! sits between bodies `c` and `c + 1`, contact N between bead N and the far
 //! end; positions and velocities point from the striker to the wall.
 

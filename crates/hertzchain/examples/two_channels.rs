@@ -2,7 +2,7 @@
 //! it: the same shots of the paper's rig, recorded in one channel and in two.
 //!
 //! `cargo run --release -p hertzchain --example two_channels` prints, case by case, how far times of
-//! flight are off in the median; what docs/measuring.md shows.
+//! flight are off in the median; what docs/explanation/picking.md shows.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 #[path = "whole_loop/judged.rs"]

@@ -1,4 +1,4 @@
-//! How often intervals hold the truth: a table of `docs/inferring.md`.
+//! How often intervals hold the truth: a table of `docs/explanation/inference.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50        # data sets, of them by posterior

@@ -1,5 +1,5 @@
 //! How often the pairs of K and A that the gauge lists hold the true one: a table of
-//! `docs/inferring.md`.
+//! `docs/explanation/inference.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example pairs -- 50          # data sets an oil

@@ -1,5 +1,5 @@
 //! A measurement that never was, as a table for `fit`, `gauge` and `design`: the data of
-//! the examples in `docs/inferring.md`.
+//! the examples in `docs/explanation/inference.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example simulated -- dry > dry.csv     # a preset

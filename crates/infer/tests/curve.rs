@@ -50,7 +50,7 @@ fn a_curve_is_that_of_shots_one_by_one() {
         for (speed, row) in SPEEDS_M_S.iter().zip(curve.unwrap()) {
             let (plan, _) = Plan::from_experiment(&changed, Some(*speed)).unwrap();
             let flight = shoot(&plan.with_accuracy(1e-9)).unwrap().flight.unwrap();
-            // The accuracy that fits promise of dry chains; docs/numerics.md.
+            // The accuracy that fits promise of dry chains; docs/explanation/numerics.md.
             let close = |one: f64, two: f64| (one / two - 1.0).abs() < 2e-6;
             assert!(
                 close(row[0].unwrap(), flight.incident_s),

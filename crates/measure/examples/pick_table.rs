@@ -2,7 +2,7 @@
 //! as tables in Markdown.
 //!
 //! `cargo run --release -p hertzchain-signal --example pick_table [SHOTS]`
-//! prints what stands in docs/measuring.md.
+//! prints what stands in docs/explanation/picking.md.
 
 #[path = "../tests/signal/common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Errors and force passes of the paper's shots: the tables of `docs/numerics.md`.
+//! Errors and force passes of the paper's shots: the tables of `docs/explanation/numerics.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked

@@ -1,5 +1,5 @@
 //! Shots with calibrated error control: how right they are, and how much faster
-//! than with error control per shot. The table of `docs/numerics.md`.
+//! than with error control per shot. The table of `docs/explanation/numerics.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-study --example pilots          # of all presets

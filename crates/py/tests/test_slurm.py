@@ -1,4 +1,4 @@
-"""The array script of docs/across-machines.md, task by task as Slurm would run it."""
+"""The array script of docs/how-to/many-machines.md, task by task as Slurm would run it."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ from conftest import ROOT, program
 
 import hertzchain as hc
 
-DOCS = ROOT / "docs/across-machines.md"
+DOCS = ROOT / "docs/how-to/many-machines.md"
 
 
 def script() -> str:

@@ -1,5 +1,5 @@
 //! What a shard costs beside its shots, and how many bytes a shot leaves: the numbers of
-//! docs/across-machines.md. Times are wall time of one thread: run it on a quiet
+//! docs/how-to/many-machines.md. Times are wall time of one thread: run it on a quiet
 //! machine, one process a core to see what workers take from each other.
 
 use hertzchain_experiment::preset;

@@ -59,7 +59,7 @@ const OF_CHANGES: [f64; 2] = [2.0, 1.25];
 
 /// Runs may agree by chance; no result is trusted to less than this many
 /// tolerances of a step. Measured over the paper's chains and speeds: with both
-/// no error is larger than the estimate, `docs/numerics.md`.
+/// no error is larger than the estimate, `docs/explanation/numerics.md`.
 const OF_TOLERANCE: f64 = 5.0;
 
 /// Laws of the rows on which margins of estimates were measured.
@@ -120,7 +120,7 @@ pub(crate) fn of_times(plan: &Plan) -> f64 {
 
 /// Steps of the ensemble loop, in contact times, with which rows of alike
 /// beads mostly reach an accuracy, and whether openings must be found: measured,
-/// `docs/numerics.md`. Two longer steps show whether each shot has.
+/// `docs/explanation/numerics.md`. Two longer steps show whether each shot has.
 const EQUAL_STEPS: [(f64, f64, bool); 5] = [
     (1e-3, 0.13, false),
     (1e-4, 0.1, false),
@@ -154,7 +154,7 @@ pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
 }
 
 /// Accuracies from this on are computed in single precision, whose rounding is
-/// measured in `docs/numerics.md`.
+/// measured in `docs/explanation/numerics.md`.
 const SINGLE_FROM: f64 = 5e-5;
 
 /// How long the numbers of the ensemble loop are for a plan: where a load

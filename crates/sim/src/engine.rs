@@ -354,7 +354,7 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
 const EQUAL_STEPS: &str = "predictor–corrector of order 4, equal steps";
 
 /// Calibration shots that are enough for plans between which little changes: the paper's
-/// chains at a thousand speeds (`docs/numerics.md`).
+/// chains at a thousand speeds (`docs/explanation/numerics.md`).
 const CALIBRATION_SHOTS: usize = 40;
 
 /// What calibration shots are compared with is this many times as right as asked.

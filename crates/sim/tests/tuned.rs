@@ -45,7 +45,7 @@ fn calibrated(plans: &[Plan]) -> Option<(Calibration, Vec<Shot>)> {
 
 #[test]
 fn a_calibrated_setting_is_right_between_the_calibration_shots() {
-    // Behind wet contacts a few of a thousand are not: `docs/numerics.md`.
+    // Behind wet contacts a few of a thousand are not: `docs/explanation/numerics.md`.
     for name in ["hertz", "hertz-viscoelastic", "dry"] {
         // Between 40 calibration shots lie 60 others.
         let exact = all(&plans(name, 100, 1e-6));

@@ -7,7 +7,7 @@
 //! own laws and step; or one shot alone, as many bodies at a time. A shot's
 //! bits depend on neither its lane nor its neighbours.
 //!
-//! Its accuracy is a property of the step: see `docs/numerics.md`.
+//! Its accuracy is a property of the step: see `docs/explanation/numerics.md`.
 
 mod aligned;
 mod behind;

@@ -6,7 +6,7 @@
 //! are explicit in a leapfrog, friction is an impulse clamped so that it can
 //! stop a body but never turn it round [Moreau1988]. A stuck body has the
 //! velocity 0 exactly, so a chain in which all are stuck stays as it is for
-//! ever. Steps follow the stiffest contact; `docs/numerics.md` has the
+//! ever. Steps follow the stiffest contact; `docs/explanation/numerics.md` has the
 //! measured accuracy.
 //!
 //! Friction is ours, the paper has none. Rolling is not modelled.

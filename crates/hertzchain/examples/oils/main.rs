@@ -1,5 +1,5 @@
 //! Which oil the gauge says it is, over many trials of the virtual rig: a table of
-//! `docs/inferring.md`.
+//! `docs/explanation/inference.md`.
 //!
 //! ```sh
 //! cargo run --release -p hertzchain --example oils -- 10  # trials

@@ -1,5 +1,5 @@
 //! The whole loop: campaign, recordings, times of flight; against the true values
-//! of the same shots, and against the model's own curves. What docs/measuring.md shows.
+//! of the same shots, and against the model's own curves. What docs/explanation/picking.md shows.
 //!
 //! `cargo run --release -p hertzchain --example whole_loop` fires on the chain of the
 //! paper, laid compact and without a push before every shot; `… -- FOLDER` judges the recordings that

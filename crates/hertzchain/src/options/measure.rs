@@ -83,7 +83,7 @@ pub struct ReadingOptions {
 #[derive(Clone, Debug, Args, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PickOptions {
-    /// How a pulse's time is told; docs/measuring.md says what each is worth
+    /// How a pulse's time is told; docs/explanation/picking.md says what each is worth
     #[arg(long, value_enum, value_name = "NAME", default_value = "local")]
     pub method: MethodName,
     /// Share of its height at which `onset` times a pulse

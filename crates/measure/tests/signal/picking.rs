@@ -424,7 +424,7 @@ fn fits_of_symmetric_shapes_are_biased_on_skewed_pulses() {
     let methods = [matched(), Method::CrossCorrelation(Template::Incident)];
     for method in methods {
         let [incident, _] = off_on_a_dry_shot(&method, 0.5e-3);
-        // As docs/measuring.md says: a two-hundredth of a width.
+        // As docs/explanation/picking.md says: a two-hundredth of a width.
         assert!((-350e-9..-250e-9).contains(&incident), "{incident:e}");
     }
 }

@@ -596,6 +596,11 @@ def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     ndarray of Axes, shape (4,)
         Times in µs, forces in N.
 
+    Raises
+    ------
+    ValueError
+        Axes of another number than four.
+
     References
     ----------
     Fig. 2 of [Labbe2017].

@@ -16,7 +16,7 @@ use crate::signal::{
     Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
 };
 
-/// How a pulse's time is defined. Bias and spread of each: docs/measuring.md.
+/// How a pulse's time is defined. Bias and spread of each: docs/explanation/picking.md.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
     /// Time of the maximum of a bell whose logarithm is a polynomial of degree 10, fitted over 1.1
