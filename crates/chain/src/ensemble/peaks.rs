@@ -73,13 +73,15 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
     /// The maximum near the highest of neighbouring samples: of the polynomial
     /// of degree six through seven samples, between the neighbours. Too few
     /// samples are their own maximum.
-    fn maximum(self, step: usize) -> Maximum {
+    /// With its sharpness −F̈/F in 1/s².
+    fn maximum(self, step: usize) -> (Maximum, f64) {
         let schedule = self.clock.schedule;
         if self.last_step < POINTS {
-            return Maximum {
+            let maximum = Maximum {
                 time_s: self.clock.time_s(step),
                 value: self.samples.at(step),
             };
+            return (maximum, 0.0);
         }
         let from = (step - 1)
             .saturating_sub(REACH)
@@ -95,11 +97,15 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
         };
         let at = step - from;
         let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
-        let (value, ..) = derivatives(&polynomial, at);
-        Maximum {
+        let (value, _, curvature) = derivatives(&polynomial, at);
+        let maximum = Maximum {
             time_s: self.clock.step_s * (middle + at),
             value,
-        }
+        };
+        (
+            maximum,
+            -curvature / (value * self.clock.step_s * self.clock.step_s),
+        )
     }
 }
 

@@ -97,6 +97,8 @@ pub struct Signal {
     sensor: Sensor,
     stretches: Vec<Stretch>,
     maxima: Vec<Maximum>,
+    /// −F̈/F of each maximum, where it is known.
+    sharpness_per_s2: Vec<f64>,
     largest: f64,
     /// Least height times time of a pulse, in N s.
     least_n_s: f64,
@@ -144,6 +146,7 @@ impl Signal {
             sensor,
             stretches: Vec::new(),
             maxima: Vec::new(),
+            sharpness_per_s2: Vec::new(),
             largest: 0.0,
             least_n_s: 0.0,
             lowest: f64::INFINITY,
@@ -151,16 +154,18 @@ impl Signal {
         }
     }
 
-    /// From parts that were found otherwise; a pulse has at least this height times
-    /// time in N s.
+    /// From parts that were found otherwise, maxima with their sharpness; a pulse has at
+    /// least this height times time in N s.
     pub(crate) fn assembled(
         sensor: Sensor,
-        (stretches, maxima): (Vec<Stretch>, Vec<Maximum>),
+        (stretches, maxima): (Vec<Stretch>, Vec<(Maximum, f64)>),
         least_n_s: f64,
     ) -> Self {
+        let (maxima, sharpness_per_s2) = maxima.into_iter().unzip();
         Self {
             stretches,
             maxima,
+            sharpness_per_s2,
             least_n_s,
             ..Self::new(sensor)
         }
@@ -182,6 +187,14 @@ impl Signal {
     #[must_use]
     pub fn maxima(&self) -> &[Maximum] {
         &self.maxima
+    }
+
+    /// Sharpness −F̈/F of a maximum in 1/s²: an error of the slope moves a flat maximum
+    /// further. `None` of a signal that was followed step by step, or of no maximum of it.
+    #[must_use]
+    pub fn sharpness_per_s2(&self, of: &Maximum) -> Option<f64> {
+        let at = self.maxima.iter().position(|maximum| maximum == of)?;
+        self.sharpness_per_s2.get(at).copied()
     }
 
     /// The signal so far; absent where it is 0.

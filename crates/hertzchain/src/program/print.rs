@@ -48,6 +48,14 @@ impl<W: Write> Write for Plain<W> {
     }
 }
 
+/// Prints indented JSON while it is made.
+pub(crate) fn stream_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print_with(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        out.write_all(b"\n")
+    })
+}
+
 /// Prints indented JSON.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     print(&format!("{value:#}"))
