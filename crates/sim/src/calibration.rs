@@ -9,9 +9,9 @@
 use crate::accuracy;
 use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
 use crate::plan::Plan;
-use crate::shot::Shot;
+use crate::shot::{Conditioning, Shot};
 use hertzchain_chain::ensemble::Precision;
-use hertzchain_chain::observe::{Competing, Passage};
+use hertzchain_chain::observe::{Competing, Passage, Pulse};
 use hertzchain_chain::{InstructionSet, System};
 use std::fmt::{Display, Formatter, Result as Formatted};
 use std::sync::Arc;
@@ -33,6 +33,11 @@ const KNOWN: f64 = 0.75;
 /// Estimates are this many times the largest error of calibration shots of the same condition: in
 /// between others may be worse.
 const MARGIN: f64 = 1.5;
+
+/// Steps of a guard, over those of the shot that it guards, and the weight of the change that
+/// they make.
+const GUARD: f64 = 1.3;
+const OF_GUARD: f64 = 2.0;
 
 /// Two maxima of which one is lower by no more than this many errors of heights may change places.
 const OF_HEIGHTS: f64 = 4.0;
@@ -78,7 +83,7 @@ const SETTINGS: [(Precision, f64, bool); 27] = {
 /// three runs that wait for whatever may come, over that of a step in single precision.
 const OF_DOUBLE: f64 = 2.0;
 const OF_OPENINGS: f64 = 1.2;
-const OF_PER_SHOT: f64 = 5.0;
+const OF_PER_SHOT: f64 = 3.0;
 
 /// A setting of the loop with equal steps that calibration shots have shown to be right enough.
 #[derive(Clone, Debug)]
@@ -102,6 +107,8 @@ struct Sample<'a> {
     plans: Vec<&'a Plan>,
     systems: Vec<Option<Arc<System>>>,
     exact: Vec<Option<Shot>>,
+    /// Whether nothing competes with the reflected pulse of any.
+    ends_with_pulse: bool,
     set: InstructionSet,
 }
 
@@ -133,7 +140,7 @@ impl Calibration {
                 precision: Some(precision),
                 openings,
                 shapes: false,
-                passed: sample.ends_with_pulse(),
+                passed: sample.ends_with_pulse,
             };
             let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
             if cost(&setting, precision) >= least {
@@ -181,13 +188,17 @@ impl Calibration {
         for (plan, own) in plans.iter().zip(&mut systems) {
             *own = own.take().filter(|_| belongs(plan, (first, system)));
         }
-        let shots = run_lanes(plans, &systems, set, &self.setting).into_iter();
+        let shots = guarded(plans, &systems, set, &self.setting).into_iter();
         shots.map(|shot| self.right_enough(shot?)).collect()
     }
 
     /// The shot with its estimate, if that is what was asked.
     fn right_enough(&self, mut shot: Shot) -> Option<Shot> {
-        let reached = self.error * shot.condition;
+        let Conditioning {
+            forces,
+            interpolation,
+        } = shot.conditioning;
+        let reached = self.error * forces + MARGIN * interpolation;
         let fixed = !may_flip(shot.passage.as_ref().ok()?, self.height_error);
         let right = reached <= shot.accuracy_asked && fixed;
         shot.accuracy_reached = Some(reached);
@@ -236,8 +247,10 @@ impl<'a> Sample<'a> {
             let fine = run(step);
             let exact: Vec<Option<Shot>> = coarse.iter().zip(fine.clone()).map(known).collect();
             if exact.iter().flatten().count() as f64 >= least {
+                let ends_with_pulse = fine.iter().flatten().all(ends_with_pulse);
                 let (plans, systems) = (plans.clone(), systems.clone());
                 return Some(Self {
+                    ends_with_pulse,
                     plans,
                     systems,
                     exact,
@@ -249,16 +262,6 @@ impl<'a> Sample<'a> {
         None
     }
 
-    /// Whether nothing that follows the reflected pulse of a calibration shot competes with it.
-    fn ends_with_pulse(&self) -> bool {
-        let passages = self.exact.iter().flatten().flat_map(|shot| &shot.passage);
-        passages.into_iter().all(|passage| {
-            let last_s = passage.reflected.map_or(f64::INFINITY, |peak| peak.time_s);
-            let later = |other: &Competing| other.maximum.time_s > last_s;
-            !passage.competing.iter().any(later)
-        })
-    }
-
     /// A calibration with a setting, and the share of shots that are not right enough with it;
     /// `None` where a shot is wrong and does not show it.
     fn try_setting(
@@ -266,14 +269,15 @@ impl<'a> Sample<'a> {
         setting: Setting,
         (first, system): (&Plan, &Arc<System>),
     ) -> Option<(Calibration, f64)> {
-        let shots = run_lanes(&self.plans, &self.systems, self.set, &setting);
+        let shots = guarded(&self.plans, &self.systems, self.set, &setting);
         let pairs = || shots.iter().zip(&self.exact);
         let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact.as_ref()?)));
         let same = || known().filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
         let heights = same().map(|(shot, exact)| shot.peaks_change(exact));
         let height_error = OF_HEIGHTS * heights.fold(first.accuracy / TIGHTER, f64::max);
         let rest = first.accuracy / TIGHTER;
-        let errors = same().map(|(shot, exact)| (shot.change(exact) + rest) / shot.condition);
+        let errors =
+            same().map(|(shot, exact)| (shot.change(exact) + rest) / shot.conditioning.forces);
         let calibration = Calibration {
             setting,
             first: (first.clone(), system.clone()),
@@ -303,6 +307,38 @@ impl<'a> Sample<'a> {
     }
 }
 
+/// Whether nothing competes with the reflected pulse of a shot, which is then over when it has passed.
+fn ends_with_pulse(shot: &Shot) -> bool {
+    let of_return = |other: &Competing| other.pulse == Pulse::Reflected;
+    let passage = shot.passage.as_ref();
+    passage.is_ok_and(|passage| !passage.competing.iter().any(of_return))
+}
+
+/// Shots of plans. Of those with several reflected maxima, which small errors exchange or merge, the
+/// change by longer steps counts as one of interpolation.
+fn guarded(
+    plans: &[&Plan],
+    systems: &[Option<Arc<System>>],
+    set: InstructionSet,
+    setting: &Setting,
+) -> Vec<Option<Shot>> {
+    let shots = run_lanes(plans, systems, set, setting);
+    if setting.passed {
+        return shots;
+    }
+    let guards = run_lanes(plans, systems, set, &setting.longer(GUARD));
+    let guarded = |(shot, guard): (Option<Shot>, Option<Shot>)| {
+        let (mut shot, guard) = (shot?, guard?);
+        // Both may move the top of a flat pulse alike, but hardly its height.
+        let flat = shot.peaks_change(&guard) * setting.step * shot.conditioning.forces;
+        let change = shot.change(&guard).max(flat);
+        let interpolation = &mut shot.conditioning.interpolation;
+        *interpolation = interpolation.max(OF_GUARD * change);
+        Some(shot)
+    };
+    shots.into_iter().zip(guards).map(guarded).collect()
+}
+
 /// Cost of a shot, in steps of single precision a contact time.
 fn cost(setting: &Setting, precision: Precision) -> f64 {
     let double = if precision == Precision::Double {
@@ -311,7 +347,8 @@ fn cost(setting: &Setting, precision: Precision) -> f64 {
         1.0
     };
     let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
-    double * openings / setting.step
+    let guard = if setting.passed { 0.0 } else { 1.0 / GUARD };
+    (1.0 + guard) * double * openings / setting.step
 }
 
 /// Whether a plan is of a family.

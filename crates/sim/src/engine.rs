@@ -10,10 +10,10 @@ use crate::duration::{self, has_wall};
 use crate::error::StudyError;
 use crate::plan::{Pick, Plan, Solver};
 use crate::prepared::{closed_gaps, is_ambiguous};
-use crate::shot::{Shot, ambiguous, shoot, shoot_checked};
+use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
-use hertzchain_chain::observe::{Maximum, Passage, Passages, Signal};
+use hertzchain_chain::observe::{Maximum, Passage, Passages, Shape, Signal};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -58,19 +58,15 @@ pub fn run_plans(
         shots.iter().flatten().for_each(|_| progress());
         shots
     });
-    // What needs a closer look is run side by side too.
-    let missed = shots.iter().filter(|(_, shot)| shot.is_none());
-    let missed: Vec<&Plan> = missed.map(|(at, _)| &plans[*at]).collect();
-    let closer = in_blocks(&missed, &|block| {
-        let shots = run_block(block, Control::PerShot { checked: true }, set);
-        block.iter().for_each(|_| progress());
-        shots
-    });
-    let mut closer = closer.into_iter().map(|(_, shot)| shot);
-    let shots = shots.into_iter();
-    shots
-        .filter_map(|(_, shot)| shot.map(Ok).or_else(|| closer.next()))
-        .collect()
+    // What needs a closer look takes the adaptive loop.
+    let closer = |(at, shot): (usize, Option<Shot>)| {
+        shot.map(Ok).unwrap_or_else(|| {
+            let shot = shoot_checked(&plans[at]);
+            progress();
+            shot
+        })
+    };
+    shots.into_par_iter().map(closer).collect()
 }
 
 /// Runs plans that go together block by block, on all threads; results are in order.
@@ -219,7 +215,12 @@ pub(crate) fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
 
 /// A shot with the accuracy it reached, if that is what was asked.
 fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
-    let [near, far] = [0, 1].map(|at| LONGER_STEPS[at].1 * shot.change(longer[at]));
+    let step = Setting::of(plan)?.step;
+    let [near, far] = [0, 1].map(|at| {
+        // Both may move the top of a flat pulse alike, but hardly its height.
+        let flat = shot.peaks_change(longer[at]) * step * shot.conditioning.forces;
+        LONGER_STEPS[at].1 * shot.change(longer[at]).max(flat)
+    });
     let margin = if accuracy::is_gentle(plan) {
         1.0
     } else {
@@ -268,7 +269,7 @@ impl Setting {
     }
 
     /// The same with longer steps, to compare with; these shots wait for whatever may come.
-    fn longer(self, times: f64) -> Self {
+    pub(crate) fn longer(self, times: f64) -> Self {
         Self {
             step: times * self.step,
             shapes: false,
@@ -372,26 +373,33 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
         velocity_m_s: lane.velocity_m_s,
         work: lane.work,
         step_s: Some(lane.step_s),
-        condition: condition(&passages, &passage, lane.step_s),
+        conditioning: conditioning(&passages, &passage, lane.step_s),
         notes,
         ..Shot::picked(plan, &passages, Ok(passage), lane.time_s, EQUAL_STEPS)
     })
 }
 
-/// By how much a relative error of the forces, acting for a step, changes the times of flight,
-/// relative: it moves a peak by 1/(step · sharpness).
-fn condition(seen: &Passages, passage: &Passage, step_s: f64) -> f64 {
-    let moves_s = |signal: &Signal, peak: &Maximum| {
-        let sharpness_per_s2 = signal.sharpness_per_s2(peak).unwrap_or(0.0);
-        1.0 / (step_s * sharpness_per_s2.max(0.0))
+/// How well the times of flight of a pulse with these peaks are conditioned.
+fn conditioning(seen: &Passages, passage: &Passage, step_s: f64) -> Conditioning {
+    let shape = |signal: &Signal, peak: &Maximum| signal.shape(peak);
+    let wall = shape(seen.wall(), &passage.wall);
+    let over = |shape: Shape, time_s: f64| {
+        let of = |get: fn(&Shape) -> f64| (get(&shape) + get(&wall)) / time_s;
+        let moves_s = |it: &Shape| 1.0 / it.sharpness_per_s2.max(0.0);
+        Conditioning {
+            forces: (moves_s(&shape) + moves_s(&wall)) / (step_s * time_s),
+            interpolation: of(|it| it.interpolation_s),
+        }
     };
-    let wall_s = moves_s(seen.wall(), &passage.wall);
-    let incident_s = moves_s(seen.sensor(), &passage.incident);
-    let incident = (incident_s + wall_s) / passage.tof_incident_s();
-    let reflected = passage.reflected.map_or(0.0, |peak| {
-        (moves_s(seen.sensor(), &peak) + wall_s) / (peak.time_s - passage.wall.time_s)
+    let incident = over(
+        shape(seen.sensor(), &passage.incident),
+        passage.tof_incident_s(),
+    );
+    let reflected = passage.reflected.map(|peak| {
+        let time_s = peak.time_s - passage.wall.time_s;
+        over(shape(seen.sensor(), &peak), time_s)
     });
-    incident.max(reflected)
+    reflected.map_or(incident, |reflected| incident.worse(reflected))
 }
 
 /// The method's name.

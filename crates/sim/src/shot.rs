@@ -75,13 +75,31 @@ pub struct Shot {
     pub tolerance: Option<f64>,
     /// Step of a fixed-step solver in s.
     pub step_s: Option<f64>,
-    /// By how much a relative error of the forces, acting for a step, changes the times of
-    /// flight, relative; with equal steps only.
-    pub(crate) condition: f64,
+    /// How well its times of flight are conditioned; known with equal steps only.
+    pub(crate) conditioning: Conditioning,
     /// Maxima that errors of heights could make a pulse's peak instead.
     pub(crate) other_picks: Vec<OtherPick>,
     /// What a reader of the numbers must know.
     pub notes: Vec<String>,
+}
+
+/// Relative changes of times of flight, the larger of both.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Conditioning {
+    /// By a relative error 1 of the forces that acts for a step: it moves a peak by
+    /// 1/(step · sharpness).
+    pub forces: f64,
+    /// By an interpolation of the peaks through fewer samples.
+    pub interpolation: f64,
+}
+
+impl Conditioning {
+    pub(crate) fn worse(self, other: Self) -> Self {
+        Self {
+            forces: self.forces.max(other.forces),
+            interpolation: self.interpolation.max(other.interpolation),
+        }
+    }
 }
 
 impl Shot {
@@ -114,7 +132,7 @@ impl Shot {
             solver: solver.to_owned(),
             tolerance: None,
             step_s: None,
-            condition: 0.0,
+            conditioning: Conditioning::default(),
             other_picks: Vec::new(),
             notes: Vec::new(),
         }
