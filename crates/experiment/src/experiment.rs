@@ -10,7 +10,7 @@ use crate::finding::{Mistakes, Problem, Source, Warning};
 use crate::keys::ROOT;
 use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Campaign, Liquid, Rig, SectionSpec, Solver, Spec};
+use crate::spec::{Campaign, Liquid, MaterialSpec, Rig, SectionSpec, Solver, Spec};
 use crate::validity;
 use crate::value::Units;
 use crate::view::View;
@@ -180,6 +180,11 @@ impl Experiment {
     /// Why a solver does not reach what it was asked for, at its settings.
     pub fn unreached(&self, why: &str) -> Mistakes {
         self.mistake(locate::unreached(&self.spec, why))
+    }
+
+    /// Whether chains at different speeds of the striker differ in nothing else.
+    pub fn is_same_at_all_speeds(&self) -> bool {
+        self.spec.materials.0.iter().all(MaterialSpec::is_constant)
     }
 
     /// Refuses an experiment without a striker where a speed is asked for,

@@ -132,14 +132,14 @@ fn threads_are_counted_from_1() {
 
 #[test]
 fn a_calibrated_sweep_says_so() {
-    let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:100"];
-    let calibrated = [&speeds[..], &["--error-control", "calibrated"]].concat();
-    let printed = text(&sweep(&calibrated).stdout);
+    let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:200"];
+    let printed = text(&sweep(&speeds).stdout);
     assert!(
-        printed.contains("chosen by 40 calibration shots"),
+        printed.contains("chosen by 48 calibration shots"),
         "{printed}"
     );
-    let each = sweep(&[&speeds[..], &["--json"]].concat());
-    let swept: Value = serde_json::from_slice(&each.stdout).unwrap();
+    let each = [&speeds[..], &["--json", "--error-control", "per-shot"]].concat();
+    let swept: Value = serde_json::from_slice(&sweep(&each).stdout).unwrap();
     assert!(swept["calibration"].is_null());
+    assert_eq!(swept["error_control"], "per shot: as asked");
 }

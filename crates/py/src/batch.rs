@@ -183,11 +183,15 @@ impl Run {
                 false => Ok(done),
             }
         })?;
-        let rows = result.rows;
+        let BatchResult {
+            rows,
+            error_control,
+            ..
+        } = result;
         let found = if is_curve {
             let laws = [Column::Incident, Column::Reflected].map(|of| rows.law(of, self.accuracy));
             let laws = laws.each_ref().map(|(law, least)| (law, least.clone()));
-            let found = results::outline(&self.experiment.inner, calibration, laws);
+            let found = results::outline(&self.experiment.inner, calibration.as_ref(), laws);
             let found = json::object(py, &found)?.cast_into::<PyDict>()?;
             errors = rows
                 .failed
@@ -201,6 +205,7 @@ impl Run {
             found.set_item("warnings", summary(rows.warnings))?;
             found
         };
+        found.set_item("error_control", error_control)?;
         found.set_item("speed_m_s", self.speeds(py))?;
         found.set_item("values", self.values(py))?;
         found.set_item("columns", columns.arrays(py)?)?;

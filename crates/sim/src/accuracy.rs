@@ -1,10 +1,10 @@
 //! From the accuracy that is asked to a solver that delivers it.
 
 use crate::duration::has_wall;
-use crate::plan::{Plan, Solver};
+use crate::plan::{Pick, Plan, Solver};
 use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::wave::{DormandPrince, Method, Rk4, Verlet};
-use hertzchain_chain::{System, Tension};
+use hertzchain_chain::{Start, System, Tension};
 
 /// Tightest tolerance per step: below it rounding, not the step, decides.
 pub(crate) const TIGHTEST: f64 = 1e-13;
@@ -72,6 +72,23 @@ pub(crate) fn is_gentle(plan: &Plan) -> bool {
     chain.tension == Tension::Allowed
         && chain.gaps.is_empty()
         && laws.all(|law| MEASURED.contains(&law.info().name))
+}
+
+/// Whether a row is gentle, of equal beads, hit by one of them and held by nothing but a wall, and
+/// timed by peaks: shots of such rows that differ in numbers have errors that are alike.
+pub(crate) fn is_uniform(plan: &Plan) -> bool {
+    let chain = &plan.chain;
+    let struck = match &chain.start {
+        Start::Striker { bead, .. } => Some(bead),
+        _ => None,
+    };
+    let free = || chain.system().is_ok_and(|system| system.flies_free());
+    plan.duration_s.is_none()
+        && plan.picks().all(|pick| pick == Pick::Peak)
+        && is_gentle(plan)
+        && chain.initial.is_empty()
+        && chain.beads.iter().all(|bead| Some(bead) == struck)
+        && free()
 }
 
 /// Other rows are more wrong than the changes say in 14 to 19 of 10,000 results; with this margin

@@ -1,6 +1,7 @@
 //! One engine for many shots: sweeps, ensembles over named numbers, and shards of both.
 
-use crate::engine::{Calibration, Control, run_plans};
+use crate::calibration::Calibration;
+use crate::engine::{Control, run_plans};
 use crate::error::StudyError;
 use crate::fingerprint::{Fingerprint, Inputs};
 use crate::plan::{Pick, Plan, Solver};
@@ -12,6 +13,7 @@ use hertzchain_chain::InstructionSet;
 use hertzchain_experiment::{Experiment, Units, Warning};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// How the errors of the shots of a batch are controlled.
@@ -19,10 +21,10 @@ use std::sync::OnceLock;
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorControl {
     /// Every shot is compared with two more, with longer steps.
-    #[default]
     PerShot,
-    /// Calibration shots among the batch, computed much more tightly, choose the steps of all;
-    /// as per shot where that is not possible.
+    /// Calibration shots among the batch, computed much more tightly, choose the steps of all,
+    /// and each shot estimates its own error; as per shot where that is not possible or not worth it.
+    #[default]
     Calibrated,
     /// By the step for the accuracy asked alone; no shot reports an error.
     None,
@@ -75,7 +77,7 @@ impl BatchOptions {
             pick: experiment.pick().into(),
             rebound: false,
             checked: false,
-            error_control: ErrorControl::PerShot,
+            error_control: ErrorControl::default(),
             set: InstructionSet::default(),
         }
     }
@@ -136,8 +138,8 @@ pub struct BatchResult {
     pub accuracy: f64,
     /// The batch in words, for messages.
     pub about: String,
-    /// The setting that calibration shots of the whole batch chose, in words.
-    pub calibration: Option<String>,
+    /// How errors were controlled, and why, in words.
+    pub error_control: String,
     /// The shots.
     pub rows: Rows,
 }
@@ -243,23 +245,24 @@ impl Batch {
         mut take: impl FnMut(BatchShot),
     ) -> (BatchResult, Option<Calibration>) {
         let calibration = self.calibration();
+        let control = self.control(&calibration);
         let mut rows = Rows::default();
         let places: Vec<usize> = shard.places(self.shots()).collect();
         for part in places.chunks(piece()) {
             if stopped() {
                 break;
             }
-            for shot in self.together(part, calibration.as_ref(), progress) {
+            for shot in self.together(part, control, progress) {
                 rows.add(&shot);
                 take(shot);
             }
         }
         let result = BatchResult {
-            calibration: calibration.map(|calibration| calibration.to_string()),
+            error_control: self.control_in_words(&calibration),
             rows,
             ..self.empty(shard)
         };
-        (result, calibration)
+        (result, calibration.ok())
     }
 
     /// The results of a shard without its shots.
@@ -272,7 +275,7 @@ impl Batch {
             units: self.experiment.units(),
             accuracy: self.options.accuracy,
             about: self.about(),
-            calibration: None,
+            error_control: String::new(),
             rows: Rows::default(),
         }
     }
@@ -296,27 +299,50 @@ impl Batch {
         )
     }
 
-    /// The setting that calibration shots choose, if that is asked for: from the whole batch,
-    /// however few of its shots are run here, so that every shard has the same.
-    fn calibration(&self) -> Option<Calibration> {
-        if self.options.error_control != ErrorControl::Calibrated {
-            return None;
+    /// The setting that calibration shots choose: from the whole batch, however few of its shots
+    /// are run here, so that every shard has the same; or why there is none.
+    fn calibration(&self) -> Result<Calibration, &'static str> {
+        match self.options.error_control {
+            ErrorControl::PerShot => return Err("as asked"),
+            ErrorControl::None => return Err("by the step for the accuracy asked alone"),
+            ErrorControl::Calibrated if self.options.rebound => {
+                return Err("the striker's rebound takes the adaptive loop");
+            }
+            ErrorControl::Calibrated => {}
         }
-        let places = Calibration::places(self.shots());
-        let planned = self.planned(&places.collect::<Vec<_>>());
-        let sound: Vec<Plan> = planned
-            .into_iter()
-            .flatten()
-            .map(|(plan, _)| plan)
+        let numbers = self.numbers.iter().map(|(_, column)| &column[..]);
+        let columns: Vec<&[f64]> = std::iter::once(&self.speeds_m_s[..])
+            .chain(numbers)
             .collect();
-        Calibration::new(&sound, self.options.set)
+        let places = Calibration::places(&columns).ok_or("so few shots are computed sooner so")?;
+        let planned = self.planned(&places).into_iter().flatten();
+        let plans: Vec<Plan> = planned.map(|(plan, _)| plan).collect();
+        Calibration::new(&plans, self.options.set)
+    }
+
+    fn control<'a>(&self, calibration: &'a Result<Calibration, &'static str>) -> Control<'a> {
+        match (self.options.error_control, calibration) {
+            (ErrorControl::None, _) => Control::None,
+            (_, Ok(calibration)) => Control::Calibrated(calibration),
+            (_, Err(_)) => Control::PerShot {
+                checked: self.options.checked,
+            },
+        }
+    }
+
+    fn control_in_words(&self, calibration: &Result<Calibration, &'static str>) -> String {
+        match (self.options.error_control, calibration) {
+            (_, Ok(calibration)) => format!("calibrated: {calibration}"),
+            (ErrorControl::None, Err(why)) => format!("none: {why}"),
+            (_, Err(why)) => format!("per shot: {why}"),
+        }
     }
 
     /// Shots that are in memory side by side.
     fn together(
         &self,
         places: &[usize],
-        calibration: Option<&Calibration>,
+        control: Control<'_>,
         progress: &(dyn Fn() + Sync),
     ) -> Vec<BatchShot> {
         let mut plans = Vec::with_capacity(places.len());
@@ -332,13 +358,6 @@ impl Batch {
         };
         let planned = self.planned(places).into_iter();
         let warnings: Vec<Result<Vec<Warning>, StudyError>> = planned.map(&mut split).collect();
-        let control = match (self.options.error_control, calibration) {
-            (ErrorControl::None, _) => Control::None,
-            (_, Some(calibration)) => Control::Calibrated(calibration),
-            (_, None) => Control::PerShot {
-                checked: self.options.checked,
-            },
-        };
         let mut shots = run_plans(&plans, control, self.options.set, progress).into_iter();
         let one = |(place, warnings): (&usize, Result<Vec<Warning>, StudyError>)| {
             let (shot, warnings) = match warnings {
@@ -356,12 +375,7 @@ impl Batch {
     }
 
     fn planned(&self, places: &[usize]) -> Vec<Planned> {
-        let chunk = if self.numbers.is_empty() {
-            1
-        } else {
-            NEIGHBOURS
-        };
-        let chunks = places.par_chunks(chunk);
+        let chunks = places.par_chunks(NEIGHBOURS);
         chunks
             .flat_map_iter(|chunk| self.in_sequence(chunk))
             .collect()
@@ -369,33 +383,29 @@ impl Batch {
 
     /// Plans of consecutive shots: the experiment is changed where numbers do.
     fn in_sequence(&self, places: &[usize]) -> Vec<Planned> {
-        let mut latest: Option<(Vec<f64>, Result<Experiment, StudyError>)> = None;
+        let mut latest: Option<Sequence<'_>> = None;
         let plan = |place: &usize| {
             if stopped() {
                 return Err(StudyError::Stopped);
             }
             let columns = self.numbers.iter();
             let values: Vec<f64> = columns.map(|(_, column)| column[*place]).collect();
-            let (_, changed) = match latest.take() {
-                Some(same) if same.0 == values => latest.insert(same),
-                _ => {
-                    let changed = self.changed(&values);
-                    latest.insert((values, changed))
-                }
+            let sequence = match latest.take() {
+                Some(same) if same.values == values => latest.insert(same),
+                _ => latest.insert(Sequence::new(self.changed(&values)?, values)),
             };
-            let experiment = changed.as_ref().map_err(Clone::clone)?;
-            self.plan(experiment, self.speeds_m_s[*place])
+            sequence.plan(self, self.speeds_m_s[*place])
         };
         places.iter().map(plan).collect()
     }
 
-    fn changed(&self, values: &[f64]) -> Result<Experiment, StudyError> {
+    fn changed(&self, values: &[f64]) -> Result<Cow<'_, Experiment>, StudyError> {
         if values.is_empty() {
-            return Ok(self.experiment.clone());
+            return Ok(Cow::Borrowed(&self.experiment));
         }
         let paths = self.numbers.iter().map(|(path, _)| path.as_str());
         let numbers: Vec<(&str, f64)> = paths.zip(values.iter().copied()).collect();
-        Ok(self.experiment.set(&numbers)?)
+        Ok(Cow::Owned(self.experiment.set(&numbers)?))
     }
 
     fn plan(&self, experiment: &Experiment, speed_m_s: f64) -> Planned {
@@ -409,6 +419,57 @@ impl Batch {
             ..plan
         };
         Ok((plan, warnings))
+    }
+}
+
+/// Consecutive shots of one experiment.
+struct Sequence<'a> {
+    experiment: Cow<'a, Experiment>,
+    values: Vec<f64>,
+    shots: usize,
+    /// A plan at the batch's highest speed, if others differ from it in speed alone.
+    like: Option<Plan>,
+}
+
+/// Shots of one experiment that are planned one by one before it is worth to find out whether
+/// they differ in speed alone.
+const PLANNED_ALONE: usize = 2;
+
+impl<'a> Sequence<'a> {
+    fn new(experiment: Cow<'a, Experiment>, values: Vec<f64>) -> Self {
+        Self {
+            experiment,
+            values,
+            shots: 0,
+            like: None,
+        }
+    }
+
+    fn plan(&mut self, batch: &Batch, speed_m_s: f64) -> Planned {
+        if self.shots == PLANNED_ALONE && self.experiment.is_same_at_all_speeds() {
+            self.like = self.like(batch);
+        }
+        self.shots += 1;
+        let like = self
+            .like
+            .as_ref()
+            .filter(|_| speed_m_s.is_finite() && speed_m_s > 0.0);
+        match like.and_then(|plan| plan.at_speed(speed_m_s)) {
+            Some(plan) => Ok((plan, Vec::new())),
+            None => batch.plan(&self.experiment, speed_m_s),
+        }
+    }
+
+    /// A plan of a chain that is sound at the lowest and the highest speed of the batch, and so
+    /// at all between: what is checked grows or falls with speed throughout.
+    fn like(&self, batch: &Batch) -> Option<Plan> {
+        let ends = [f64::min, f64::max].map(|pick| batch.speeds_m_s.iter().copied().reduce(pick));
+        let sound = |speed_m_s: Option<f64>| {
+            let (plan, warnings) = batch.plan(&self.experiment, speed_m_s?).ok()?;
+            warnings.is_empty().then_some(plan)
+        };
+        sound(ends[0])?;
+        sound(ends[1])
     }
 }
 

@@ -5,17 +5,17 @@
 //! well, runs one by one in the adaptive loop.
 
 use crate::accuracy;
+use crate::calibration::Calibration;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
 use crate::plan::{Pick, Plan, Solver};
 use crate::prepared::{closed_gaps, is_ambiguous};
-use crate::shot::{Shot, ambiguous, shoot, shoot_checked};
+use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
-use hertzchain_chain::observe::{Passage, Passages};
+use hertzchain_chain::observe::{Maximum, Passage, Passages, Shape, Signal};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use rayon::prelude::*;
-use std::fmt::{Display, Formatter, Result as Formatted};
 use std::sync::Arc;
 
 /// How the errors of shots are controlled, with what that needs.
@@ -27,9 +27,8 @@ pub enum Control<'a> {
         /// Compare shots that follow their striker too.
         checked: bool,
     },
-    /// With the steps that calibration shots chose, several times as fast. Shots carry the
-    /// accuracy of the calibration; one that longer steps change by more than the
-    /// accuracy asked is run as per shot.
+    /// With the steps that calibration shots chose, ten times as fast. Each shot carries its
+    /// own estimate; one whose estimate is above the accuracy asked is run as per shot.
     Calibrated(&'a Calibration),
     /// By the step for the accuracy alone, as a fit needs them: nothing is computed twice, but
     /// in the adaptive loop where another maximum could be the reflected pulse's peak.
@@ -45,23 +44,49 @@ pub fn run_plans(
     set: InstructionSet,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Result<Shot, StudyError>> {
-    let mut results: Vec<Option<Result<Shot, StudyError>>> = vec![None; plans.len()];
-    let shots: Vec<_> = blocks(plans)
+    let all: Vec<&Plan> = plans.iter().collect();
+    let Control::Calibrated(calibration) = control else {
+        let shots = in_blocks(&all, &|block| {
+            let shots = run_block(block, control, set);
+            block.iter().for_each(|_| progress());
+            shots
+        });
+        return shots.into_iter().map(|(_, shot)| shot).collect();
+    };
+    let shots = in_blocks(&all, &|block| {
+        let shots = calibration.run(block, set);
+        shots.iter().flatten().for_each(|_| progress());
+        shots
+    });
+    // What needs a closer look takes the adaptive loop.
+    let closer = |(at, shot): (usize, Option<Shot>)| {
+        shot.map(Ok).unwrap_or_else(|| {
+            let shot = shoot_checked(&plans[at]);
+            progress();
+            shot
+        })
+    };
+    shots.into_par_iter().map(closer).collect()
+}
+
+/// Runs plans that go together block by block, on all threads; results are in order.
+fn in_blocks<T: Send>(
+    plans: &[&Plan],
+    run: &(dyn Fn(&[&Plan]) -> Vec<T> + Sync),
+) -> Vec<(usize, T)> {
+    let mut results: Vec<(usize, T)> = blocks(plans)
         .par_iter()
         .flat_map_iter(|block| {
-            let together: Vec<&Plan> = block.iter().map(|&at| &plans[at]).collect();
-            let shots = match stopped() {
-                true => vec![Err(StudyError::Stopped); block.len()],
-                false => run_block(&together, control, set),
-            };
-            together.iter().for_each(|_| progress());
-            block.iter().copied().zip(shots).collect::<Vec<_>>()
+            let together: Vec<&Plan> = block.iter().map(|&at| plans[at]).collect();
+            block
+                .iter()
+                .copied()
+                .zip(run(&together))
+                .collect::<Vec<_>>()
         })
         .collect();
-    for (at, shot) in shots {
-        results[at] = Some(shot);
-    }
-    results.into_iter().flatten().collect()
+    results.sort_unstable_by_key(|(at, _)| *at);
+    results
 }
 
 /// Shots of plans that go together, or of one that goes alone: with equal steps, and the
@@ -71,15 +96,12 @@ fn run_block(
     control: Control<'_>,
     set: InstructionSet,
 ) -> Vec<Result<Shot, StudyError>> {
+    if stopped() {
+        return vec![Err(StudyError::Stopped); plans.len()];
+    }
     let fast = match control {
         Control::None => unchecked(plans, set),
-        Control::PerShot { .. } => compared(plans, set),
-        Control::Calibrated(calibration) => {
-            let shots = calibration.run(plans, set).into_iter().zip(plans);
-            let alone = |plan: &Plan| compared(&[plan], set).pop().flatten();
-            let shots = shots.map(|(shot, plan)| shot.or_else(|| alone(plan)));
-            shots.collect()
-        }
+        _ => compared(plans, set),
     };
     let alone = |plan: &Plan| match control {
         Control::PerShot { checked: false } if plan.rebound => shoot(plan),
@@ -113,7 +135,7 @@ fn unchecked(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
 }
 
 /// Plans that run side by side: equal in accuracy, sensor, length and what ends them.
-fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
+fn blocks(plans: &[&Plan]) -> Vec<Vec<usize>> {
     let mut blocks = Vec::new();
     let mut open: Vec<Vec<usize>> = Vec::new();
     for (at, plan) in plans.iter().enumerate() {
@@ -121,7 +143,7 @@ fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
             blocks.push(vec![at]);
             continue;
         }
-        let together = |block: &&mut Vec<usize>| fit_together(&plans[block[0]], plan);
+        let together = |block: &&mut Vec<usize>| fit_together(plans[block[0]], plan);
         match open.iter_mut().find(together) {
             Some(block) => block.push(at),
             None => open.push(vec![at]),
@@ -135,7 +157,7 @@ fn blocks(plans: &[Plan]) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn fit_together(one: &Plan, other: &Plan) -> bool {
+pub(crate) fn fit_together(one: &Plan, other: &Plan) -> bool {
     one.accuracy == other.accuracy
         && one.sensor_bead == other.sensor_bead
         && one.picks().eq(other.picks())
@@ -144,7 +166,7 @@ fn fit_together(one: &Plan, other: &Plan) -> bool {
 }
 
 /// Whether the loop with equal steps can run a plan to the accuracy asked.
-fn suits(plan: &Plan) -> bool {
+pub(crate) fn suits(plan: &Plan) -> bool {
     plan.solver == Solver::Adaptive
         && !plan.rebound
         && !plan.budget
@@ -183,7 +205,7 @@ fn compared(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
 }
 
 /// The systems of plans; `None` for those that can't run with equal steps.
-fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
+pub(crate) fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
     let system = |plan: &&Plan| {
         let suits = suits(plan) && plan.check().is_ok();
         suits.then(|| plan.chain.system().ok()).flatten()
@@ -193,7 +215,12 @@ fn systems(plans: &[&Plan]) -> Vec<Option<Arc<System>>> {
 
 /// A shot with the accuracy it reached, if that is what was asked.
 fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
-    let [near, far] = [0, 1].map(|at| LONGER_STEPS[at].1 * shot.change(longer[at]));
+    let step = Setting::of(plan)?.step;
+    let [near, far] = [0, 1].map(|at| {
+        // Both may move the top of a flat pulse alike, but hardly its height.
+        let flat = shot.peaks_change(longer[at]) * step * shot.conditioning.forces;
+        LONGER_STEPS[at].1 * shot.change(longer[at]).max(flat)
+    });
     let margin = if accuracy::is_gentle(plan) {
         1.0
     } else {
@@ -207,21 +234,22 @@ fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
 
 /// Step size and precision of plans that run side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Setting {
-    step: f64,
+pub(crate) struct Setting {
+    /// In contact times.
+    pub step: f64,
     /// That of each plan's accuracy if `None`; where a load presses beads
     /// together never single.
-    precision: Option<Precision>,
-    openings: bool,
+    pub precision: Option<Precision>,
+    pub openings: bool,
     /// Pulses have widths, whether or not a pick needs their shape.
-    shapes: bool,
+    pub shapes: bool,
     /// Shots end once the reflected pulse has passed, not when none can come
     /// any more.
-    passed: bool,
+    pub passed: bool,
 }
 
 impl Setting {
-    fn of(plan: &Plan) -> Option<Self> {
+    pub(crate) fn of(plan: &Plan) -> Option<Self> {
         let (step, openings) = accuracy::equal_steps(plan)?;
         Some(Self {
             step,
@@ -241,7 +269,7 @@ impl Setting {
     }
 
     /// The same with longer steps, to compare with; these shots wait for whatever may come.
-    fn longer(self, times: f64) -> Self {
+    pub(crate) fn longer(self, times: f64) -> Self {
         Self {
             step: times * self.step,
             shapes: false,
@@ -260,7 +288,7 @@ impl Setting {
 }
 
 /// Runs plans of one sensor and length side by side, those that have a system.
-fn run_lanes(
+pub(crate) fn run_lanes(
     plans: &[&Plan],
     systems: &[Option<Arc<System>>],
     set: InstructionSet,
@@ -345,176 +373,34 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
         velocity_m_s: lane.velocity_m_s,
         work: lane.work,
         step_s: Some(lane.step_s),
+        conditioning: conditioning(&passages, &passage, lane.step_s),
         notes,
         ..Shot::picked(plan, &passages, Ok(passage), lane.time_s, EQUAL_STEPS)
     })
 }
 
+/// How well the times of flight of a pulse with these peaks are conditioned.
+fn conditioning(seen: &Passages, passage: &Passage, step_s: f64) -> Conditioning {
+    let shape = |signal: &Signal, peak: &Maximum| signal.shape(peak);
+    let wall = shape(seen.wall(), &passage.wall);
+    let over = |shape: Shape, time_s: f64| {
+        let of = |get: fn(&Shape) -> f64| (get(&shape) + get(&wall)) / time_s;
+        let moves_s = |it: &Shape| 1.0 / it.sharpness_per_s2.max(0.0);
+        Conditioning {
+            forces: (moves_s(&shape) + moves_s(&wall)) / (step_s * time_s),
+            interpolation: of(|it| it.interpolation_s),
+        }
+    };
+    let incident = over(
+        shape(seen.sensor(), &passage.incident),
+        passage.tof_incident_s(),
+    );
+    let reflected = passage.reflected.map(|peak| {
+        let time_s = peak.time_s - passage.wall.time_s;
+        over(shape(seen.sensor(), &peak), time_s)
+    });
+    reflected.map_or(incident, |reflected| incident.worse(reflected))
+}
+
 /// The method's name.
 const EQUAL_STEPS: &str = "predictor–corrector of order 4, equal steps";
-
-/// Calibration shots that are enough for plans between which little changes: the paper's
-/// chains at a thousand speeds (`docs/explanation/numerics.md`).
-const CALIBRATION_SHOTS: usize = 40;
-
-/// What calibration shots are compared with is this many times as right as asked.
-const TIGHTER: f64 = 20.0;
-
-/// Steps of a guard, over those of the shot that it guards: what that changes
-/// by more than the accuracy asked is compared by itself. A guard also waits for
-/// what may come after the reflected pulse.
-const GUARD: f64 = 1.3;
-
-/// Two longer comparisons take 2.36 times the force passes of a shot. A calibrated shot ends when its
-/// pulse has passed, after 0.56 of them, and its guard takes 0.77 times: with
-/// steps below this share of a compared shot's, calibration saves nothing.
-const WORTHWHILE: f64 = 0.56;
-
-/// Calibration shots may use this share of the accuracy asked: between them others may
-/// be worse.
-const SHARE: f64 = 0.5;
-
-/// Step in contact times, cheapest first, in single precision.
-const SINGLE: [f64; 11] = [
-    0.3, 0.28, 0.26, 0.24, 0.22, 0.2, 0.18, 0.16, 0.14, 0.12, 0.1,
-];
-
-/// Steps in contact times in double precision, cheapest first, and whether openings are located.
-const DOUBLE: [(f64, bool); 12] = [
-    (0.2, false),
-    (0.17, false),
-    (0.15, false),
-    (0.12, false),
-    (0.1, true),
-    (0.08, true),
-    (0.065, true),
-    (0.05, true),
-    (0.04, true),
-    (0.03, true),
-    (0.02, true),
-    (0.01, true),
-];
-
-/// A setting of the loop with equal steps that calibration shots have shown to be right enough.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Calibration {
-    setting: Setting,
-    /// Largest relative error of a time of flight among the calibration shots.
-    pub reached: f64,
-    /// Number of calibration shots.
-    pub shots: usize,
-}
-
-impl Calibration {
-    /// The cheapest setting with which times of flight of all plans are within
-    /// half of the accuracy asked and change by no more than that with steps 1.3
-    /// times as long; `None` where there is none, or where plans
-    /// do not go together or not with equal steps, or where comparing each costs no more.
-    ///
-    /// They should span what the batch spans: speeds, coefficients of laws.
-    #[must_use]
-    pub fn new(plans: &[Plan], set: InstructionSet) -> Option<Self> {
-        let first = plans.first()?;
-        let fits = |plan: &Plan| suits(plan) && fit_together(first, plan);
-        if !plans.iter().all(fits) {
-            return None;
-        }
-        let shortest = WORTHWHILE * Setting::of(first)?.step;
-        let exact = exact(plans, set)?;
-        let plans: Vec<&Plan> = plans.iter().collect();
-        let systems = systems(&plans);
-        let single = SINGLE.map(|step| (Precision::Single, step, false));
-        let double = DOUBLE.map(|(step, openings)| (Precision::Double, step, openings));
-        let ways = single.into_iter().chain(double);
-        let mut ways = ways.filter(|(_, step, _)| *step >= shortest);
-        ways.find_map(|(precision, step, openings)| {
-            let setting = Setting {
-                step,
-                precision: Some(precision),
-                openings,
-                shapes: false,
-                passed: true,
-            };
-            let shots = guarded(&plans, &systems, set, setting);
-            let reached = worst(&shots, &exact)? + first.accuracy / TIGHTER;
-            (reached <= SHARE * first.accuracy).then_some(Self {
-                setting,
-                reached,
-                shots: plans.len(),
-            })
-        })
-    }
-
-    /// Places from 0 of the calibration shots in a batch of so many, evenly spread.
-    pub fn places(batch: usize) -> impl Iterator<Item = usize> {
-        let count = CALIBRATION_SHOTS.min(batch);
-        (0..count).map(move |i| i * (batch - 1) / (count - 1).max(1))
-    }
-
-    /// Shots of plans with equal steps, of those that are like the calibration shots.
-    fn run(&self, plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
-        let mut shots = guarded(plans, &systems(plans), set, self.setting);
-        for shot in shots.iter_mut().flatten() {
-            shot.accuracy_reached = Some(self.reached);
-        }
-        shots
-    }
-}
-
-impl Display for Calibration {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
-        let precision = match self.setting.precision {
-            Some(Precision::Single) => "single",
-            _ => "double",
-        };
-        write!(
-            f,
-            "{precision} precision, steps of {} contact times, chosen by {} calibration shots that are right to {:.0e}",
-            self.setting.step, self.shots, self.reached
-        )
-    }
-}
-
-/// Shots that change by no more than the accuracy asked with longer steps.
-fn guarded(
-    plans: &[&Plan],
-    systems: &[Option<Arc<System>>],
-    set: InstructionSet,
-    setting: Setting,
-) -> Vec<Option<Shot>> {
-    let run = |setting: Setting| run_lanes(plans, systems, set, &setting).into_iter();
-    let guard = |(shot, guard): (Option<Shot>, Option<Shot>)| {
-        let (mut shot, guard) = (shot?, guard?);
-        if shot.change(&guard) > shot.accuracy_asked {
-            return None;
-        }
-        // A shot that ends when the pulse has passed has not seen all maxima that compete.
-        if let (Ok(seen), Ok(all)) = (&mut shot.passage, guard.passage) {
-            seen.competing = all.competing;
-            shot.notes = guard.notes;
-        }
-        Some(shot)
-    };
-    let shots = run(setting).zip(run(setting.longer(GUARD)));
-    shots.map(guard).collect()
-}
-
-/// Times of flight, however picked, right to a small share of what is asked.
-fn exact(plans: &[Plan], set: InstructionSet) -> Option<Vec<Shot>> {
-    let tighter = |plan: &Plan| plan.clone().with_accuracy(plan.accuracy / TIGHTER);
-    let plans: Vec<Plan> = plans.iter().map(tighter).collect();
-    let shots = run_plans(&plans, Control::PerShot { checked: true }, set, &|| {});
-    let right =
-        |shot: &Shot| (shot.accuracy_reached).is_some_and(|reached| reached <= shot.accuracy_asked);
-    let shots = shots.into_iter();
-    shots.map(|shot| shot.ok().filter(right)).collect()
-}
-
-/// Largest relative difference of times of flight; `None` if any is missing.
-fn worst(shots: &[Option<Shot>], exact: &[Shot]) -> Option<f64> {
-    let mut changes = shots
-        .iter()
-        .zip(exact)
-        .map(|(shot, exact)| Some(shot.as_ref()?.change(exact)));
-    changes.try_fold(0.0, |worst: f64, change| Some(worst.max(change?)))
-}

@@ -19,6 +19,7 @@ pub mod accuracy;
 pub mod rig;
 
 mod batch;
+mod calibration;
 mod describe;
 mod duration;
 mod engine;
@@ -36,8 +37,9 @@ mod stop;
 mod tracker;
 
 pub use batch::{Batch, BatchOptions, BatchResult, BatchShot, ErrorControl};
+pub use calibration::Calibration;
 pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use engine::{Calibration, Control, LONGER_STEPS, run_plans};
+pub use engine::{Control, LONGER_STEPS, run_plans};
 pub use error::StudyError;
 pub use fingerprint::{Fingerprint, Inputs, commit};
 pub use hertzchain_chain::InstructionSet;

@@ -1,7 +1,7 @@
 //! What is to be computed.
 
 use crate::error::StudyError;
-use hertzchain_chain::{Chain, ChainError, Sensor, System};
+use hertzchain_chain::{Chain, ChainError, Sensor, Start, System};
 use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Warning};
 use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
@@ -199,6 +199,18 @@ impl Plan {
         };
         plan.chain.system = Ok(Arc::new(system)).into();
         Ok((plan, warnings))
+    }
+
+    /// This plan with its chain struck at another speed in m/s; `None` where the chain has no
+    /// striker or can't be struck so.
+    pub(crate) fn at_speed(&self, speed_m_s: f64) -> Option<Self> {
+        let system = self.chain.system().ok()?.at_speed(speed_m_s).ok()?;
+        let mut plan = self.clone();
+        if let Start::Striker { speed_m_s: own, .. } = &mut plan.chain.start {
+            *own = speed_m_s;
+        }
+        plan.chain.system = Ok(Arc::new(system)).into();
+        Some(plan)
     }
 
     /// This plan for times of flight alone, without the striker's rebound.

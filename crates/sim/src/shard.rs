@@ -178,7 +178,7 @@ struct Header {
     dimensionless: bool,
     accuracy: f64,
     about: String,
-    tuned: Option<String>,
+    error_control: String,
     failed: Vec<Failed>,
     odd: Option<WarningSummary>,
     /// A hash of all the rest, numbers included.
@@ -197,7 +197,7 @@ impl Header {
             dimensionless: part.units == Units::Dimensionless,
             accuracy: part.accuracy,
             about: part.about.clone(),
-            tuned: part.calibration.clone(),
+            error_control: part.error_control.clone(),
             failed: part.rows.failed.clone(),
             odd: part.rows.warnings.clone(),
             content: String::new(),
@@ -253,7 +253,7 @@ impl Header {
             },
             accuracy: self.accuracy,
             about: self.about,
-            calibration: self.tuned,
+            error_control: self.error_control,
             rows,
         })
     }
@@ -353,7 +353,7 @@ impl BatchResult {
         };
         bits(self) == bits(other)
             && self.rows.failed == other.rows.failed
-            && self.calibration == other.calibration
+            && self.error_control == other.error_control
     }
 }
 

@@ -75,10 +75,31 @@ pub struct Shot {
     pub tolerance: Option<f64>,
     /// Step of a fixed-step solver in s.
     pub step_s: Option<f64>,
+    /// How well its times of flight are conditioned; known with equal steps only.
+    pub(crate) conditioning: Conditioning,
     /// Maxima that errors of heights could make a pulse's peak instead.
     pub(crate) other_picks: Vec<OtherPick>,
     /// What a reader of the numbers must know.
     pub notes: Vec<String>,
+}
+
+/// Relative changes of times of flight, the larger of both.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Conditioning {
+    /// By a relative error 1 of the forces that acts for a step: it moves a peak by
+    /// 1/(step · sharpness).
+    pub forces: f64,
+    /// By an interpolation of the peaks through fewer samples.
+    pub interpolation: f64,
+}
+
+impl Conditioning {
+    pub(crate) fn worse(self, other: Self) -> Self {
+        Self {
+            forces: self.forces.max(other.forces),
+            interpolation: self.interpolation.max(other.interpolation),
+        }
+    }
 }
 
 impl Shot {
@@ -111,6 +132,7 @@ impl Shot {
             solver: solver.to_owned(),
             tolerance: None,
             step_s: None,
+            conditioning: Conditioning::default(),
             other_picks: Vec::new(),
             notes: Vec::new(),
         }
@@ -167,6 +189,31 @@ impl Shot {
             (Err(_), Err(_)) => 0.0,
             _ => f64::INFINITY,
         }
+    }
+
+    /// The peaks of both computations, pulse by pulse; `None` where one has none.
+    fn peaks_beside(&self, other: &Self) -> Option<[[Maximum; 2]; 3]> {
+        let (one, two) = (self.passage.as_ref().ok()?, other.passage.as_ref().ok()?);
+        Some([
+            [one.incident, two.incident],
+            [one.wall, two.wall],
+            [one.reflected?, two.reflected?],
+        ])
+    }
+
+    /// Whether two computations have all peaks within some steps of this one.
+    pub(crate) fn has_peaks_of(&self, other: &Self, steps: f64) -> bool {
+        let within_s = steps * self.step_s.unwrap_or(0.0);
+        let same = |[one, two]: [Maximum; 2]| (one.time_s - two.time_s).abs() <= within_s;
+        let peaks = self.peaks_beside(other);
+        peaks.is_some_and(|peaks| peaks.into_iter().all(same))
+    }
+
+    /// Largest relative difference of the heights of peaks.
+    pub(crate) fn peaks_change(&self, other: &Self) -> f64 {
+        let changes = self.peaks_beside(other).into_iter().flatten();
+        let changes = changes.map(|[one, two]| relative(one.value, two.value));
+        changes.fold(0.0, f64::max)
     }
 
     /// Largest relative difference of times of flight, however picked; `None`

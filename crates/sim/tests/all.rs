@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod arrivals;
+mod calibrated;
 mod describe;
 mod ensemble;
 mod examples;
@@ -10,7 +11,6 @@ mod long_chains;
 mod runs;
 mod shot;
 mod sweep;
-mod tuned;
 
 /// The paper's chains.
 const CASES: [&str; 6] = [

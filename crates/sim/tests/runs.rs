@@ -36,7 +36,7 @@ fn cut(batch: &Batch, of: usize) -> Rows {
 #[test]
 fn shards_have_the_bits_of_the_batch_however_errors_are_controlled() {
     let dry = row("dry");
-    let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
+    let speeds = parse_speeds("log:0.1:1.2:163").unwrap();
     for control in [
         ErrorControl::PerShot,
         ErrorControl::Calibrated,
@@ -44,8 +44,8 @@ fn shards_have_the_bits_of_the_batch_however_errors_are_controlled() {
     ] {
         let batch = Batch::new(&dry, speeds.clone(), options(&dry, control)).unwrap();
         let whole = batch.run(Shard::WHOLE, &|| {});
-        let calibrated = control == ErrorControl::Calibrated;
-        assert_eq!(whole.calibration.is_some(), calibrated);
+        let calibrated = whole.error_control.starts_with("calibrated");
+        assert_eq!(calibrated, control == ErrorControl::Calibrated);
         for of in [2, 7] {
             let rows = cut(&batch, of);
             assert_eq!(bits(&rows), bits(&whole.rows), "{control:?} in {of}");
@@ -56,17 +56,17 @@ fn shards_have_the_bits_of_the_batch_however_errors_are_controlled() {
 #[test]
 fn calibration_of_a_shard_is_that_of_the_whole_batch() {
     let dry = row("dry");
-    let speeds = parse_speeds("log:0.1:1.2:53").unwrap();
+    let speeds = parse_speeds("log:0.1:1.2:163").unwrap();
     let options = options(&dry, ErrorControl::Calibrated);
     let batch = Batch::new(&dry, speeds, options).unwrap();
-    let [first, last] = [1, 27].map(|number| {
-        let part = batch.run(Shard::new(number, 27).unwrap(), &|| {});
-        (part.rows.len(), part.calibration.unwrap())
+    let [first, last] = [1, 82].map(|number| {
+        let part = batch.run(Shard::new(number, 82).unwrap(), &|| {});
+        (part.rows.len(), part.error_control)
     });
-    // Two shots, and one: too few for forty calibration shots of their own.
+    // Two shots, and one: too few for calibration shots of their own.
     assert_eq!((first.0, last.0), (2, 1));
     assert_eq!(first.1, last.1);
-    assert!(first.1.contains("40 calibration shots"), "{}", first.1);
+    assert!(first.1.contains("48 calibration shots"), "{}", first.1);
 }
 
 #[test]

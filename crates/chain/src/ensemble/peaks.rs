@@ -3,7 +3,7 @@
 use super::number::Number;
 use super::record::Samples;
 use super::weights::Schedule;
-use crate::observe::{LEAST_SHARE, Maximum, Signal, Stretch};
+use crate::observe::{LEAST_SHARE, Maximum, Shape, Signal, Stretch};
 use crate::sensor::Sensor;
 
 /// Samples on either side of the highest that its polynomial goes through.
@@ -73,13 +73,14 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
     /// The maximum near the highest of neighbouring samples: of the polynomial
     /// of degree six through seven samples, between the neighbours. Too few
     /// samples are their own maximum.
-    fn maximum(self, step: usize) -> Maximum {
+    fn maximum(self, step: usize) -> (Maximum, Shape) {
         let schedule = self.clock.schedule;
         if self.last_step < POINTS {
-            return Maximum {
+            let maximum = Maximum {
                 time_s: self.clock.time_s(step),
                 value: self.samples.at(step),
             };
+            return (maximum, Shape::UNKNOWN);
         }
         let from = (step - 1)
             .saturating_sub(REACH)
@@ -95,11 +96,21 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
         };
         let at = step - from;
         let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
-        let (value, ..) = derivatives(&polynomial, at);
-        Maximum {
+        let (value, _, curvature) = derivatives(&polynomial, at);
+        let maximum = Maximum {
             time_s: self.clock.step_s * (middle + at),
             value,
-        }
+        };
+        let step_s = self.clock.step_s;
+        let interpolation = match equidistant {
+            true => quartic_differs(values, at),
+            false => f64::INFINITY,
+        };
+        let shape = Shape {
+            sharpness_per_s2: -curvature / (value * step_s * step_s),
+            interpolation_s: step_s * interpolation,
+        };
+        (maximum, shape)
     }
 }
 
@@ -117,6 +128,26 @@ fn through_equidistant([a, b, c, d, e, f, g]: [f64; POINTS]) -> [f64; POINTS] {
         (5.0 * odd1 - 4.0 * odd2 + odd3) / 240.0,
         (15.0 * even1 - 6.0 * even2 + even3 - 20.0 * d) / 720.0,
     ]
+}
+
+/// How far the maximum of the quartic through the five middle samples is from that of the
+/// polynomial through all seven, in steps: a kink near the top, or another maximum, moves both apart.
+fn quartic_differs([_, b, c, d, e, f, _]: [f64; POINTS], at: f64) -> f64 {
+    let (odd1, odd2, even1, even2) = (e - c, f - b, e + c, f + b);
+    let quartic = [
+        d,
+        (8.0 * odd1 - odd2) / 12.0,
+        (16.0 * even1 - even2 - 30.0 * d) / 24.0,
+        (odd2 - 2.0 * odd1) / 12.0,
+        (even2 - 4.0 * even1 + 6.0 * d) / 24.0,
+        0.0,
+        0.0,
+    ];
+    let (_, slope, curvature) = derivatives(&quartic, at);
+    match curvature < 0.0 {
+        true => (slope / curvature).abs(),
+        false => f64::INFINITY,
+    }
 }
 
 /// Coefficients of the polynomial through points, by divided differences.

@@ -13,6 +13,23 @@ pub struct Maximum {
     pub value: f64,
 }
 
+/// How well a maximum between equal steps is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// −F̈/F: an error of the slope moves a flat maximum further.
+    pub sharpness_per_s2: f64,
+    /// How far interpolation through fewer samples moves it, in s.
+    pub interpolation_s: f64,
+}
+
+impl Shape {
+    /// Of a maximum of which nothing is known.
+    pub const UNKNOWN: Self = Self {
+        sharpness_per_s2: 0.0,
+        interpolation_s: f64::INFINITY,
+    };
+}
+
 /// A signal over one step: its values at five equidistant times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
@@ -97,6 +114,8 @@ pub struct Signal {
     sensor: Sensor,
     stretches: Vec<Stretch>,
     maxima: Vec<Maximum>,
+    /// Shape of each maximum, where it is known.
+    shapes: Vec<Shape>,
     largest: f64,
     /// Least height times time of a pulse, in N s.
     least_n_s: f64,
@@ -144,6 +163,7 @@ impl Signal {
             sensor,
             stretches: Vec::new(),
             maxima: Vec::new(),
+            shapes: Vec::new(),
             largest: 0.0,
             least_n_s: 0.0,
             lowest: f64::INFINITY,
@@ -155,12 +175,14 @@ impl Signal {
     /// time in N s.
     pub(crate) fn assembled(
         sensor: Sensor,
-        (stretches, maxima): (Vec<Stretch>, Vec<Maximum>),
+        (stretches, maxima): (Vec<Stretch>, Vec<(Maximum, Shape)>),
         least_n_s: f64,
     ) -> Self {
+        let (maxima, shapes) = maxima.into_iter().unzip();
         Self {
             stretches,
             maxima,
+            shapes,
             least_n_s,
             ..Self::new(sensor)
         }
@@ -182,6 +204,15 @@ impl Signal {
     #[must_use]
     pub fn maxima(&self) -> &[Maximum] {
         &self.maxima
+    }
+
+    /// The shape of a maximum; unknown of a signal that was followed step by step, or of what is
+    /// no maximum of it.
+    #[must_use]
+    pub fn shape(&self, of: &Maximum) -> Shape {
+        let at = self.maxima.iter().position(|maximum| maximum == of);
+        let shape = at.and_then(|at| self.shapes.get(at));
+        shape.copied().unwrap_or(Shape::UNKNOWN)
     }
 
     /// The signal so far; absent where it is 0.

@@ -92,6 +92,14 @@ impl MaterialSpec {
         })
     }
 
+    /// Whether no number of it depends on the striker's speed.
+    pub(crate) fn is_constant(&self) -> bool {
+        let viscosities = [&self.shear_viscosity, &self.bulk_viscosity];
+        let given = [&self.young_modulus, &self.poisson_ratio].into_iter();
+        let mut given = given.chain(viscosities.into_iter().flatten());
+        given.all(|number| number.exponent == 0.0)
+    }
+
     /// Where the Young modulus stands.
     pub(crate) fn modulus_span(&self) -> &Range<usize> {
         &self.young_modulus.span

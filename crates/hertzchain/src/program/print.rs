@@ -18,7 +18,14 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 pub(crate) fn print_with(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
-    to_stdout(|out| write(&mut Plain(out)))
+    to_stdout(|out| {
+        let mut plain = Plain {
+            out,
+            held: Vec::new(),
+        };
+        write(&mut plain)?;
+        plain.flush()
+    })
 }
 
 fn to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
@@ -32,20 +39,47 @@ fn to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 }
 
 /// A writer of text without control characters, given whole letters at a time, as by serde.
-struct Plain<W>(W);
+struct Plain<W> {
+    out: W,
+    /// Text that is yet to be written, checked all at once.
+    held: Vec<u8>,
+}
+
+impl<W: Write> Plain<W> {
+    /// Bytes held at most, about.
+    const HELD: usize = 1 << 16;
+
+    fn write_held(&mut self) -> io::Result<()> {
+        match std::str::from_utf8(&self.held) {
+            Ok(text) => self.out.write_all(without_controls(text).as_bytes())?,
+            Err(_) => self.out.write_all(&self.held)?,
+        }
+        self.held.clear();
+        Ok(())
+    }
+}
 
 impl<W: Write> Write for Plain<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match std::str::from_utf8(bytes) {
-            Ok(text) => self.0.write_all(without_controls(text).as_bytes())?,
-            Err(_) => self.0.write_all(bytes)?,
+        self.held.extend_from_slice(bytes);
+        if self.held.len() >= Self::HELD {
+            self.write_held()?;
         }
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
+        self.write_held()?;
+        self.out.flush()
     }
+}
+
+/// Prints indented JSON while it is made.
+pub(crate) fn stream_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print_with(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        out.write_all(b"\n")
+    })
 }
 
 /// Prints indented JSON.

@@ -312,6 +312,10 @@ fn too_long(what: &str, most: u64) -> io::Error {
 /// file's name or a title could steer a terminal.
 #[must_use]
 pub fn without_controls(text: &str) -> Cow<'_, str> {
+    let plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n' | b'\t');
+    if text.as_bytes().iter().all(plain) {
+        return Cow::Borrowed(text);
+    }
     let steers = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
     if !text.contains(steers) {
         return Cow::Borrowed(text);

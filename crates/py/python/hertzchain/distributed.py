@@ -208,7 +208,7 @@ def sweep(
     accuracy: float | None = None,
     pick: options.Pick | None = None,
     rebound: bool = False,
-    error_control: options.ErrorControl = "per-shot",
+    error_control: options.ErrorControl = "calibrated",
     progress: object = None,
 ) -> DistributedResult:
     """Computes shots over arrays of speeds and of named numbers on a cluster.
@@ -224,8 +224,7 @@ def sweep(
         Everything stays in this process when absent.
     shards : int, optional
         Parts of the run. When absent, as many as the folder has some of; else four for each
-        thread of the workers (one with ``error_control="calibrated"``, whose calibration shots each
-        shard computes), and no part of more than 20,000 shots.
+        thread of the workers (one unless ``error_control="per-shot"``: each shard computes all calibration shots), and no part of more than 20,000 shots.
     progress : bool, bar or function, optional
         Called with finished shards.
 
@@ -256,7 +255,7 @@ def sweep(
     path = _written(run, Path(folder))
     if shards is None:
         least = -(-speeds.size // SHOTS_A_SHARD)
-        a_thread = 1 if error_control == "calibrated" else SHARDS_A_THREAD
+        a_thread = SHARDS_A_THREAD if error_control == "per-shot" else 1
         shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, a_thread, client)
     of = options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, of, "shard") as update:

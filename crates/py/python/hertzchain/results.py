@@ -487,7 +487,7 @@ class Sweep(_Shots):
     power_law_incident, power_law_reflected : PowerLaw or None
         None where fewer than two speeds have a time of flight.
     calibration : dict or None
-        The step that calibration shots chose, with ``error_control="calibrated"``.
+        The step that calibration shots chose; None with control per shot.
     errors : dict of int to str
         Why speeds, by index, have no shot.
     warnings : dict of int to list of str

@@ -184,7 +184,7 @@ def sweep(
     speeds: ArrayLike | str = "log:0.075:1.23:25",
     *,
     rebound: bool = False,
-    error_control: options.ErrorControl = "per-shot",
+    error_control: options.ErrorControl = "calibrated",
     threads: int | None = None,
     progress: object = None,
     **how: Unpack[options.ShotOptions],
@@ -199,9 +199,10 @@ def sweep(
         Speeds in m/s, at most 100,000; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
     rebound : bool
         Follow the striker until it is away for good; takes the slower loop.
-    error_control : {"per-shot", "calibrated"}
-        How errors of times of flight are bounded: by step doubling, two more shots each; or by
-        forty calibration shots for all.
+    error_control : {"calibrated", "per-shot"}
+        How errors of times of flight are bounded: by calibration shots for all, from which each
+        estimates its own; or by two more shots each, with longer steps, as always below 160
+        shots and on rows that are not uniform.
     threads : int, optional
         All cores when absent; results do not depend on it.
     progress : bool, bar or function, optional
@@ -256,7 +257,7 @@ def ensemble(
     parameters: Mapping[str, ArrayLike] | None = None,
     *,
     rebound: bool = False,
-    error_control: options.ErrorControl | Literal["none"] = "per-shot",
+    error_control: options.ErrorControl | Literal["none"] = "calibrated",
     threads: int | None = None,
     progress: object = None,
     **how: Unpack[options.EnsembleOptions],

@@ -4,7 +4,8 @@ fn passages(sensor: &[(f64, f64)], wall: &[(f64, f64)], until_s: f64) -> Passage
     let [sensor, wall] =
         [(Sensor::Bead(1), sensor), (Sensor::Contact(1), wall)].map(|(which, maxima)| {
             let seen = maxima.iter().filter(|(time_s, _)| *time_s < until_s);
-            let maximum = |&(time_s, value): &(f64, f64)| Maximum { time_s, value };
+            let maximum =
+                |&(time_s, value): &(f64, f64)| (Maximum { time_s, value }, Shape::UNKNOWN);
             Signal::assembled(which, (Vec::new(), seen.map(maximum).collect()), 1e-3)
         });
     Passages::from_signals(sensor, wall, until_s)

@@ -8,9 +8,10 @@ use crate::failure::{self, Failure};
 use crate::folder::Folder;
 use crate::format::Style;
 use crate::print;
+use hertzchain::json::SweepView;
 use hertzchain::options::check_speeds;
 use hertzchain::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
-use hertzchain::{input, json, missing, table};
+use hertzchain::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_sim::{
     Batch, BatchOptions, BatchResult, BatchShot, Calibration, ErrorControl, Plan, Shard,
@@ -137,16 +138,19 @@ fn show(
     swept: &Swept,
 ) -> Result<(), Failure> {
     if arguments.json {
-        let mut results = json::sweep(
-            experiment,
-            plan,
-            &swept.points,
-            (&swept.result, swept.calibration),
-        );
+        let made = (&swept.result, swept.calibration.as_ref());
+        let mut view = SweepView::new(experiment, plan, &swept.points, made);
         if let Some(assumed) = input::assumed(&arguments.input) {
-            results["assumed_model"] = assumed.into();
+            view.outline["assumed_model"] = assumed.into();
         }
-        return print::print_json(&table::named(results, experiment.units()));
+        return match experiment.units() {
+            Units::Si => print::stream_json(&view),
+            units => {
+                let whole = serde_json::to_value(&view);
+                let whole = whole.map_err(|error| Failure::Ours(format!("JSON: {error}")))?;
+                print::print_json(&table::named(whole, units))
+            }
+        };
     }
     if let Some(assumed) = input::assumed(&arguments.input) {
         print::print(&assumed)?;

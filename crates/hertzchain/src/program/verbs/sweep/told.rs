@@ -44,8 +44,8 @@ pub(crate) fn show(part: &BatchResult) -> Result<(), Failure> {
         return Ok(());
     }
     let mut text = rows(part) + &fits::lines(part);
-    if let Some(calibration) = &part.calibration {
-        text += &format!("Times of flight: {calibration}\n");
+    if part.error_control.starts_with("calibrated") {
+        text += &format!("Error control: {}\n", part.error_control);
     }
     print(&text)
 }

@@ -1,0 +1,377 @@
+//! Calibration: one setting of the loop with equal steps for a family of shots.
+//!
+//! Uniform rows that differ in speeds and coefficients alone err alike if their steps are
+//! alike in contact times. Calibration shots, compared with ones at much shorter steps,
+//! say how much: the relative error of a time of flight over the shot's *condition*, which
+//! says how far an error of the forces moves its peaks. Every other shot then estimates its error from its
+//! own condition (`docs/explanation/numerics.md`).
+
+use crate::accuracy;
+use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
+use crate::plan::Plan;
+use crate::shot::{Conditioning, Shot};
+use hertzchain_chain::ensemble::Precision;
+use hertzchain_chain::observe::{Competing, Passage, Pulse};
+use hertzchain_chain::{InstructionSet, System};
+use std::fmt::{Display, Formatter, Result as Formatted};
+use std::sync::Arc;
+
+/// Calibration shots of a batch over speeds, and of one in which other numbers differ too.
+const CALIBRATION_SHOTS: [usize; 2] = [48, 96];
+
+/// Batches of fewer shots are computed sooner with control per shot.
+const WORTH_CALIBRATION: usize = 160;
+
+/// What calibration shots are compared with is this many times as right as asked.
+const TIGHTER: f64 = 20.0;
+
+/// Most times that steps are halved for that, and the share of calibration shots that must
+/// have it: the rest are ill-conditioned, and estimate that themselves.
+const MOST_HALVINGS: usize = 6;
+const KNOWN: f64 = 0.75;
+
+/// Estimates are this many times the largest error of calibration shots of the same condition: in
+/// between others may be worse.
+const MARGIN: f64 = 1.5;
+
+/// Steps of a guard, over those of the shot that it guards, and the weight of the change that
+/// they make.
+const GUARD: f64 = 1.3;
+const OF_GUARD: f64 = 2.0;
+
+/// Two maxima of which one is lower by no more than this many errors of heights may change places.
+const OF_HEIGHTS: f64 = 4.0;
+
+/// Two computations of a peak that differ by less than this many steps have the same peak.
+const SAME_PEAK: f64 = 1.0;
+
+/// Settings, cheapest first: precision, step in contact times, whether openings are located.
+const SETTINGS: [(Precision, f64, bool); 27] = {
+    use Precision::{Double, Single};
+    [
+        (Single, 0.3, false),
+        (Single, 0.27, false),
+        (Single, 0.24, false),
+        (Single, 0.22, false),
+        (Single, 0.2, false),
+        (Single, 0.18, false),
+        (Single, 0.16, false),
+        (Single, 0.145, false),
+        (Single, 0.13, false),
+        (Single, 0.115, false),
+        (Double, 0.2, false),
+        (Single, 0.1, false),
+        (Double, 0.17, false),
+        (Single, 0.085, false),
+        (Double, 0.15, false),
+        (Double, 0.12, false),
+        (Double, 0.12, true),
+        (Double, 0.1, true),
+        (Double, 0.085, true),
+        (Double, 0.07, true),
+        (Double, 0.057, true),
+        (Double, 0.047, true),
+        (Double, 0.038, true),
+        (Double, 0.03, true),
+        (Double, 0.022, true),
+        (Double, 0.016, true),
+        (Double, 0.011, true),
+    ]
+};
+
+/// Cost of a step in double precision, of one that locates openings, and of control per shot with its
+/// three runs that wait for whatever may come, over that of a step in single precision.
+const OF_DOUBLE: f64 = 2.0;
+const OF_OPENINGS: f64 = 1.2;
+const OF_PER_SHOT: f64 = 3.0;
+
+/// A setting of the loop with equal steps that calibration shots have shown to be right enough.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    setting: Setting,
+    /// One of the family, and its system.
+    first: (Plan, Arc<System>),
+    /// Relative error of a time of flight over the shot's condition, with a margin.
+    error: f64,
+    /// Relative error of a peak's height, with a margin.
+    height_error: f64,
+    /// Largest estimate of a relative error of a time of flight among the calibration shots that
+    /// are right enough.
+    pub reached: f64,
+    /// Number of calibration shots.
+    pub shots: usize,
+}
+
+/// Calibration shots with what they are compared with, `None` where that is not known.
+struct Sample<'a> {
+    plans: Vec<&'a Plan>,
+    systems: Vec<Option<Arc<System>>>,
+    exact: Vec<Option<Shot>>,
+    /// Whether nothing competes with the reflected pulse of any.
+    ends_with_pulse: bool,
+    set: InstructionSet,
+}
+
+impl Calibration {
+    /// The setting with which the plans' family is computed soonest, those shots counted that are
+    /// not right enough and need control per shot.
+    ///
+    /// The plans should span what the family spans: speeds, coefficients of laws.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn new(plans: &[Plan], set: InstructionSet) -> Result<Self, &'static str> {
+        let first = plans.first().ok_or("no shot can be computed")?;
+        let system = first
+            .chain
+            .system()
+            .map_err(|_| "no shot can be computed")?;
+        let family = |plan: &Plan| belongs(plan, (first, &system));
+        if !plans.iter().all(family) {
+            return Err("calibration is for uniform rows that fly free, timed by peaks");
+        }
+        let own = Setting::of(first).ok_or("equal steps do not reach this accuracy")?;
+        let per_shot = OF_PER_SHOT * cost(&own, Precision::Double);
+        let sample = Sample::new(plans, own, set).ok_or("calibration shots do not converge")?;
+        let mut best: Option<(f64, Self)> = None;
+        for (precision, step, openings) in SETTINGS {
+            let setting = Setting {
+                step,
+                precision: Some(precision),
+                openings,
+                shapes: false,
+                passed: sample.ends_with_pulse,
+            };
+            let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
+            if cost(&setting, precision) >= least {
+                break;
+            }
+            let tried = sample.try_setting(setting, (first, &system));
+            if let Some((calibration, missed)) = tried {
+                let expected = cost(&setting, precision) + missed * per_shot;
+                if expected < least {
+                    best = Some((expected, calibration));
+                }
+            }
+        }
+        let best = best.map(|(_, calibration)| calibration);
+        best.ok_or("no setting that is right enough costs less")
+    }
+
+    /// Places from 0 of the calibration shots in a batch: the least and the largest value of each
+    /// column, and others spread evenly. `None` if the batch is too small to be worth it.
+    pub(crate) fn places(columns: &[&[f64]]) -> Option<Vec<usize>> {
+        let batch = columns.first()?.len();
+        if batch < WORTH_CALIBRATION {
+            return None;
+        }
+        let count = CALIBRATION_SHOTS[usize::from(columns.len() > 1)];
+        let mut places: Vec<usize> = columns.iter().flat_map(|column| extremes(column)).collect();
+        // Multiples of the golden ratio leave no gap and no period.
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let spread = (1..).map(|i| ((f64::from(i) * golden).fract() * batch as f64) as usize);
+        for place in spread.take(4 * count) {
+            if places.len() < count && !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        places.sort_unstable();
+        places.dedup();
+        Some(places)
+    }
+
+    /// Shots of plans with equal steps; `None` of those that are not right enough or not of
+    /// the family.
+    pub(crate) fn run(&self, plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+        let (first, system) = &self.first;
+        let mut systems = systems(plans);
+        for (plan, own) in plans.iter().zip(&mut systems) {
+            *own = own.take().filter(|_| belongs(plan, (first, system)));
+        }
+        let shots = guarded(plans, &systems, set, &self.setting).into_iter();
+        shots.map(|shot| self.right_enough(shot?)).collect()
+    }
+
+    /// The shot with its estimate, if that is what was asked.
+    fn right_enough(&self, mut shot: Shot) -> Option<Shot> {
+        let Conditioning {
+            forces,
+            interpolation,
+        } = shot.conditioning;
+        let reached = self.error * forces + MARGIN * interpolation;
+        let fixed = !may_flip(shot.passage.as_ref().ok()?, self.height_error);
+        let right = reached <= shot.accuracy_asked && fixed;
+        shot.accuracy_reached = Some(reached);
+        right.then_some(shot)
+    }
+}
+
+impl Display for Calibration {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
+        let precision = match self.setting.precision {
+            Some(Precision::Single) => "single",
+            _ => "double",
+        };
+        write!(
+            f,
+            "{precision} precision, steps of {} contact times, chosen by {} calibration shots that are right to {:.0e}",
+            self.setting.step, self.shots, self.reached
+        )
+    }
+}
+
+impl<'a> Sample<'a> {
+    /// With times of flight right to a small share of what is asked: steps are halved until that
+    /// changes hardly any by more.
+    fn new(plans: &'a [Plan], own: Setting, set: InstructionSet) -> Option<Self> {
+        let plans: Vec<&Plan> = plans.iter().collect();
+        let systems = systems(&plans);
+        let asked = plans.first()?.accuracy / TIGHTER;
+        let run = |step: f64| {
+            let setting = Setting {
+                step,
+                precision: Some(Precision::Double),
+                openings: true,
+                ..own
+            };
+            run_lanes(&plans, &systems, set, &setting)
+        };
+        let known = |pair: (&Option<Shot>, Option<Shot>)| {
+            let (coarse, fine) = (pair.0.as_ref()?, pair.1?);
+            (fine.change(coarse) <= asked).then_some(fine)
+        };
+        let (mut step, least) = (own.step, KNOWN * plans.len() as f64);
+        let mut coarse = run(step);
+        for _ in 0..MOST_HALVINGS {
+            step *= 0.5;
+            let fine = run(step);
+            let exact: Vec<Option<Shot>> = coarse.iter().zip(fine.clone()).map(known).collect();
+            if exact.iter().flatten().count() as f64 >= least {
+                let ends_with_pulse = fine.iter().flatten().all(ends_with_pulse);
+                let (plans, systems) = (plans.clone(), systems.clone());
+                return Some(Self {
+                    ends_with_pulse,
+                    plans,
+                    systems,
+                    exact,
+                    set,
+                });
+            }
+            coarse = fine;
+        }
+        None
+    }
+
+    /// A calibration with a setting, and the share of shots that are not right enough with it;
+    /// `None` where a shot is wrong and does not show it.
+    fn try_setting(
+        &self,
+        setting: Setting,
+        (first, system): (&Plan, &Arc<System>),
+    ) -> Option<(Calibration, f64)> {
+        let shots = guarded(&self.plans, &self.systems, self.set, &setting);
+        let pairs = || shots.iter().zip(&self.exact);
+        let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact.as_ref()?)));
+        let same = || known().filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
+        let heights = same().map(|(shot, exact)| shot.peaks_change(exact));
+        let height_error = OF_HEIGHTS * heights.fold(first.accuracy / TIGHTER, f64::max);
+        let rest = first.accuracy / TIGHTER;
+        let errors =
+            same().map(|(shot, exact)| (shot.change(exact) + rest) / shot.conditioning.forces);
+        let calibration = Calibration {
+            setting,
+            first: (first.clone(), system.clone()),
+            error: MARGIN * errors.fold(0.0, f64::max),
+            height_error,
+            reached: 0.0,
+            shots: self.plans.len(),
+        };
+        let right = |shot: &Shot| calibration.right_enough(shot.clone());
+        let hidden = |(shot, exact): (&Shot, &Shot)| {
+            right(shot).is_some_and(|shot| shot.change(exact) > shot.accuracy_asked)
+        };
+        if known().any(hidden) {
+            return None;
+        }
+        let right: Vec<Shot> = shots.iter().flatten().filter_map(right).collect();
+        let reached = right.iter().filter_map(|shot| shot.accuracy_reached);
+        let reached = reached.fold(0.0, f64::max);
+        let missed = 1.0 - right.len() as f64 / self.plans.len() as f64;
+        Some((
+            Calibration {
+                reached,
+                ..calibration
+            },
+            missed,
+        ))
+    }
+}
+
+/// Whether nothing competes with the reflected pulse of a shot, which is then over when it has passed.
+fn ends_with_pulse(shot: &Shot) -> bool {
+    let of_return = |other: &Competing| other.pulse == Pulse::Reflected;
+    let passage = shot.passage.as_ref();
+    passage.is_ok_and(|passage| !passage.competing.iter().any(of_return))
+}
+
+/// Shots of plans. Of those with several reflected maxima, which small errors exchange or merge, the
+/// change by longer steps counts as one of interpolation.
+fn guarded(
+    plans: &[&Plan],
+    systems: &[Option<Arc<System>>],
+    set: InstructionSet,
+    setting: &Setting,
+) -> Vec<Option<Shot>> {
+    let shots = run_lanes(plans, systems, set, setting);
+    if setting.passed {
+        return shots;
+    }
+    let guards = run_lanes(plans, systems, set, &setting.longer(GUARD));
+    let guarded = |(shot, guard): (Option<Shot>, Option<Shot>)| {
+        let (mut shot, guard) = (shot?, guard?);
+        // Both may move the top of a flat pulse alike, but hardly its height.
+        let flat = shot.peaks_change(&guard) * setting.step * shot.conditioning.forces;
+        let change = shot.change(&guard).max(flat);
+        let interpolation = &mut shot.conditioning.interpolation;
+        *interpolation = interpolation.max(OF_GUARD * change);
+        Some(shot)
+    };
+    shots.into_iter().zip(guards).map(guarded).collect()
+}
+
+/// Cost of a shot, in steps of single precision a contact time.
+fn cost(setting: &Setting, precision: Precision) -> f64 {
+    let double = if precision == Precision::Double {
+        OF_DOUBLE
+    } else {
+        1.0
+    };
+    let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
+    let guard = if setting.passed { 0.0 } else { 1.0 / GUARD };
+    (1.0 + guard) * double * openings / setting.step
+}
+
+/// Whether a plan is of a family.
+fn belongs(plan: &Plan, (first, system): (&Plan, &System)) -> bool {
+    let like = || {
+        plan.chain
+            .system()
+            .is_ok_and(|own| own.has_shape_of(system))
+    };
+    suits(plan) && accuracy::is_uniform(plan) && fit_together(first, plan) && like()
+}
+
+/// Whether another maximum could be a pulse's peak if heights are so wrong.
+fn may_flip(passage: &Passage, height_error: f64) -> bool {
+    let near = |other: &Competing| (1.0 - other.share).abs() <= height_error;
+    passage.competing.iter().any(near)
+}
+
+/// Places of the least and the largest value that is a number.
+fn extremes(column: &[f64]) -> impl Iterator<Item = usize> {
+    let places = || (0..column.len()).filter(|&at| column[at].is_finite());
+    let by = |&a: &usize, &b: &usize| column[a].total_cmp(&column[b]);
+    [places().min_by(by), places().max_by(by)]
+        .into_iter()
+        .flatten()
+}

@@ -1,0 +1,159 @@
+//! Batches with calibrated error control.
+
+use hertzchain_experiment::{Experiment, preset};
+use hertzchain_sim::{Batch, BatchOptions, BatchResult, Column, ErrorControl, Shard, parse_speeds};
+
+fn batch(experiment: &Experiment, speeds: &str, accuracy: f64, control: ErrorControl) -> Batch {
+    let options = BatchOptions {
+        accuracy,
+        error_control: control,
+        ..BatchOptions::of(experiment)
+    };
+    Batch::new(experiment, parse_speeds(speeds).unwrap(), options).unwrap()
+}
+
+fn run(name: &str, speeds: &str, accuracy: f64) -> BatchResult {
+    let batch = batch(
+        &preset(name).unwrap(),
+        speeds,
+        accuracy,
+        ErrorControl::default(),
+    );
+    batch.run(Shard::WHOLE, &|| {})
+}
+
+/// Relative errors of the times of flight of each shot, the larger, against shots that are much
+/// more right.
+fn errors(of: &BatchResult, exact: &BatchResult) -> Vec<f64> {
+    let change = |column| {
+        let times = of.rows.column(column).iter().zip(exact.rows.column(column));
+        times
+            .map(|(one, two)| (one / two - 1.0).abs())
+            .collect::<Vec<f64>>()
+    };
+    let (incident, reflected) = (change(Column::Incident), change(Column::Reflected));
+    incident
+        .into_iter()
+        .zip(reflected)
+        .map(|(a, b)| a.max(b))
+        .collect()
+}
+
+#[test]
+fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
+    for name in [
+        "hertz",
+        "hertz-viscoelastic",
+        "dry",
+        "pump",
+        "gear",
+        "motor",
+    ] {
+        let exact = run(name, "log:0.075:1.23:300", 1e-6);
+        for accuracy in [1e-3, 1e-4, 1e-5] {
+            let found = run(name, "log:0.075:1.23:300", accuracy);
+            assert!(
+                found.error_control.starts_with("calibrated"),
+                "{name}: {}",
+                found.error_control
+            );
+            let reached = found.rows.column(Column::Accuracy);
+            for (error, reached) in errors(&found, &exact).into_iter().zip(reached) {
+                // The comparison is itself right to 1e-6.
+                assert!(
+                    error <= reached + 1e-6,
+                    "{name} at {accuracy:e}: {error:e}, {reached:e}"
+                );
+                assert!(*reached <= accuracy, "{name}: {reached:e} at {accuracy:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn two_maxima_that_become_one_are_computed_more_closely() {
+    // At these speeds the reflected pulse of this row has a flat top, which small errors move far.
+    let exact = run("pump", "0.185:0.189:200", 1e-7);
+    for accuracy in [1e-4, 1e-5] {
+        let found = run("pump", "0.185:0.189:200", accuracy);
+        let worst = errors(&found, &exact).into_iter().fold(0.0, f64::max);
+        assert!(worst <= accuracy, "{worst:e} at {accuracy:e}");
+    }
+}
+
+#[test]
+fn more_accuracy_takes_more_force_passes() {
+    let dry = preset("dry").unwrap();
+    let passes = |accuracy| {
+        let batch = batch(&dry, "log:0.1:1:200", accuracy, ErrorControl::default());
+        let mut passes = 0;
+        batch.run_each(Shard::WHOLE, &|| {}, |it| {
+            passes += it.shot.unwrap().work.force_passes
+        });
+        passes
+    };
+    let [coarse, fine] = [1e-3, 1e-6].map(passes);
+    assert!(2 * coarse < fine, "{coarse} {fine}");
+}
+
+#[test]
+fn results_have_the_same_bits_on_any_number_of_threads_and_alone() {
+    let pump = preset("pump").unwrap();
+    let batch = batch(&pump, "log:0.1:1:170", 1e-4, ErrorControl::default());
+    let whole = batch.run(Shard::WHOLE, &|| {});
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let again = pool
+            .build()
+            .unwrap()
+            .install(|| batch.run(Shard::WHOLE, &|| {}));
+        assert_eq!(again, whole, "{threads} threads");
+    }
+    // A shard of one shot.
+    let alone = batch.run(Shard::new(12, 170).unwrap(), &|| {});
+    let cell = |of: &BatchResult, at: usize| of.rows.columns.each_ref().map(|c| c[at].to_bits());
+    assert_eq!(cell(&alone, 0), cell(&whole, 11));
+}
+
+#[test]
+fn what_is_not_calibrated_says_why() {
+    let dry = preset("dry").unwrap();
+    let why = |experiment: &Experiment, speeds, control| {
+        let result = batch(experiment, speeds, 1e-3, control).run(Shard::WHOLE, &|| {});
+        result.error_control
+    };
+    let few = why(&dry, "0.3,0.5", ErrorControl::Calibrated);
+    assert_eq!(few, "per shot: so few shots are computed sooner so");
+    let asked = why(&dry, "0.3,0.5", ErrorControl::PerShot);
+    assert_eq!(asked, "per shot: as asked");
+    let dimer = why(
+        &preset("dimer").unwrap(),
+        "0.3:0.5:160",
+        ErrorControl::Calibrated,
+    );
+    assert!(dimer.contains("uniform rows"), "{dimer}");
+}
+
+#[test]
+fn numbers_that_differ_from_shot_to_shot_are_calibrated_together() {
+    let dry = preset("dry").unwrap();
+    let values: Vec<f64> = (0..200).map(|i| 40.0 + 0.4 * f64::from(i)).collect();
+    let found = |accuracy| {
+        let batch = batch(&dry, "log:0.1:1:200", accuracy, ErrorControl::default());
+        let batch = batch
+            .with_number("damping_cubic.coefficient", values.clone())
+            .unwrap();
+        batch.run(Shard::WHOLE, &|| {})
+    };
+    let (found, exact) = (found(1e-4), found(1e-6));
+    assert!(
+        found.error_control.contains("calibration shots"),
+        "{}",
+        found.error_control
+    );
+    assert!(
+        errors(&found, &exact)
+            .into_iter()
+            .all(|error| error <= 1e-4)
+    );
+}
