@@ -41,7 +41,7 @@ def commands(folder):
     for name in EXAMPLES:
         yield f"shot {name}", ["shot", "-p", name]
         yield f"theory {name}", ["theory", "-p", name]
-    yield "sweep pilots", ["sweep", "-p", "dry", "--speeds", "log:0.075:1.2:400", "-a", "1e-4", "--error-control", "calibrated"]
+    yield "sweep pilots", ["sweep", "-p", "dry", "--speeds", "log:0.075:1.2:400", "-a", "1e-4"]
     yield "sweep rebound", ["sweep", "-p", "gear", "--speeds", "0.1,0.5,1", "--rebound"]
     for pick in ["flank-10", "flank-50", "cross-correlation"]:
         yield f"shot pick {pick}", ["shot", "-p", "motor", "--speed", "0.4", "--pick", pick]

@@ -27,7 +27,7 @@ CALLS = {
     "ensemble with numbers": "hc.ensemble(dry, np.linspace(0.1, 1.0, 2_000_000), {'damping_cubic.coefficient': np.linspace(70.0, 80.0, 2_000_000)})",
     "inputs of an ensemble": "hc.ensemble(dry, np.full(5000, 0.5), {'young_modulus': np.full((9000, 1), 2e11)})",
     "sweep": "hc.sweep(dry, np.linspace(0.1, 1.0, 100_000))",
-    "sweep by pilots": "hc.sweep(dry, np.linspace(0.1, 1.0, 100_000), judges='pilots')",
+    "calibrated sweep": "hc.sweep(dry, np.linspace(0.1, 1.0, 100_000))",
     "sweep with rebound": "hc.sweep(dry, np.linspace(0.1, 1.0, 100_000), rebound=True)",
     "shot": "hc.shot(dry.set({'beads[0].count': 20000.0}), 0.5, accuracy=1e-10)",
     "campaign": "hc.campaign(hc.preset('paper'), folder)",

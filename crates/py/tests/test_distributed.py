@@ -69,9 +69,6 @@ def test_work_is_cut_so_that_every_thread_has_some(small, client, tmp_path):
     same(there.load(), hc.ensemble(small, SPEEDS))
     few = distributed.sweep(small, SPEEDS[:3], folder=tmp_path / "few", client=client)
     assert few.shards == 3
-    pilots = distributed.sweep(small, SPEEDS, folder=tmp_path / "pilots", client=client, error_control="calibrated")
-    assert pilots.shards == 2
-    same(pilots.load(), hc.ensemble(small, SPEEDS, error_control="calibrated"))
     alone = distributed.sweep(small, SPEEDS, folder=tmp_path / "alone")
     assert alone.shards == 1
     same(alone.load(), there.load())

@@ -224,7 +224,7 @@ def sweep(
         Everything stays in this process when absent.
     shards : int, optional
         Parts of the run. When absent, as many as the folder has some of; else four for each
-        thread of the workers (one unless ``error_control="per-shot"``: each shard computes all calibration shots), and no part of more than 20,000 shots.
+        thread of the workers, and no part of more than 20,000 shots.
     progress : bool, bar or function, optional
         Called with finished shards.
 
@@ -255,8 +255,7 @@ def sweep(
     path = _written(run, Path(folder))
     if shards is None:
         least = -(-speeds.size // SHOTS_A_SHARD)
-        a_thread = SHARDS_A_THREAD if error_control == "per-shot" else 1
-        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, a_thread, client)
+        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, SHARDS_A_THREAD, client)
     of = options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, of, "shard") as update:
         kept, failed = _run_all(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)

@@ -488,6 +488,8 @@ class Sweep(_Shots):
         None where fewer than two speeds have a time of flight.
     calibration : dict or None
         The step that calibration shots chose; None with control per shot.
+    error_control : str
+        How errors were controlled, and why.
     errors : dict of int to str
         Why speeds, by index, have no shot.
     warnings : dict of int to list of str
@@ -504,6 +506,7 @@ class Sweep(_Shots):
     power_law_incident: PowerLaw | None
     power_law_reflected: PowerLaw | None
     calibration: dict[str, Any] | None
+    error_control: str
     errors: dict[int, str]
     warnings: dict[int, list[str]]
     dimensionless: bool = False

@@ -245,7 +245,7 @@ def sweep(
     warn(next(iter(warnings.values()), []), len(warnings))
     laws = (power_law(found[f"power_law_{end}"], experiment.is_dimensionless) for end in ("incident", "reflected"))
     return Sweep(
-        found["experiment"], found["speed_m_s"], found["columns"], *laws, found["calibration"], errors, warnings,
+        found["experiment"], found["speed_m_s"], found["columns"], *laws, found["calibration"], found["error_control"], errors, warnings,
         experiment.is_dimensionless,
     )  # fmt: skip
 

@@ -2,9 +2,12 @@ use super::*;
 
 #[test]
 fn streamed_json_escapes_the_controls_that_json_leaves_raw() {
-    let mut out = Plain(Vec::new());
+    let mut out = Plain {
+        out: Vec::new(),
+        held: Vec::new(),
+    };
     serde_json::to_writer(&mut out, "µ\u{9b}31m\u{7f}\u{1b}").unwrap();
-    let written = String::from_utf8(out.0).unwrap();
+    let written = String::from_utf8(out.out).unwrap();
     assert_eq!(written, "\"µ\\u009b31m\\u007f\\u001b\"");
 }
 
