@@ -160,7 +160,8 @@ impl Gauge {
             supplies: dry.iter().copied().map(Supply::Fixed).chain(free).collect(),
         };
         let from = |times: &f64| {
-            let laws = started(laws, &[stiffness, 0.0, times * relaxation, 0.0]);
+            let start = [stiffness, 0.0, times * relaxation, 0.0];
+            let laws = started(laws, &start);
             let parameters = own.iter().cloned().chain(laws).collect();
             fit(&Joint::new(parameters, vec![part.clone()]), &rough())
         };
