@@ -1,6 +1,6 @@
 //! What fit, gauge and design write: tables that agree with the JSON.
 
-use crate::common::{curve, folder, json, with_errors};
+use crate::common::{curve, folder, json, run, with_errors};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
