@@ -8,6 +8,7 @@ mod curve;
 mod data;
 mod free;
 mod gauge;
+mod gauge_form;
 mod goodness;
 mod linear;
 mod mistakes;

@@ -12,7 +12,9 @@ use crate::input::assumed_preset;
 use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments, WetForm};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
-use hertzchain_infer::gauge::{Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils};
+use hertzchain_infer::gauge::{
+    Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
+};
 use hertzchain_measure::records::text;
 use std::path::Path;
 
@@ -24,7 +26,9 @@ pub struct Gauged {
     pub rows: Vec<WetRow>,
     /// Power laws through them, where rows tell both.
     pub laws: Option<GaugeLaws>,
-    /// Which oil.
+    /// Power laws fitted to the whole curve, if the option asks for them.
+    pub form: Option<PowerForm>,
+    /// Which oil: by its whole curve, or by the power laws of `form` where these are sufficient.
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
@@ -40,23 +44,26 @@ pub fn gauged(
     oils: Vec<Oil>,
     form: WetForm,
 ) -> Result<Gauged, Failure> {
-    if form == WetForm::Power {
-        return Err(Failure::User(
-            "gauge fits no power laws of whole curves any more: use \
-             `hertzchain fit WET --free wet.K:power,wet.A:power`"
-                .to_owned(),
-        ));
-    }
     let gauge = Gauge::new(chains, dry, wet);
     wanted()?;
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
     wanted()?;
-    let verdict = gauge.verdict(&oils);
+    let form = match form {
+        WetForm::Each => Ok(None),
+        WetForm::Power => gauge.power_form().map(Some),
+    };
+    wanted()?;
+    let form = form.map_err(user)?;
+    let verdict = match &form {
+        None => gauge.verdict(&oils),
+        Some(form) => gauge.verdict_of_laws(form, &oils),
+    };
     wanted()?;
     Ok(Gauged {
         laws: GaugeLaws::through(&rows).ok(),
         verdict: verdict.map_err(user)?,
+        form,
         oils,
         rows,
         gauge,
@@ -67,13 +74,15 @@ impl Gauged {
     /// What speaks against believing it.
     #[must_use]
     pub fn doubts(&self) -> Option<String> {
-        self.gauge.doubts(&self.verdict)
+        let form = self.form.as_ref().and_then(PowerForm::doubts);
+        let all = form.into_iter().chain(self.gauge.doubts(&self.verdict));
+        all.reduce(|doubts, more| format!("{doubts} {more}"))
     }
 
     /// What to add to data that do not tell K and A apart, if nothing else does.
     #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
-        self.gauge.to_add()
+        self.gauge.to_add().filter(|_| self.form.is_none())
     }
 }
 

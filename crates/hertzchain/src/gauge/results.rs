@@ -3,7 +3,9 @@
 use super::Gauged;
 use crate::inference::references_json;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Pair, Scan, SharedLaw, WetRow, is_determined};
+use hertzchain_infer::gauge::{
+    Gauge, LAWS, Pair, PowerForm, Scan, SharedLaw, WetRow, is_determined,
+};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -22,6 +24,7 @@ pub fn json(gauged: &Gauged) -> Value {
         "contacts": gauged.rows.iter().map(row).collect::<Value>(),
         "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
         "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
+        "form": gauged.form.as_ref().map(|form| form_json(form, gauge)),
         "to_add": gauged.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
@@ -85,6 +88,41 @@ fn other(pair: &Pair) -> Value {
 fn scan(scan: &Scan) -> Value {
     json!({
         "between_s": scan.between_s, "complete": scan.is_complete(), "missing_s": scan.missing_s,
+    })
+}
+
+/// Power laws of the whole curve.
+fn form_json(form: &PowerForm, gauge: &Gauge) -> Value {
+    let sd = form.sd();
+    let law = |at: usize| {
+        json!({
+            "prefactor": form.values[at].exp(), "prefactor_relative_error": finite(sd[at]),
+            "exponent": form.values[at + 1], "exponent_error": finite(sd[at + 1]),
+        })
+    };
+    let contact = |speed: &f64| {
+        let [(k, k_sd), (a, a_sd)] = form.at(*speed).estimates();
+        json!({
+            "speed_m_s": speed, "stiffness": number(k, k_sd), "relaxation_time_s": number(a, a_sd),
+        })
+    };
+    let other = |values: &[f64; LAWS]| {
+        json!({
+            "stiffness": { "prefactor": values[0].exp(), "exponent": values[1] },
+            "relaxation_time_s": { "prefactor": values[2].exp(), "exponent": values[3] },
+        })
+    };
+    json!({
+        "stiffness": law(0),
+        "relaxation_time_s": law(2),
+        "covariance_of_ln_prefactors_and_exponents": form.covariance.map(|row| row.map(finite)),
+        "chi_square": form.chi_square.map(|c| json!({
+            "value": c.value, "freedom": c.freedom, "probability": c.probability,
+        })),
+        "contacts": gauge.wet().speeds_m_s().iter().map(contact).collect::<Value>(),
+        "oils_held_against_it": form.is_sufficient(),
+        "others": form.others.iter().map(other).collect::<Value>(),
+        "not_determined": form.undetermined,
     })
 }
 

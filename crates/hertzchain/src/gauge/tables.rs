@@ -4,7 +4,7 @@ use super::Gauged;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{
-    Branch, Contact, Match, NuisanceParameter, Pair, Scan, SharedLaw, WetRow,
+    Branch, Contact, Match, NuisanceParameter, Pair, PowerForm, Scan, SharedLaw, WetRow,
 };
 
 /// Every table: files' names and what stands in them.
@@ -18,6 +18,10 @@ pub fn tables(gauged: &Gauged) -> Vec<(&'static str, String)> {
     ];
     all.extend((!gauged.verdict.failed.is_empty()).then(|| ("failed.csv", failed(gauged))));
     all.extend(gauged.laws.is_some().then(|| ("laws.csv", laws(gauged))));
+    if let Some(form) = &gauged.form {
+        all.push(("form.csv", form_laws(form)));
+        all.push(("form-contacts.csv", form_contacts(form, gauged)));
+    }
     all
 }
 
@@ -25,13 +29,17 @@ pub fn tables(gauged: &Gauged) -> Vec<(&'static str, String)> {
 fn summary(gauged: &Gauged) -> String {
     let (gauge, verdict) = (&gauged.gauge, &gauged.verdict);
     let chi_square = gauge.dry_goodness().chi_square;
-    let lines: [(&str, Cell); 6] = [
+    let form = gauged.form.as_ref().and_then(|form| form.chi_square);
+    let lines: [(&str, Cell); 9] = [
         ("verdict", verdict.sentence().into()),
         ("doubts", gauged.doubts().into()),
         ("to_add", gauged.to_add().into()),
         ("dry_chi_square", chi_square.map(|c| c.value).into()),
         ("dry_freedom", chi_square.map(|c| c.freedom).into()),
         ("dry_probability", chi_square.map(|c| c.probability).into()),
+        ("form_chi_square", form.map(|c| c.value).into()),
+        ("form_freedom", form.map(|c| c.freedom).into()),
+        ("form_probability", form.map(|c| c.probability).into()),
     ];
     let line = |(name, value): (&str, Cell)| [name.into(), value];
     Csv::new(["quantity", "value"]).with_all(lines, line).text()
@@ -192,4 +200,36 @@ fn laws(gauged: &Gauged) -> String {
         .iter()
         .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
     Csv::new(titles.split(',')).with_all(both, line).text()
+}
+
+/// One line a power law of the whole curve.
+fn form_laws(form: &PowerForm) -> String {
+    let sd = form.sd();
+    let line = |((name, unit), at): ((&str, &str), usize)| -> [Cell; 7] {
+        [
+            name.into(),
+            unit.into(),
+            form.values[at].exp().into(),
+            sd[at].into(),
+            form.values[at + 1].into(),
+            sd[at + 1].into(),
+            form.covariance[at][at + 1].into(),
+        ]
+    };
+    let titles = "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,\
+                  covariance_of_ln_prefactor_and_exponent";
+    let both = [(CALLED[0], 0), (CALLED[1], 2)];
+    Csv::new(titles.split(',')).with_all(both, line).text()
+}
+
+/// One line a speed: K and A by both laws of the whole curve.
+fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
+    let titles = "speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,\
+                  relaxation_time_s_error";
+    let line = |speed: f64| {
+        let [(k, k_sd), (a, a_sd)] = form.at(speed).estimates();
+        [speed, k, k_sd, a, a_sd]
+    };
+    let speeds = gauged.gauge.wet().speeds_m_s();
+    Csv::new(titles.split(',')).with_all(speeds, line).text()
 }

@@ -4,10 +4,12 @@
 //! these known, the wet curve determines the stiffness K and the relaxation time A of the wet ones,
 //! speed by speed.
 
+mod form;
 mod oils;
 mod rows;
 mod scan;
 
+pub use form::{AtSpeed, LAWS, PowerForm};
 pub use oils::{Description, Law, Oil, known_oils, oils};
 pub use rows::{Branch, Combination, Contact, Pair, WetRow, is_determined};
 pub use scan::Scan;
@@ -170,7 +172,8 @@ impl Gauge {
             .any(|row| row.observables().count() > 1);
         (!has_both && !self.data.has(Observable::Reflected)).then_some(
             "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
-             the returning to the passing peak (--use incident,returning-ratio)",
+             the returning to the passing peak (--use incident,returning-ratio); or take K and A for power \
+             laws of speed, which a whole curve determines where speeds are known well (--form power)",
         )
     }
 
@@ -273,6 +276,19 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// The verdict on oils, each compared by this function.
+    fn new(oils: &[Oil], compare: impl Fn(&Oil) -> Result<Match, InferError>) -> Self {
+        let (mut matches, mut failed) = (Vec::new(), Vec::new());
+        for oil in oils {
+            match compare(oil) {
+                Ok(found) => matches.push(found),
+                Err(why) => failed.push((oil.name.clone(), why.to_string())),
+            }
+        }
+        matches.sort_by(|a: &Match, b| a.chi_square.value.total_cmp(&b.chi_square.value));
+        Self { matches, failed }
+    }
+
     /// Oils that the data allow.
     pub fn allowed(&self) -> impl Iterator<Item = &Match> {
         self.matches.iter().filter(|found| found.fits())
@@ -308,32 +324,37 @@ impl Gauge {
     /// # Errors
     /// Names that the wet model does not know; an oil that fails is in the verdict.
     pub fn verdict(&self, oils: &[Oil]) -> Result<Verdict, InferError> {
+        let wet = self.wet_in_form("each")?;
+        Ok(Verdict::new(oils, |oil| self.compare(oil, &wet)))
+    }
+
+    /// The wet curve with K and A that depend on speed as `power` or `each` says.
+    fn wet_in_form(&self, form: &str) -> Result<CurveProblem, InferError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
-        for name in ["wet.K:each", "wet.A:each"] {
-            numbers.push(FreeNumber::find(experiment, name, None)?);
+        for name in ["wet.K", "wet.A"] {
+            let name = format!("{name}:{form}");
+            numbers.push(FreeNumber::find(experiment, &name, None)?);
         }
         let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
-        let wet = CurveProblem::part(model.with_accuracy(self.wet.accuracy), self.data.clone());
-        let (mut matches, mut failed) = (Vec::new(), Vec::new());
-        for oil in oils {
-            match self.compare(oil, &wet) {
-                Ok(found) => matches.push(found),
-                Err(why) => failed.push((oil.name.clone(), why.to_string())),
-            }
-        }
-        matches.sort_by(|a: &Match, b| a.chi_square.value.total_cmp(&b.chi_square.value));
-        Ok(Verdict { matches, failed })
+        let model = model.with_accuracy(self.wet.accuracy);
+        Ok(CurveProblem::part(model, self.data.clone()))
+    }
+
+    /// K in N/m^{3/2} and A in s that an oil gives at the speeds of the wet data.
+    fn contacts_of(&self, oil: &Oil) -> [Vec<f64>; 2] {
+        let speeds = self.data.speeds_m_s().into_iter();
+        let (stiffness, relaxation) = speeds
+            .map(|speed| oil.contact(self.radius_m, speed))
+            .unzip();
+        [stiffness, relaxation]
     }
 
     fn compare(&self, oil: &Oil, wet: &CurveProblem) -> Result<Match, InferError> {
         let count = self.dry_fit.point.len();
         let speeds = self.data.speeds_m_s();
-        let contacts = speeds
-            .iter()
-            .map(|speed| oil.contact(self.radius_m, *speed));
-        let (stiffness, relaxation): (Vec<f64>, Vec<f64>) = contacts.unzip();
+        let [stiffness, relaxation] = self.contacts_of(oil);
         let own = self.wet_own(&speeds);
         let of_wet = (0..self.common())
             .chain(count..count + own.len())

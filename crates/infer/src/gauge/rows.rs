@@ -480,11 +480,11 @@ const LN_STEP: f64 = 0.01;
 /// Most candidates of a scan that are followed to their solutions, best first.
 const POLISHED: usize = 16;
 /// Starts of A where there is no scan, times that of the dry contacts: oils make it larger.
-const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
+pub(super) const TIMES_DRY: [f64; 7] = [1.0, 1.8, 3.2, 5.8, 10.5, 19.0, 34.0];
 /// Chi-square above the best solution's from which another is rejected: three standard errors.
 const NOT_WORSE: f64 = 9.0;
 /// Difference in ln A below which two solutions are one.
-const SAME: f64 = 0.02;
+pub(super) const SAME: f64 = 0.02;
 /// Changes of ln K and ln A that count as small: of more, residuals are no straight lines.
 const SMALL: f64 = 0.05;
 
@@ -535,7 +535,7 @@ fn distinct(
 
 /// Square root of a covariance by columns (Cholesky): shifts of all parameters that are independent
 /// of each other and one standard error long; parameters without an error do not move.
-fn shifts(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub(super) fn shifts(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = Vec::new();
     for at in 0..matrix.len() {
         let entry = |row: usize| {

@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(&gauge::tables(gauged))?;
-    if gauged.rows.iter().any(|row| row.contact.is_ok()) {
+    if gauged.form.is_some() || gauged.rows.iter().any(|row| row.contact.is_ok()) {
         folder.figure("contacts", &pictures::contacts(gauged))?;
     }
     print::written(&folder.finish()?);

@@ -2,7 +2,10 @@
 
 use hertzchain::gauge::Gauged;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
-use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
+use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_determined};
+
+/// Half-width of the band around power laws in standard errors: 95 %.
+const BAND: f64 = 1.96;
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
@@ -23,15 +26,15 @@ pub(super) fn contacts(gauged: &Gauged) -> Figure {
     }
 }
 
-/// Whether any row determines both K and A. If none does, an oil's K is another
-/// quantity than what was measured.
+/// Whether any row, or power laws of the whole curve, determine both K and A. If none does, an
+/// oil's K is another quantity than what was measured.
 fn tells_both(gauged: &Gauged) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
     let mut told = gauged
         .rows
         .iter()
         .filter_map(|row| row.contact.as_ref().ok());
-    told.any(both)
+    gauged.form.is_some() || told.any(both)
 }
 
 fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
@@ -50,9 +53,18 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
     let chart = oils.fold(chart, |chart, (at, oil)| {
         chart.with(curve(gauged, (at, oil), of, unit))
     });
+    let chart = gauged.form.iter().fold(chart, |chart, form| {
+        let speeds = speeds(gauged);
+        let law = |sds: f64| moved_law(form, &speeds, of, unit, sds);
+        let band = Series::band("", &speeds, &law(-BAND), &law(BAND)).colour(Colour::BLACK);
+        let line = Series::line("power laws", &speeds, &law(0.0)).colour(Colour::BLACK);
+        chart.with(band).with(line)
+    });
     let known = gauged.rows.iter().filter_map(|row| {
         let contact = row.contact.as_ref().ok()?;
-        if contact.branch == Branch::Unknown {
+        // The K of a combination is not that of a law.
+        let is_combined = gauged.form.is_some() && contact.combination.is_some();
+        if contact.branch == Branch::Unknown || is_combined {
             return None;
         }
         let (value, sd) = contact.first.estimates()[of];
@@ -92,6 +104,15 @@ fn speeds(gauged: &Gauged) -> Vec<f64> {
     let last = speeds.last().copied().unwrap_or(1.0);
     let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
     (0..POINTS).map(speed).collect()
+}
+
+/// K or A by a power law of the whole curve, moved by a number of its standard errors.
+fn moved_law(form: &PowerForm, speeds: &[f64], of: usize, unit: f64, sds: f64) -> Vec<f64> {
+    let value = |speed: &f64| {
+        let at = form.at(*speed);
+        unit * (at.ln[of] + sds * at.ln_sd[of]).exp()
+    };
+    speeds.iter().map(value).collect()
 }
 
 /// What an oil would give.

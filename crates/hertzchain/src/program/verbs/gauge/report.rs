@@ -6,7 +6,7 @@ use crate::words::{chi_square_text, estimate, lines, misfit, percent};
 use hertzchain::gauge::Gauged;
 use hertzchain::inference::references;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, NEVER, Pair, SharedLaw, WetRow, is_determined};
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_determined};
 
 /// Everything that is to be said.
 pub(super) fn text(gauged: &Gauged) -> String {
@@ -29,6 +29,9 @@ pub(super) fn text(gauged: &Gauged) -> String {
         text += &law("K", "N/m^1.5", &laws.stiffness);
         text += &law("A", "s", &laws.relaxation);
     }
+    if let Some(form) = &gauged.form {
+        text += &power_laws(form, &gauged.gauge.wet().speeds_m_s());
+    }
     if let Some(add) = gauged.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To tell both, {add}.\n"
@@ -39,7 +42,11 @@ pub(super) fn text(gauged: &Gauged) -> String {
         .gauge
         .ambiguous(&gauged.rows)
         .map_or(String::new(), |why| format!("{why}\n"));
-    text += &format!("\n{}\n{}", heading("Known oils"), matches(gauged));
+    let oils = match gauged.form.as_ref().is_some_and(PowerForm::is_sufficient) {
+        true => "Known oils, by the power laws that each would give",
+        false => "Known oils",
+    };
+    text += &format!("\n{}\n{}", heading(oils), matches(gauged));
     for (oil, why) in &gauged.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
@@ -161,6 +168,43 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     format!(
         "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
         digits(prefactor, 4)
+    )
+}
+
+/// Power laws of the whole curve, and K and A by them at its speeds.
+fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
+    let sd = form.sd();
+    let law = |name: &str, unit: &str, at: usize| {
+        let prefactor = digits(form.values[at].exp(), 4);
+        let relative = match sd[at].is_finite() {
+            true => percent(sd[at]),
+            false => "not determined".to_owned(),
+        };
+        let (exponent, error) = with_error(form.values[at + 1], sd[at + 1]);
+        format!("{name} = {prefactor} {unit} (± {relative}) · v^({exponent} ± {error})\n")
+    };
+    let chi_square = form.chi_square.map(|found| chi_square_text(found) + "\n");
+    let open = form.undetermined.iter();
+    let open: String = open
+        .map(|words| format!("  Not determined: {words}.\n"))
+        .collect();
+    let row = |speed: &f64| {
+        let [(k, k_sd), (a, a_sd)] = form.at(*speed).estimates();
+        vec![
+            digits(*speed, 4),
+            told(1e-9 * k, 1e-9 * k_sd),
+            told(1e9 * a, 1e9 * a_sd),
+        ]
+    };
+    let rows: Vec<Vec<String>> = speeds_m_s.iter().map(row).collect();
+    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
+    format!(
+        "\n{}\n{}{}{}{open}{}",
+        heading("Wet contacts as power laws of speed, fitted to both curves"),
+        law("K", "N/m^1.5", 0),
+        law("A", "s", 2),
+        chi_square.unwrap_or_default(),
+        format::table(&head, &rows)
     )
 }
 
