@@ -25,19 +25,12 @@ const WORTH_CALIBRATION: usize = 160;
 /// What calibration shots are compared with is this many times as right as asked.
 const TIGHTER: f64 = 20.0;
 
-/// Most times that steps are halved for that, and the share of calibration shots that must
-/// have it: the rest are ill-conditioned, and estimate that themselves.
+/// Most times that steps are halved for that.
 const MOST_HALVINGS: usize = 6;
-const KNOWN: f64 = 0.75;
 
 /// Estimates are this many times the largest error of calibration shots of the same condition: in
 /// between others may be worse.
 const MARGIN: f64 = 1.5;
-
-/// Steps of a guard, over those of the shot that it guards, and the weight of the change that
-/// they make.
-const GUARD: f64 = 1.3;
-const OF_GUARD: f64 = 2.0;
 
 /// Two maxima of which one is lower by no more than this many errors of heights may change places.
 const OF_HEIGHTS: f64 = 4.0;
@@ -83,7 +76,7 @@ const SETTINGS: [(Precision, f64, bool); 27] = {
 /// three runs that wait for whatever may come, over that of a step in single precision.
 const OF_DOUBLE: f64 = 2.0;
 const OF_OPENINGS: f64 = 1.2;
-const OF_PER_SHOT: f64 = 3.0;
+const OF_PER_SHOT: f64 = 5.0;
 
 /// A setting of the loop with equal steps that calibration shots have shown to be right enough.
 #[derive(Clone, Debug)]
@@ -102,13 +95,11 @@ pub struct Calibration {
     pub shots: usize,
 }
 
-/// Calibration shots with what they are compared with, `None` where that is not known.
+/// Calibration shots with what they are compared with.
 struct Sample<'a> {
     plans: Vec<&'a Plan>,
     systems: Vec<Option<Arc<System>>>,
-    exact: Vec<Option<Shot>>,
-    /// Whether nothing competes with the reflected pulse of any.
-    ends_with_pulse: bool,
+    exact: Vec<Shot>,
     set: InstructionSet,
 }
 
@@ -132,7 +123,7 @@ impl Calibration {
         }
         let own = Setting::of(first).ok_or("equal steps do not reach this accuracy")?;
         let per_shot = OF_PER_SHOT * cost(&own, Precision::Double);
-        let sample = Sample::new(plans, own, set).ok_or("calibration shots do not converge")?;
+        let sample = Sample::new(plans, own, set)?;
         let mut best: Option<(f64, Self)> = None;
         for (precision, step, openings) in SETTINGS {
             let setting = Setting {
@@ -140,7 +131,7 @@ impl Calibration {
                 precision: Some(precision),
                 openings,
                 shapes: false,
-                passed: sample.ends_with_pulse,
+                passed: true,
             };
             let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
             if cost(&setting, precision) >= least {
@@ -188,7 +179,7 @@ impl Calibration {
         for (plan, own) in plans.iter().zip(&mut systems) {
             *own = own.take().filter(|_| belongs(plan, (first, system)));
         }
-        let shots = guarded(plans, &systems, set, &self.setting).into_iter();
+        let shots = run_lanes(plans, &systems, set, &self.setting).into_iter();
         shots.map(|shot| self.right_enough(shot?)).collect()
     }
 
@@ -199,8 +190,8 @@ impl Calibration {
             interpolation,
         } = shot.conditioning;
         let reached = self.error * forces + MARGIN * interpolation;
-        let fixed = !may_flip(shot.passage.as_ref().ok()?, self.height_error);
-        let right = reached <= shot.accuracy_asked && fixed;
+        let sure = is_alone(&shot) && !may_flip(shot.passage.as_ref().ok()?, self.height_error);
+        let right = reached <= shot.accuracy_asked && sure;
         shot.accuracy_reached = Some(reached);
         right.then_some(shot)
     }
@@ -222,11 +213,10 @@ impl Display for Calibration {
 
 impl<'a> Sample<'a> {
     /// With times of flight right to a small share of what is asked: steps are halved until that
-    /// changes hardly any by more.
-    fn new(plans: &'a [Plan], own: Setting, set: InstructionSet) -> Option<Self> {
+    /// changes none by more.
+    fn new(plans: &'a [Plan], own: Setting, set: InstructionSet) -> Result<Self, &'static str> {
         let plans: Vec<&Plan> = plans.iter().collect();
         let systems = systems(&plans);
-        let asked = plans.first()?.accuracy / TIGHTER;
         let run = |step: f64| {
             let setting = Setting {
                 step,
@@ -234,32 +224,31 @@ impl<'a> Sample<'a> {
                 openings: true,
                 ..own
             };
-            run_lanes(&plans, &systems, set, &setting)
+            let shots = run_lanes(&plans, &systems, set, &setting).into_iter();
+            let shots: Option<Vec<Shot>> = shots.collect();
+            shots.ok_or("calibration shots are not finished by equal steps")
         };
-        let known = |pair: (&Option<Shot>, Option<Shot>)| {
-            let (coarse, fine) = (pair.0.as_ref()?, pair.1?);
-            (fine.change(coarse) <= asked).then_some(fine)
-        };
-        let (mut step, least) = (own.step, KNOWN * plans.len() as f64);
-        let mut coarse = run(step);
+        let mut step = own.step;
+        let mut exact = run(step)?;
         for _ in 0..MOST_HALVINGS {
+            if !exact.iter().all(is_alone) {
+                return Err("several maxima compete for the reflected pulse");
+            }
             step *= 0.5;
-            let fine = run(step);
-            let exact: Vec<Option<Shot>> = coarse.iter().zip(fine.clone()).map(known).collect();
-            if exact.iter().flatten().count() as f64 >= least {
-                let ends_with_pulse = fine.iter().flatten().all(ends_with_pulse);
-                let (plans, systems) = (plans.clone(), systems.clone());
-                return Some(Self {
-                    ends_with_pulse,
+            let coarse = std::mem::replace(&mut exact, run(step)?);
+            let right = |(fine, coarse): (&Shot, &Shot)| {
+                fine.change(coarse) <= fine.accuracy_asked / TIGHTER
+            };
+            if exact.iter().zip(&coarse).all(right) {
+                return Ok(Self {
                     plans,
                     systems,
                     exact,
                     set,
                 });
             }
-            coarse = fine;
         }
-        None
+        Err("calibration shots do not converge")
     }
 
     /// A calibration with a setting, and the share of shots that are not right enough with it;
@@ -269,9 +258,9 @@ impl<'a> Sample<'a> {
         setting: Setting,
         (first, system): (&Plan, &Arc<System>),
     ) -> Option<(Calibration, f64)> {
-        let shots = guarded(&self.plans, &self.systems, self.set, &setting);
+        let shots = run_lanes(&self.plans, &self.systems, self.set, &setting);
         let pairs = || shots.iter().zip(&self.exact);
-        let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact.as_ref()?)));
+        let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact)));
         let same = || known().filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
         let heights = same().map(|(shot, exact)| shot.peaks_change(exact));
         let height_error = OF_HEIGHTS * heights.fold(first.accuracy / TIGHTER, f64::max);
@@ -307,36 +296,12 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// Whether nothing competes with the reflected pulse of a shot, which is then over when it has passed.
-fn ends_with_pulse(shot: &Shot) -> bool {
+/// Whether nothing competes with the reflected pulse of a shot, which is then over when it has
+/// passed. Maxima that compete are exchanged and merged by small errors, which runs with equal steps may have alike.
+fn is_alone(shot: &Shot) -> bool {
     let of_return = |other: &Competing| other.pulse == Pulse::Reflected;
     let passage = shot.passage.as_ref();
     passage.is_ok_and(|passage| !passage.competing.iter().any(of_return))
-}
-
-/// Shots of plans. Of those with several reflected maxima, which small errors exchange or merge, the
-/// change by longer steps counts as one of interpolation.
-fn guarded(
-    plans: &[&Plan],
-    systems: &[Option<Arc<System>>],
-    set: InstructionSet,
-    setting: &Setting,
-) -> Vec<Option<Shot>> {
-    let shots = run_lanes(plans, systems, set, setting);
-    if setting.passed {
-        return shots;
-    }
-    let guards = run_lanes(plans, systems, set, &setting.longer(GUARD));
-    let guarded = |(shot, guard): (Option<Shot>, Option<Shot>)| {
-        let (mut shot, guard) = (shot?, guard?);
-        // Both may move the top of a flat pulse alike, but hardly its height.
-        let flat = shot.peaks_change(&guard) * setting.step * shot.conditioning.forces;
-        let change = shot.change(&guard).max(flat);
-        let interpolation = &mut shot.conditioning.interpolation;
-        *interpolation = interpolation.max(OF_GUARD * change);
-        Some(shot)
-    };
-    shots.into_iter().zip(guards).map(guarded).collect()
 }
 
 /// Cost of a shot, in steps of single precision a contact time.
@@ -347,8 +312,7 @@ fn cost(setting: &Setting, precision: Precision) -> f64 {
         1.0
     };
     let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
-    let guard = if setting.passed { 0.0 } else { 1.0 / GUARD };
-    (1.0 + guard) * double * openings / setting.step
+    double * openings / setting.step
 }
 
 /// Whether a plan is of a family.

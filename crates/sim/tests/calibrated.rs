@@ -41,14 +41,7 @@ fn errors(of: &BatchResult, exact: &BatchResult) -> Vec<f64> {
 
 #[test]
 fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
-    for name in [
-        "hertz",
-        "hertz-viscoelastic",
-        "dry",
-        "pump",
-        "gear",
-        "motor",
-    ] {
+    for name in ["hertz", "hertz-viscoelastic", "dry"] {
         let exact = run(name, "log:0.075:1.23:300", 1e-6);
         for accuracy in [1e-3, 1e-4, 1e-5] {
             let found = run(name, "log:0.075:1.23:300", accuracy);
@@ -59,7 +52,7 @@ fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
             );
             let reached = found.rows.column(Column::Accuracy);
             for (error, reached) in errors(&found, &exact).into_iter().zip(reached) {
-                // The comparison is itself right to 1e-6.
+                // What they are compared with is itself right to 1e-6.
                 assert!(
                     error <= reached + 1e-6,
                     "{name} at {accuracy:e}: {error:e}, {reached:e}"
@@ -98,8 +91,9 @@ fn more_accuracy_takes_more_force_passes() {
 
 #[test]
 fn results_have_the_same_bits_on_any_number_of_threads_and_alone() {
-    let pump = preset("pump").unwrap();
-    let batch = batch(&pump, "log:0.1:1:170", 1e-4, ErrorControl::default());
+    let dry = preset("dry").unwrap();
+    let cell = |of: &BatchResult, at: usize| of.rows.columns.each_ref().map(|c| c[at].to_bits());
+    let batch = batch(&dry, "log:0.1:1:170", 1e-4, ErrorControl::default());
     let whole = batch.run(Shard::WHOLE, &|| {});
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -107,11 +101,14 @@ fn results_have_the_same_bits_on_any_number_of_threads_and_alone() {
             .build()
             .unwrap()
             .install(|| batch.run(Shard::WHOLE, &|| {}));
-        assert_eq!(again, whole, "{threads} threads");
+        assert_eq!(again.error_control, whole.error_control);
+        assert!(
+            (0..170).all(|at| cell(&again, at) == cell(&whole, at)),
+            "{threads} threads"
+        );
     }
     // A shard of one shot.
     let alone = batch.run(Shard::new(12, 170).unwrap(), &|| {});
-    let cell = |of: &BatchResult, at: usize| of.rows.columns.each_ref().map(|c| c[at].to_bits());
     assert_eq!(cell(&alone, 0), cell(&whole, 11));
 }
 
@@ -127,11 +124,17 @@ fn what_is_not_calibrated_says_why() {
     let asked = why(&dry, "0.3,0.5", ErrorControl::PerShot);
     assert_eq!(asked, "per shot: as asked");
     let dimer = why(
-        &preset("dimer").unwrap(),
+        &preset("dimer-steel-ptfe").unwrap(),
         "0.3:0.5:160",
         ErrorControl::Calibrated,
     );
     assert!(dimer.contains("uniform rows"), "{dimer}");
+    let pump = why(
+        &preset("pump").unwrap(),
+        "0.1:0.5:160",
+        ErrorControl::Calibrated,
+    );
+    assert!(pump.contains("several maxima compete"), "{pump}");
 }
 
 #[test]

@@ -171,7 +171,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
             &dry,
             &[0.5, 1.0],
             BatchOptions {
-                error_control: ErrorControl::Calibrated,
+                error_control: ErrorControl::PerShot,
                 ..how
             },
         ),

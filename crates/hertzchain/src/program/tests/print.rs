@@ -7,6 +7,7 @@ fn streamed_json_escapes_the_controls_that_json_leaves_raw() {
         held: Vec::new(),
     };
     serde_json::to_writer(&mut out, "µ\u{9b}31m\u{7f}\u{1b}").unwrap();
+    out.flush().unwrap();
     let written = String::from_utf8(out.out).unwrap();
     assert_eq!(written, "\"µ\\u009b31m\\u007f\\u001b\"");
 }
