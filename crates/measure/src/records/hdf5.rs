@@ -7,7 +7,7 @@ use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
 use crate::records::record::Samples;
 use crate::records::series;
-use crate::records::stream::{Cut, Stream};
+use crate::records::stored::Source;
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -169,17 +169,15 @@ impl Arrays for Datasets {
         let dataset = self.dataset(name)?;
         let shape = dataset.shape();
         let part = Some(name.to_owned());
-        let table = Table::of(&self.file, part, &shape, interval_s, options)?;
-        let rows = Rows {
+        let table = Table::new(&self.file, part, &shape, interval_s, options)?;
+        let slices = Slices {
             file: self.file.clone(),
             name: name.to_owned(),
             dataset,
             axes: table.axes,
             chosen: table.chosen,
-            frames: table.frames,
-            at: 0,
         };
-        Ok(Box::new(Cut::new(table.head.divided(options.parts), rows)))
+        Ok(table.head.records(options.parts, slices))
     }
 
     fn stated_s(&self) -> Option<f64> {
@@ -193,34 +191,40 @@ impl Arrays for Datasets {
 }
 
 /// A dataset, read shot by shot or piece by piece.
-struct Rows {
+struct Slices {
     file: PathBuf,
     name: String,
     dataset: H5Dataset,
     axes: Axes,
     chosen: Vec<usize>,
-    frames: usize,
-    at: usize,
 }
 
-impl Stream for Rows {
-    fn take(&mut self, count: usize) -> Result<Vec<Samples>, MeasureError> {
-        let one = |channel: &usize| self.channel(*channel, count);
-        let taken: Result<Vec<Samples>, Hdf5Error> = self.chosen.iter().map(one).collect();
-        self.at += count;
+impl Source for Slices {
+    fn samples(
+        &mut self,
+        row: usize,
+        from: usize,
+        count: usize,
+    ) -> Result<Vec<Samples>, MeasureError> {
+        let one = |channel: &usize| self.channel(row, *channel, (from, count));
+        let taken: Result<_, Hdf5Error> = self.chosen.iter().map(one).collect();
         taken.map_err(|error| refused(&self.file, &self.name, &error))
     }
 }
 
-impl Rows {
-    /// The next samples of one channel.
-    fn channel(&self, channel: usize, count: usize) -> Result<Samples, Hdf5Error> {
+impl Slices {
+    fn channel(
+        &self,
+        row: usize,
+        channel: usize,
+        (from, count): (usize, usize),
+    ) -> Result<Samples, Hdf5Error> {
         let rank = self.dataset.shape().len();
         let (mut starts, mut counts) = (vec![0; rank], vec![1; rank]);
         for (axis, start, count) in [
-            (self.axes.shots, self.at / self.frames, 1),
+            (self.axes.shots, row, 1),
             (self.axes.channels, channel, 1),
-            (Some(self.axes.time), self.at % self.frames, count),
+            (Some(self.axes.time), from, count),
         ] {
             if let Some(axis) = axis {
                 (starts[axis], counts[axis]) = (start, count);

@@ -150,7 +150,7 @@ fn coarse(times: &FromTimes, interval_s: f64, off_s: f64, is_round: bool) -> Str
 }
 
 /// The note where times without a unit were taken as seconds, and no rate confirms it.
-pub(crate) fn seconds_taken(
+pub(crate) fn seconds_assumed(
     name: &str,
     unit_s: Option<f64>,
     options: &ReadOptions,

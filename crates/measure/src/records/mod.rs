@@ -13,7 +13,7 @@ mod options;
 mod read;
 mod record;
 mod series;
-mod stream;
+mod stored;
 mod tdms;
 mod text;
 mod wav;

@@ -3,7 +3,7 @@
 use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record, Samples};
-use crate::records::stream::from_sample;
+use crate::records::stored::from_sample;
 use crate::records::text::Encoding;
 use crate::records::{hdf5, numpy, series, tdms, text, wav};
 use std::fs::File;

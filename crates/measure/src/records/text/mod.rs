@@ -9,7 +9,7 @@ mod times;
 pub(crate) use lines::Encoding;
 
 use crate::error::MeasureError;
-use crate::records::interval::{Interval, interval_s, seconds_taken};
+use crate::records::interval::{Interval, interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use dialect::Dialect;
@@ -46,7 +46,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
         None => Interval::exact(interval_s(file, header.interval_s, options)?),
     };
     let unit_s = header.time.map(|time| time.1);
-    let note = unit_s.and_then(|unit_s| seconds_taken(&header.time_name, unit_s, options));
+    let note = unit_s.and_then(|unit_s| seconds_assumed(&header.time_name, unit_s, options));
     let before = beginning.lines().take(dialect.first_row);
     let plan = Plan {
         names,

@@ -7,7 +7,7 @@ use crate::error::{MeasureError, file_name};
 use crate::records::interval::{self, Interval};
 use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record, Samples};
-use crate::records::stream::{MOST_SAMPLES, from_sample};
+use crate::records::stored::{MOST_SAMPLES, from_sample};
 use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io;
