@@ -25,5 +25,5 @@ pub use files::{
 pub use hdf5::ColumnFile;
 pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
-pub use record::{Channel, LowPass, Record, Samples};
+pub use record::{Channel, Record, Samples};
 pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

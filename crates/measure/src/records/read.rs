@@ -4,7 +4,6 @@ use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record, Samples};
 use crate::records::stored::from_sample;
-use crate::records::text::Encoding;
 use crate::records::{hdf5, numpy, series, tdms, text, wav};
 use std::fs::File;
 use std::io::Read;
@@ -310,8 +309,7 @@ fn format_of(file: &Path) -> Result<&'static Format, MeasureError> {
 
 /// Text has no control characters but spaces.
 fn is_text(bytes: &[u8]) -> bool {
-    let (text, _) = Encoding::of(bytes).decoded(bytes);
-    !text
-        .iter()
-        .any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+    let text = text::decoded(bytes);
+    let mut letters = text.iter();
+    letters.all(|byte| !byte.is_ascii_control() || byte.is_ascii_whitespace())
 }

@@ -1,5 +1,6 @@
 //! One shot as a rig recorded it.
 
+use crate::signal::Bandwidth;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +32,7 @@ pub struct Record {
     /// Corner of the amplifier's high-pass in Hz, 0 for none.
     pub high_pass_hz: Option<f64>,
     /// The amplifier's low-pass.
-    pub low_pass: Option<LowPass>,
+    pub low_pass: Option<Bandwidth>,
     /// Samples before the trigger.
     pub pretrigger: Option<usize>,
     /// Whether the trigger fired.
@@ -43,15 +44,6 @@ pub struct Record {
     pub gaps: Vec<Range<usize>>,
     /// Assumptions made while the record was read.
     pub notes: Vec<String>,
-}
-
-/// An amplifier's low-pass: of one pole, or a Butterworth filter of two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LowPass {
-    /// Corner frequency in Hz.
-    pub corner_hz: f64,
-    /// 1 or 2.
-    pub order: usize,
 }
 
 impl Record {
@@ -115,6 +107,12 @@ impl Record {
         for (channel, later) in self.channels.iter_mut().zip(part.channels) {
             channel.samples.append(later.samples);
         }
+    }
+
+    /// Every channel in V.
+    pub(crate) fn volts(&self) -> Vec<Vec<f64>> {
+        let channels = self.channels.iter();
+        channels.map(|channel| channel.samples.volts()).collect()
     }
 
     /// Number of samples of a channel.

@@ -11,7 +11,8 @@ use crate::records::hdf5::{attribute, column, damaged, dataset};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
-use crate::records::record::{Channel, LowPass, Record, Samples};
+use crate::records::record::{Channel, Record, Samples};
+use crate::signal::Bandwidth;
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::fs::File;
 use std::path::Path;
@@ -149,8 +150,8 @@ impl Series {
     }
 }
 
-/// The amplifier's low-pass, if it is one of those that [`LowPass`] has.
-fn low_pass(open: &H5File) -> Option<LowPass> {
+/// The amplifier's low-pass, if it is one of those that [`Bandwidth`] has.
+fn low_pass(open: &H5File) -> Option<Bandwidth> {
     let [corner, order, kind] = LOW_PASS;
     let order = match (&*text(open, order)?, &*text(open, kind)?) {
         ("first", _) => 1,
@@ -158,7 +159,7 @@ fn low_pass(open: &H5File) -> Option<LowPass> {
         _ => return None,
     };
     let corner_hz = number_text(open, corner).filter(|hz| hz.is_finite() && *hz > 0.0)?;
-    Some(LowPass { corner_hz, order })
+    Some(Bandwidth { corner_hz, order })
 }
 
 /// The channels of a file, with their names: one, or one a sensor.

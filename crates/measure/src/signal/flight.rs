@@ -137,6 +137,24 @@ impl Flight {
         (product > 0.0).then(|| self.covariance_s2 / product)
     }
 
+    /// Incident and reflected time in s.
+    pub(crate) fn times_s(&self) -> [Option<Estimate>; 2] {
+        [Some(self.incident_s), self.reflected_s]
+    }
+
+    /// The same shot without its reflected pulse.
+    pub(crate) fn without_return(&self) -> Self {
+        let mut picks = self.picks;
+        picks.reflected = None;
+        Self {
+            reflected_s: None,
+            covariance_s2: 0.0,
+            reflected_over_incident: None,
+            picks,
+            ..*self
+        }
+    }
+
     /// The part of the covariance in s² that repeated shots do not share: without systematic errors
     /// of the wall's pulse and of the sampling interval.
     pub(crate) fn random_covariance_s2(&self) -> f64 {

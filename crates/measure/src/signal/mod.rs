@@ -3,10 +3,9 @@
 //! Independent of chains and files: functions take plain slices and, where time matters, a sampling
 //! interval in s. From samples to a curve:
 //!
-//! 1. [`Cutter`] locates the shots of a recording that is fed piece by piece.
-//! 2. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
+//! 1. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
 //!    returns a [`Flight`] with its uncertainty and [`QualityFlag`]s.
-//! 3. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
+//! 2. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
 //!    [`power_law_both_errors`], [`chi_square`] and [`coverage`] reduce shots to curves.
 //!
 //! ```
@@ -27,7 +26,6 @@
 //! ```
 
 mod baseline;
-mod cutter;
 mod error;
 mod filters;
 mod find;
@@ -39,7 +37,6 @@ mod spikes;
 mod statistics;
 
 pub use baseline::{Baseline, baseline};
-pub use cutter::{Cutter, Segment, Trigger};
 pub use error::SignalError;
 pub use filters::{Bandwidth, LowPass, invert_high_pass};
 pub use find::{

@@ -2,9 +2,9 @@
 
 use crate::common::Scene;
 use hertzchain_measure::signal::{
-    Channels, Cutter, DigitiserRange, Estimate, FindOptions, LowPass, Method, Polarity, Shape,
-    SignalOptions, Template, Trigger, baseline, chi_square, coverage, groups, invert_high_pass,
-    measure, power_law_both_errors, summary,
+    Channels, DigitiserRange, Estimate, FindOptions, LowPass, Method, Polarity, Shape,
+    SignalOptions, Template, baseline, chi_square, coverage, groups, invert_high_pass, measure,
+    power_law_both_errors, summary,
 };
 use proptest::prelude::*;
 
@@ -119,26 +119,5 @@ proptest! {
         samples.drain(..cut);
         let wall = scene.summed();
         measure_all(&samples, &wall[cut..], 1e-6);
-    }
-
-    #[test]
-    fn any_floats_can_be_cut(
-        recording in prop::collection::vec(number(), 0..300),
-        threshold in -1.0..1.0_f64,
-    ) {
-        let trigger = Trigger {
-            level: threshold,
-            falling: false,
-            hysteresis: 0.1,
-            before: 5,
-            length: 20,
-            hold_off: u64::MAX,
-        };
-        if let Ok(mut cutter) = Cutter::new(trigger) {
-            let mut count = 0;
-            cutter.feed(&recording, |x| x, |_| count += 1);
-            cutter.finish(|_| count += 1);
-            prop_assert!(count <= 1);
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! Delimiter, decimal sign and columns of a text; its fields as numbers.
 
-use super::lines::{Lines, Read, text};
+use super::{Ending, Lines, text};
 use std::borrow::Cow;
 use std::io;
 use std::path::Path;
@@ -64,16 +64,13 @@ impl Dialect {
         // The end of the beginning: preambles are over by then.
         let rows = lines.len().div_ceil(2).min(ROWS);
         let rows = lines.get(lines.len() - rows..)?;
-        let mut best: Option<(f64, char, bool)> = None;
-        for decimal_comma in [false, true] {
-            for delimiter in DELIMITERS {
-                let share = share(rows, delimiter, decimal_comma);
-                if share > best.map_or(0.0, |best| best.0) {
-                    best = Some((share, delimiter, decimal_comma));
-                }
-            }
-        }
-        let (_, delimiter, decimal_comma) = best?;
+        let signs = [false, true].into_iter();
+        let dialects = signs.flat_map(|comma| DELIMITERS.map(|delimiter| (delimiter, comma)));
+        let shares =
+            dialects.map(|(delimiter, comma)| (share(rows, delimiter, comma), delimiter, comma));
+        // The first of equals.
+        let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let (_, delimiter, decimal_comma) = best.filter(|best| best.0 > 0.0)?;
         let mut dialect = Self {
             delimiter,
             decimal_comma,
@@ -130,19 +127,17 @@ fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
 pub(super) fn beginning(file: &Path) -> io::Result<String> {
     let mut lines = Lines::open(file)?;
     let (mut all, mut line) = (String::new(), Vec::new());
-    loop {
-        match lines.next(&mut line)? {
-            Read::Nothing => return Ok(all),
-            Read::Begun if !all.is_empty() && all.len() + line.len() > BEGINNING => return Ok(all),
-            Read::Begun | Read::Whole => {}
+    while all.len() < BEGINNING {
+        let ending = lines.next(&mut line)?;
+        let goes_on = ending == Ending::Begun && !all.is_empty();
+        if ending == Ending::Nothing || goes_on && all.len() + line.len() > BEGINNING {
+            break;
         }
         line.truncate(BEGINNING);
         all += &text(&line);
         all.push('\n');
-        if all.len() >= BEGINNING {
-            return Ok(all);
-        }
     }
+    Ok(all)
 }
 
 /// The fields of a line. Spaces separate in runs; quotes keep delimiters.

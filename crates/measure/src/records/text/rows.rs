@@ -1,8 +1,8 @@
 //! Rows into records, line by line.
 
 use super::dialect::{Dialect, last_digit, no_number, number};
-use super::lines::{Lines, Read, text};
 use super::times::{self, Printed, Returns};
+use super::{Ending, Lines, text};
 use crate::error::{MeasureError, file_name};
 use crate::records::interval::{self, Interval};
 use crate::records::options::{Parts, ReadOptions};
@@ -155,7 +155,7 @@ impl Segments {
 
     fn line(&mut self) -> Line {
         let read = match self.lines.next(&mut self.bytes) {
-            Ok(Read::Nothing) => return Line::End,
+            Ok(Ending::Nothing) => return Line::End,
             Ok(read) => read,
             Err(cause) => {
                 let error = MeasureError::reading(&self.file, cause);
@@ -164,7 +164,7 @@ impl Segments {
             }
         };
         self.line += 1;
-        let whole = read == Read::Whole;
+        let whole = read == Ending::Whole;
         let line = text(&self.bytes);
         let fields = self.plan.dialect.fields(&line);
         let blank = fields.iter().all(|field| field.is_empty());
