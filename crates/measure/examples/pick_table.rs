@@ -12,8 +12,7 @@ mod dry;
 mod source;
 
 use hertzchain_measure::signal::{
-    Channels, Estimate, FindOptions, Flight, QualityFlag, coverage, cramer_rao_of_samples_s,
-    median, pick, pulses,
+    Channels, Estimate, FindOptions, Flight, QualityFlag, coverage, median, pick, pulses,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -117,14 +116,15 @@ fn cell(errors: &[(Estimate, bool)], shots: u64) -> String {
     format!("{mean:+.0} ± {:.0}{lost}", spread.sqrt())
 }
 
-/// Bound of incident and reflected time in ns.
+/// Cramér–Rao bound of incident and reflected time in ns: noise/√(Σ s'²) of each pulse.
 fn bounds(source: &Source, interval_s: f64, noise: f64) -> [f64; 2] {
     let around = |at: f64| {
         let reach = (70e-6 / interval_s) as i32;
         let pulse: Vec<f64> = (-reach..=reach)
             .map(|i| (source.signal)(at + f64::from(i) * interval_s))
             .collect();
-        cramer_rao_of_samples_s(&pulse, interval_s, noise) * 1e9
+        let slopes = pulse.windows(3).map(|w| 0.5 * (w[2] - w[0]) / interval_s);
+        1e9 * noise / slopes.map(|s| s * s).sum::<f64>().sqrt()
     };
     let [passing, wall, returning] = source.times_s.map(around);
     [passing.hypot(wall), wall.hypot(returning)]

@@ -2,7 +2,7 @@
 
 use crate::MeasureError;
 use crate::records::{Channel, Record, Samples};
-use crate::signal::{SignalError, median};
+use crate::signal::median;
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -41,14 +41,14 @@ struct Trigger {
 }
 
 impl Trigger {
-    fn check(&self) -> Result<(), SignalError> {
+    fn check(&self) -> Result<(), MeasureError> {
         let (level, hysteresis) = (self.level, self.hysteresis);
         let name = "level of the trigger";
-        SignalError::require(level.is_finite(), name, level, "a finite number")?;
+        MeasureError::require(level.is_finite(), name, level, "a finite number")?;
         let name = "hysteresis of the trigger";
-        SignalError::require(hysteresis >= 0.0, name, hysteresis, "0 or more")?;
+        MeasureError::require(hysteresis >= 0.0, name, hysteresis, "0 or more")?;
         let after = self.length as f64 - self.before as f64;
-        SignalError::positive("number of samples of a shot after its trigger", after)
+        MeasureError::positive("number of samples of a shot after its trigger", after)
     }
 
     fn sign(self) -> f64 {
@@ -95,7 +95,7 @@ enum TriggerState {
 }
 
 impl Cutter {
-    fn new(trigger: Trigger) -> Result<Self, SignalError> {
+    fn new(trigger: Trigger) -> Result<Self, MeasureError> {
         trigger.check()?;
         Ok(Self {
             trigger,

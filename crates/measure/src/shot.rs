@@ -1,12 +1,12 @@
 //! One measured shot.
 
-use crate::Options;
 use crate::records::Record;
 use crate::run::{stated_bandwidth, stated_high_pass_hz};
 use crate::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, PulseKind, QualityFlag,
-    SignalError, SignalOptions,
+    SignalOptions,
 };
+use crate::{MeasureError, Options};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ pub struct Shot {
     /// Time between samples in s.
     pub interval_s: f64,
     /// Times of flight, heights, widths; or why there are none.
-    pub flight: Result<Flight, SignalError>,
+    pub flight: Result<Flight, MeasureError>,
     /// What is doubtful.
     pub doubts: Vec<QualityFlag>,
     /// Whether its recorder waited for a trigger in vain.

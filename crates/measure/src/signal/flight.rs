@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 use crate::signal::find::conditioned_pulses;
 use crate::signal::pick::pick_corrected;
 use crate::signal::{
@@ -32,7 +32,7 @@ pub struct Measured {
     /// Its pulses and quality flags.
     pub found: Found,
     /// Times of flight, or why there are none.
-    pub flight: Result<Flight, SignalError>,
+    pub flight: Result<Flight, MeasureError>,
 }
 
 /// Finds and picks the pulses of one shot.
@@ -44,8 +44,8 @@ pub fn measure(
     channels: Channels<'_>,
     interval_s: f64,
     options: &SignalOptions,
-) -> Result<Measured, SignalError> {
-    SignalError::positive("sampling interval in s", interval_s)?;
+) -> Result<Measured, MeasureError> {
+    MeasureError::positive("sampling interval in s", interval_s)?;
     let find = &options.find;
     let polarities = [find.polarity, find.wall_polarity];
     let raw = channels.both();
@@ -93,7 +93,7 @@ impl SignalOptions {
         samples: &'a [f64],
         interval_s: f64,
         polarity: Polarity,
-    ) -> Result<Cow<'a, [f64]>, SignalError> {
+    ) -> Result<Cow<'a, [f64]>, MeasureError> {
         let mut samples = Cow::Borrowed(samples);
         if let Some(time_constant_s) = self.high_pass_s {
             let offset = normalisation(&samples, polarity)?.baseline.offset;

@@ -22,11 +22,10 @@
 //! let flight = shot.flight?;
 //! assert!(shot.found.flags.is_empty());
 //! assert!((flight.incident_s.value - 0.7e-3).abs() < 1e-8);
-//! # Ok::<(), hertzchain_measure::signal::SignalError>(())
+//! # Ok::<(), hertzchain_measure::MeasureError>(())
 //! ```
 
 mod baseline;
-mod error;
 mod filters;
 mod find;
 mod flight;
@@ -37,7 +36,6 @@ mod spikes;
 mod statistics;
 
 pub use baseline::{Baseline, baseline};
-pub use error::SignalError;
 pub use filters::{Bandwidth, LowPass, invert_high_pass};
 pub use find::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity, Pulse,
@@ -45,8 +43,7 @@ pub use find::{
 };
 pub use flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic};
 pub use pick::{
-    CompetingPick, Method, Picked, Picks, Shape, Systematic, Template, cramer_rao_of_samples_s,
-    cramer_rao_s, delay_by_cross_correlation, pick,
+    CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation, pick,
 };
 pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,

@@ -3,7 +3,7 @@
 use crate::common::Scene;
 use hertzchain_measure::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, LowPass, Method, Polarity, Shape,
-    SignalOptions, Template, baseline, chi_square, coverage, groups, invert_high_pass, measure,
+    SignalOptions, baseline, chi_square, coverage, groups, invert_high_pass, measure,
     power_law_both_errors, summary,
 };
 use proptest::prelude::*;
@@ -23,14 +23,8 @@ fn number() -> impl Strategy<Value = f64> {
 fn methods() -> Vec<Method> {
     vec![
         Method::default(),
-        Method::LocalModel {
-            degree: 8,
-            width: 0.2,
-        },
         Method::Onset { fraction: 0.1 },
-        Method::CrossCorrelation(Template::Incident),
-        Method::CrossCorrelation(Template::Shape(Shape::sech_power(2.0))),
-        Method::CrossCorrelation(Template::Fixed(Shape::sech_power(2.0), 30e-6)),
+        Method::CrossCorrelation,
         Method::MatchedShape {
             shape: Shape::cos_power(6.0),
             width: 2.0,
@@ -85,7 +79,6 @@ proptest! {
         let _ = baseline(&samples);
         let _ = invert_high_pass(&mut samples.clone(), interval, 1e-3);
         let _ = LowPass { cutoff_hz: interval, order: 4 }.apply(&samples, 1e-6);
-        let _ = Shape::sampled(&samples);
         let _ = groups(&samples, interval);
         let _ = coverage(&samples, interval);
         let _ = power_law_both_errors(&samples, &samples, &samples, &samples);

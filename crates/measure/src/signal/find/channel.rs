@@ -1,8 +1,8 @@
 //! One channel: polarity, baseline, its first pulse, and smoothed stretches with their maxima.
 
 use super::{Normalisation, Polarity, Pulse, PulseKind};
+use crate::error::{MeasureError, all_finite};
 use crate::signal::baseline::{Baseline, baseline};
-use crate::signal::error::{SignalError, all_finite};
 use crate::signal::filters::triangular_mean;
 use crate::signal::statistics::{NORMAL_MAD, median, median_and_spread};
 use std::ops::Range;
@@ -36,12 +36,12 @@ pub(super) struct ChannelSignal<'a> {
 }
 
 impl<'a> ChannelSignal<'a> {
-    pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, SignalError> {
-        SignalError::enough(samples.len(), 16 * BLOCK)?;
+    pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, MeasureError> {
+        MeasureError::enough(samples.len(), 16 * BLOCK)?;
         let (low, high) = extremes(samples);
         let blocks = blocks(samples, (low, high))?;
         if low == high {
-            return Err(SignalError::Constant(low));
+            return Err(MeasureError::Constant(low));
         }
         let stride = blocks.len().div_ceil(2048);
         let some: Vec<f64> = blocks.iter().copied().step_by(stride).collect();
@@ -57,7 +57,7 @@ impl<'a> ChannelSignal<'a> {
         let broad = baseline.broad_noise() / (BLOCK as f64).sqrt();
         let swing_to_noise = swing / broad.min(baseline.noise);
         if !(swing > 0.0 && (swing_to_noise >= LEAST_SWING || baseline.noise == 0.0)) {
-            return Err(SignalError::NoPulse(swing_to_noise));
+            return Err(MeasureError::NoPulse(swing_to_noise));
         }
         Ok(Self {
             samples,
@@ -88,7 +88,7 @@ impl<'a> ChannelSignal<'a> {
 }
 
 /// Means of `BLOCK` samples each; what is left over at the end is not used.
-fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, SignalError> {
+fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, MeasureError> {
     let (whole, rest) = samples.as_chunks::<BLOCK>();
     let scale = (BLOCK as f64).recip();
     let means = whole.iter().map(|[a, b, c, d]| ((a + b) + (c + d)) * scale);
@@ -139,7 +139,7 @@ fn rough_width(blocks: &[f64], cross: usize, height: impl Fn(f64) -> f64) -> f64
 }
 
 /// Baseline before the first pulse; a rough one of the whole record if there is no such part.
-fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline, SignalError> {
+fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline, MeasureError> {
     let quiet = &quiet[quiet.len().saturating_sub(ENOUGH)..];
     if quiet.len() >= QUIET {
         return baseline(quiet);

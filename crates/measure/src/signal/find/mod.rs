@@ -9,7 +9,7 @@ mod select;
 pub use found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, QualityFlag};
 pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 use channel::{ChannelSignal, Smoothed};
 use select::Selection;
 
@@ -29,7 +29,7 @@ use select::Selection;
 /// # Errors
 /// Too few, not finite or constant samples; no pulse at all; channels of different lengths; options
 /// out of range. A missing wall or reflected pulse is no error but a [`QualityFlag`].
-pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found, SignalError> {
+pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found, MeasureError> {
     conditioned_pulses(channels, channels, options)
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn conditioned_pulses(
     channels: Channels<'_>,
     recorded: Channels<'_>,
     options: &FindOptions,
-) -> Result<Found, SignalError> {
+) -> Result<Found, MeasureError> {
     options.check()?;
     let (mut found, others) = match channels {
         Channels::Summed(samples) => summed(samples, options),
@@ -62,14 +62,14 @@ pub(crate) fn conditioned_pulses(
 ///
 /// # Errors
 /// As [`pulses`].
-pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, SignalError> {
+pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, MeasureError> {
     ChannelSignal::new(samples, polarity).map(|channel| channel.normalisation)
 }
 
 /// What was found, and other maxima that could be the largest of their pulses.
 type Gathered = (Found, Vec<Pulse>);
 
-fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, SignalError> {
+fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
     let channel = ChannelSignal::new(samples, options.polarity)?;
     let end = select::end_of_interest(&channel, options);
     let mut smoothed = Smoothed::of_all(&channel, end);
@@ -88,9 +88,9 @@ fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, SignalErro
     Ok(gather(&selection, [&smoothed, &smoothed, back]))
 }
 
-fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered, SignalError> {
+fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
     if sensor.len() != wall.len() {
-        return Err(SignalError::Lengths(format!(
+        return Err(MeasureError::Lengths(format!(
             "the sensor's channel has {} samples and the wall's {}: they must be recorded together",
             sensor.len(),
             wall.len()
