@@ -1,7 +1,7 @@
 //! Shots cut out of a recording that comes in pieces, where it passes a level.
 
 use crate::MeasureError;
-use crate::records::{Channel, Record, Samples};
+use crate::records::{Channel, Record, extremes};
 use crate::signal::median;
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -105,14 +105,14 @@ impl Cutter {
         })
     }
 
-    /// The shots that end in the next piece of the recording, of which `value` makes V.
-    fn feed<T: Copy>(&mut self, piece: &[T], value: impl Fn(T) -> f64) -> Vec<Segment> {
+    /// The shots that end in the next piece of the recording.
+    fn feed(&mut self, piece: &[f64]) -> Vec<Segment> {
         let (mut left, mut shots) = (piece, Vec::new());
         while !left.is_empty() {
             let used = match self.state {
                 TriggerState::Collecting(fired) => self.collect(left.len(), fired, &mut shots),
-                TriggerState::Resting(until) => self.rest(left, until, &value),
-                TriggerState::Armed => self.wait(left, &value),
+                TriggerState::Resting(until) => self.rest(left, until),
+                TriggerState::Armed => self.wait(left),
             };
             left = left.get(used..).unwrap_or_default();
         }
@@ -157,10 +157,10 @@ impl Cutter {
         wanted as usize
     }
 
-    fn rest<T: Copy>(&mut self, left: &[T], until: u64, value: impl Fn(T) -> f64) -> usize {
+    fn rest(&mut self, left: &[f64], until: u64) -> usize {
         let waiting = until.saturating_sub(self.position);
         let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
-        let back = first(&left[skip..], |x| self.trigger.is_back(value(x)));
+        let back = first(&left[skip..], |x| self.trigger.is_back(x));
         if back.is_some() {
             self.state = TriggerState::Armed;
         }
@@ -169,8 +169,8 @@ impl Cutter {
         used
     }
 
-    fn wait<T: Copy>(&mut self, left: &[T], value: impl Fn(T) -> f64) -> usize {
-        let fires = first(left, |x| self.trigger.fires(value(x)));
+    fn wait(&mut self, left: &[f64]) -> usize {
+        let fires = first(left, |x| self.trigger.fires(x));
         let used = fires.unwrap_or(left.len());
         self.position += used as u64;
         if fires.is_some() {
@@ -181,7 +181,7 @@ impl Cutter {
 }
 
 /// First sample for which `test` holds.
-fn first<T: Copy>(samples: &[T], test: impl Fn(T) -> bool) -> Option<usize> {
+fn first(samples: &[f64], test: impl Fn(f64) -> bool) -> Option<usize> {
     for (number, chunk) in samples.chunks(STRIDE).enumerate() {
         // Without early exit inside, so that it runs many samples at a time.
         if chunk.iter().fold(false, |any, x| any | test(*x)) {
@@ -280,10 +280,9 @@ impl UnderWay {
         let usual = (SHOT_S / piece.interval_s).round() as usize;
         let length = level.samples.unwrap_or(usual.max(1));
         let channel = piece.channels.first();
-        let volts = channel.map(|channel| channel.samples.volts());
-        let volts = volts.unwrap_or_default();
+        let volts = channel.map_or(&[][..], |channel| &channel.volts);
         let stride = volts.len().div_ceil(BASELINE).max(1);
-        let some: Vec<f64> = volts.into_iter().step_by(stride).collect();
+        let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
         let baseline_v = median(&some).unwrap_or(0.0);
         let cutter = Cutter::new(Trigger {
             level: level.volts,
@@ -307,24 +306,14 @@ impl UnderWay {
     fn feed(&mut self, piece: Record) -> Vec<Segment> {
         self.stored.push_back(piece);
         let newest = self.stored.back().and_then(|piece| piece.channels.first());
-        let Some(Channel { samples, .. }) = newest else {
+        let Some(Channel { volts, .. }) = newest else {
             return Vec::new();
         };
         if !self.found {
-            let (low, high) = samples.extremes_v();
+            let (low, high) = extremes(volts.iter().copied());
             self.extremes_v = (self.extremes_v.0.min(low), self.extremes_v.1.max(high));
         }
-        match samples {
-            Samples::Volts(volts) => self.cutter.feed(volts, |volt| volt),
-            Samples::Counts {
-                counts,
-                volts_per_count,
-                offset_v,
-            } => {
-                let volts = |count| f64::from(count) * volts_per_count + offset_v;
-                self.cutter.feed(counts, volts)
-            }
-        }
+        self.cutter.feed(volts)
     }
 
     /// The shots that were cut out, by their numbers in the file.

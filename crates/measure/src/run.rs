@@ -180,22 +180,18 @@ fn gather(
 fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<Done>> {
     let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
-        let volts = record.volts();
         let found = match searched {
-            true => content(&volts),
+            true => content(&record.channels),
             false => Content::One,
         };
         if let Content::Plain(ranges) = found {
             let part = |(from, to)| {
                 let part = record.part(from, to - from);
-                (
-                    Shot::measure(&part, &part.volts(), options),
-                    Some((from, to)),
-                )
+                (Shot::measure(&part, options), Some((from, to)))
             };
             return ranges.into_iter().map(part).collect();
         }
-        let mut shot = Shot::measure(record, &volts, options);
+        let mut shot = Shot::measure(record, options);
         shot.holds_several = found == Content::Mixed;
         vec![(shot, None)]
     };

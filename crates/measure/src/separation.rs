@@ -1,5 +1,6 @@
 //! Several shots in one record: where quiet separates them.
 
+use crate::records::Channel;
 use crate::signal::median;
 
 /// Samples of a block, of which one in a few is compared: pulses are some ten samples wide.
@@ -37,11 +38,11 @@ struct Burst {
 }
 
 /// How many shots a record of these channels holds.
-pub(crate) fn content(channels: &[Vec<f64>]) -> Content {
-    let samples = channels.first().map_or(0, Vec::len);
+pub(crate) fn content(channels: &[Channel]) -> Content {
+    let samples = channels.first().map_or(0, |one| one.volts.len());
     let mut shares = vec![0.0_f64; samples.div_ceil(BLOCK)];
-    for volts in channels {
-        for (share, own) in shares.iter_mut().zip(shares_of(volts)) {
+    for channel in channels {
+        for (share, own) in shares.iter_mut().zip(shares_of(&channel.volts)) {
             *share = share.max(own);
         }
     }

@@ -43,16 +43,18 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// Measures one record, given its channels in V.
-    pub(crate) fn measure(record: &Record, volts: &[Vec<f64>], options: &Options) -> Self {
+    pub(crate) fn measure(record: &Record, options: &Options) -> Self {
         let asked = &options.measuring;
         let stated_s = stated_high_pass_hz(record, options).map(|hz| (TAU * hz).recip());
-        let channels = match volts {
-            [sensor, wall, ..] => Channels::Separate { sensor, wall },
-            one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
+        let channels = match record.channels.as_slice() {
+            [sensor, wall, ..] => Channels::Separate {
+                sensor: &sensor.volts,
+                wall: &wall.volts,
+            },
+            one => Channels::Summed(one.first().map_or(&[], |one| &one.volts)),
         };
         let range = |channel: usize| {
-            let (low, high) = record.channels.get(channel)?.samples.range_v()?;
+            let (low, high) = record.channels.get(channel)?.range_v?;
             Some(DigitiserRange { low, high })
         };
         let measuring = SignalOptions {
@@ -188,8 +190,8 @@ impl Example {
         let channels = record.part(from, to - from).channels;
         Self {
             shot: shot.clone(),
-            volts: channels.iter().map(|c| c.samples.volts()).collect(),
-            names: channels.into_iter().map(|c| c.name).collect(),
+            names: channels.iter().map(|c| c.name.clone()).collect(),
+            volts: channels.into_iter().map(|c| c.volts).collect(),
         }
     }
 }

@@ -248,7 +248,7 @@ fn time_column(
         ..options.clone()
     };
     let record = arrays.records(one, 1.0, &looking).ok()?.next()?.ok()?;
-    let step = even_step(&record.channels.first()?.samples.volts())?;
+    let step = even_step(&record.channels.first()?.volts)?;
     let are_chosen = !options.channels.is_empty() || columns > MOST_CHANNELS + 1;
     let others = ReadOptions {
         rows,

@@ -5,7 +5,7 @@ use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, Table};
 use crate::records::files::{exclusive, persist};
 use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
-use crate::records::record::Samples;
+use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
 use crate::records::stored::Source;
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
@@ -232,20 +232,15 @@ impl Slices {
         }
         let (dataset, starts, counts) = (&self.dataset, &*starts, &*counts);
         Ok(match dataset.datatype()? {
-            DatatypeMessage::FixedPoint {
-                size: 2,
-                signed: true,
-                ..
-            } => Samples::Counts {
-                counts: dataset.read_slice::<i16>(starts, counts)?,
-                volts_per_count: 1.0,
-                offset_v: 0.0,
-            },
-            DatatypeMessage::FixedPoint { .. } => {
+            DatatypeMessage::FixedPoint { size, signed, .. } => {
                 let whole = dataset.read_numeric_slice_as::<i64>(starts, counts)?;
-                Samples::Volts(whole.into_iter().map(|number| number as f64).collect())
+                let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
+                (
+                    whole.into_iter().map(|number| number as f64).collect(),
+                    range_v,
+                )
             }
-            _ => Samples::Volts(dataset.read_numeric_slice_as::<f64>(starts, counts)?),
+            _ => (dataset.read_numeric_slice_as::<f64>(starts, counts)?, None),
         })
     }
 }

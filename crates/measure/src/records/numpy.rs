@@ -221,9 +221,8 @@ impl<'a> Array<'a> {
         let (mut reader, start) = self.numbers()?;
         let count = count as usize;
         let all = StoredChannel::run(self.number, start, count, wide);
-        let samples = all.read(&mut reader, 0, 0..count);
-        let samples = samples.map_err(|cause| MeasureError::reading(self.file, cause))?;
-        Ok(samples.volts())
+        let values = all.read(&mut reader, 0, 0..count);
+        values.map_err(|cause| MeasureError::reading(self.file, cause))
     }
 
     /// Whether the file ends before its numbers do, as its header counts them.

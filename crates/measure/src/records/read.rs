@@ -2,7 +2,7 @@
 
 use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, Samples};
+use crate::records::record::{Channel, Record, extremes};
 use crate::records::stored::from_sample;
 use crate::records::{hdf5, numpy, series, tdms, text, wav};
 use std::fs::File;
@@ -148,7 +148,7 @@ impl Records {
         }
         record.gaps = gaps;
         for channel in &record.channels {
-            let found = channel.samples.len();
+            let found = channel.volts.len();
             if found != length {
                 let why = "as in its first channel";
                 return Err(MeasureError::lengths(record.source, found, length, why));
@@ -189,9 +189,7 @@ fn two_channels(record: &Record) -> Option<String> {
 
 /// Fills the samples that are not finite, and returns their runs.
 fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, MeasureError> {
-    let Samples::Volts(volts) = &mut channel.samples else {
-        return Ok(Vec::new());
-    };
+    let volts = &mut channel.volts;
     let bad = || (0..volts.len()).filter(|at| !volts[*at].is_finite());
     let Some(first) = bad().next() else {
         return Ok(Vec::new());
@@ -205,13 +203,11 @@ fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, M
         );
         return Err(MeasureError::Samples(source.to_owned(), detail));
     }
-    let finite = || volts.iter().copied().filter(|volt| volt.is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let ends = extremes(volts.iter().copied().filter(|volt| volt.is_finite()));
     let bad: Vec<usize> = bad().collect();
     let runs = bad.chunk_by(|one, next| one + 1 == *next);
     let gaps: Vec<Range<usize>> = runs.map(|run| run[0]..run[0] + run.len()).collect();
-    gaps.iter().for_each(|gap| fill(volts, gap, (low, high)));
+    gaps.iter().for_each(|gap| fill(volts, gap, ends));
     Ok(gaps)
 }
 
@@ -232,17 +228,10 @@ fn fill(volts: &mut [f64], gap: &Range<usize>, (low, high): (f64, f64)) {
 }
 
 fn reject_constant(source: &str, channel: &Channel) -> Result<(), MeasureError> {
-    fn all_same<T: PartialEq>(of: &[T]) -> bool {
-        of.iter().all(|value| Some(value) == of.first())
-    }
-    let constant = match &channel.samples {
-        Samples::Volts(volts) => all_same(volts),
-        Samples::Counts { counts, .. } => all_same(counts),
-    };
-    let first = channel.samples.part(0, 1).volts();
-    match (constant, first.first()) {
-        (true, Some(value)) => {
-            let (of, name) = (channel.samples.len(), &channel.name);
+    let Channel { name, volts, .. } = channel;
+    match volts.first() {
+        Some(value) if volts.iter().all(|volt| volt == value) => {
+            let of = volts.len();
             let detail =
                 format!("all {of} samples in {name:?} are {value}; was the sensor connected?");
             Err(MeasureError::Samples(source.to_owned(), detail))

@@ -6,15 +6,16 @@ mod write;
 pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};
 
 use crate::error::{MeasureError, file_name};
-use crate::records::checksum;
 use crate::records::hdf5::{attribute, column, damaged, dataset};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
-use crate::records::record::{Channel, Record, Samples};
+use crate::records::record::{Channel, Record, converter_range_v};
 use crate::signal::Bandwidth;
+use flate2::CrcReader;
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// Attribute that marks a series, and its value.
@@ -125,13 +126,14 @@ impl Series {
         let source = format!("{}, shot {number}", self.head.source);
         let channel = |(name, samples): &(&'static str, H5Dataset)| {
             let counts = samples.read_slice::<i16>(&[row, 0], &[1, self.length])?;
+            let (scale, offset) = (self.volts_per_count, self.offset_v);
+            let volts = counts
+                .into_iter()
+                .map(|count| f64::from(count) * scale + offset);
             Ok(Channel {
                 name: (*name).to_owned(),
-                samples: Samples::Counts {
-                    counts,
-                    volts_per_count: self.volts_per_count,
-                    offset_v: self.offset_v,
-                },
+                volts: volts.collect(),
+                range_v: Some(converter_range_v(scale, offset)),
             })
         };
         let channels: Result<Vec<Channel>, Hdf5Error> = self.channels.iter().map(channel).collect();
@@ -245,7 +247,7 @@ pub fn verify(
 ) -> Result<(), MeasureError> {
     let reading = |cause| MeasureError::reading(file, cause);
     let opened = File::open(file).map_err(reading)?;
-    let difference = match checksum::agrees(&opened).map_err(reading)? {
+    let difference = match has_checksum(&opened).map_err(reading)? {
         Some(true) => difference(file, info, shots, programmed_speed_m_s)
             .unwrap_or_else(|error| Some(damaged(&error))),
         Some(false) => Some("damaged: its bytes do not have its checksum".to_owned()),
@@ -289,4 +291,39 @@ fn difference(
     let speeds = column::<f64>(&open, PROGRAMMED, shots)?;
     let same = speeds.iter().all(|speed| *speed == programmed_speed_m_s);
     Ok((!same).then(|| "it has another programmed speed".to_owned()))
+}
+
+/// What stands before the eight hexadecimal digits of a CRC-32 at the end of a file, of all bytes
+/// before it. Readers of HDF5 end at the length that the file states, and do not see it.
+const CHECKSUM: &[u8] = b"\nhertzchain CRC-32 ";
+
+/// Appends the checksum of a file and flushes it to the disk.
+fn append_checksum(mut file: &File) -> io::Result<()> {
+    file.seek(SeekFrom::Start(0))?;
+    let ending = checksum(file)?;
+    file.write_all(&ending)?;
+    file.sync_all()
+}
+
+/// Whether a file ends with the checksum of what is before it; `None` where it ends with none.
+fn has_checksum(mut file: &File) -> io::Result<Option<bool>> {
+    let length = CHECKSUM.len() as u64 + 8;
+    let Some(before) = file.metadata()?.len().checked_sub(length) else {
+        return Ok(None);
+    };
+    let mut found = Vec::new();
+    file.seek(SeekFrom::Start(before))?;
+    file.read_to_end(&mut found)?;
+    if !found.starts_with(CHECKSUM) {
+        return Ok(None);
+    }
+    file.seek(SeekFrom::Start(0))?;
+    Ok(Some(found == checksum(file.take(before))?))
+}
+
+fn checksum(bytes: impl Read) -> io::Result<Vec<u8>> {
+    let mut reader = CrcReader::new(BufReader::with_capacity(1 << 18, bytes));
+    io::copy(&mut reader, &mut io::sink())?;
+    let digits = format!("{:08x}", reader.crc().sum());
+    Ok([CHECKSUM, digits.as_bytes()].concat())
 }

@@ -3,7 +3,7 @@
 use crate::error::{MeasureError, file_name};
 use crate::records::options::Parts;
 use crate::records::read::Raw;
-use crate::records::record::{Channel, Record, Samples};
+use crate::records::record::{Channel, Record, Samples, converter_range_v};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -61,21 +61,14 @@ impl Number {
         }
     }
 
-    /// Samples of numbers that lie side by side.
-    pub(super) fn samples(&self, bytes: &[u8]) -> Samples {
-        if self.kind == Kind::I16 {
-            return Samples::Counts {
-                counts: self.each(bytes, i16::from_le_bytes),
-                volts_per_count: self.scale,
-                offset_v: self.offset,
-            };
-        }
+    /// Values of numbers that lie side by side.
+    pub(super) fn scaled(&self, bytes: &[u8]) -> Vec<f64> {
         let mut values = self.values(bytes);
         if self.scale != 1.0 || self.offset != 0.0 {
             let values = values.iter_mut();
             values.for_each(|value| *value = *value * self.scale + self.offset);
         }
-        Samples::Volts(values)
+        values
     }
 
     fn values(&self, bytes: &[u8]) -> Vec<f64> {
@@ -174,7 +167,7 @@ impl StoredChannel {
         reader: &mut (impl Read + Seek),
         shift: u64,
         wanted: Range<usize>,
-    ) -> io::Result<Samples> {
+    ) -> io::Result<Vec<f64>> {
         let wide = self.number.width();
         let (mut bytes, mut begin) = (Vec::new(), 0);
         for run in &self.runs {
@@ -196,15 +189,12 @@ impl StoredChannel {
             }
             begin = end;
         }
-        let samples = self.number.samples(&bytes);
-        if self.scales.is_empty() {
-            return Ok(samples);
+        let mut volts = self.number.scaled(&bytes);
+        for powers in &self.scales {
+            let horner = |x: f64| powers.iter().rev().fold(0.0, |sum, power| sum * x + power);
+            volts.iter_mut().for_each(|volt| *volt = horner(*volt));
         }
-        let scaled = samples.volts().into_iter().map(|stored| {
-            let horner = |x, powers: &Vec<f64>| powers.iter().rev().fold(0.0, |sum, c| sum * x + c);
-            self.scales.iter().fold(stored, horner)
-        });
-        Ok(Samples::Volts(scaled.collect()))
+        Ok(volts)
     }
 }
 
@@ -263,7 +253,12 @@ impl<R: Read + Seek> Source for StoredTable<R> {
     ) -> Result<Vec<Samples>, MeasureError> {
         let shift = self.row_bytes.saturating_mul(row as u64);
         let channels = self.channels.iter();
-        let read = channels.map(|one| one.read(&mut self.reader, shift, from..from + count));
+        let read = channels.map(|one| {
+            let volts = one.read(&mut self.reader, shift, from..from + count)?;
+            let is_counts = one.number.kind == Kind::I16 && one.scales.is_empty();
+            let range = || converter_range_v(one.number.scale, one.number.offset);
+            Ok((volts, is_counts.then(range)))
+        });
         let read: io::Result<_> = read.collect();
         read.map_err(|cause| MeasureError::reading(&self.file, cause))
     }
@@ -332,7 +327,11 @@ impl Head {
         samples: Vec<Samples>,
     ) -> Record {
         let named = self.names.iter().cloned().zip(samples);
-        let channels = named.map(|(name, samples)| Channel { name, samples });
+        let channels = named.map(|(name, (volts, range_v))| Channel {
+            name,
+            volts,
+            range_v,
+        });
         Record {
             shot,
             first_sample,

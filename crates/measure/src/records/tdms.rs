@@ -102,7 +102,7 @@ fn times(opened: &mut File, channels: &Channels, options: &ReadOptions) -> Optio
         let stored = channel.scaled().ok().filter(|_| is_free)?;
         let seen = stored.len().min(arrays::TIMES_SEEN);
         let samples = stored.read(opened, 0, 0..seen).ok()?;
-        Some((name.clone(), arrays::even_step(&samples.volts())?))
+        Some((name.clone(), arrays::even_step(&samples)?))
     })
 }
 
@@ -302,8 +302,8 @@ impl<'a> Bytes<'a> {
         }
         let raw = self.take(width(code)?)?;
         let value = kind(code).and_then(|kind| {
-            let samples = Number::plain(kind, self.big_endian).samples(raw);
-            samples.volts().first().copied()
+            let number = Number::plain(kind, self.big_endian);
+            number.scaled(raw).first().copied()
         });
         Some((name, value.map_or(Property::Other, Property::Number)))
     }

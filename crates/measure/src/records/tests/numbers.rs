@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn every_kind_reads_minus_one_or_its_largest() {
-    let read = |kind, bytes: &[u8], big| Number::plain(kind, big).samples(bytes).volts();
+    let read = |kind, bytes: &[u8], big| Number::plain(kind, big).scaled(bytes);
     for (kind, width) in [
         (Kind::I8, 1),
         (Kind::I16, 2),
@@ -33,8 +33,8 @@ fn half_precision_is_what_its_bits_say() {
         assert_eq!(half(bits), value, "{bits:x}");
     }
     assert!(half(0x7e00).is_nan());
-    let read = Number::plain(Kind::F16, true).samples(&[0x3c, 0x00]);
-    assert_eq!(read.volts(), [1.0]);
+    let read = Number::plain(Kind::F16, true).scaled(&[0x3c, 0x00]);
+    assert_eq!(read, [1.0]);
 }
 
 #[test]
@@ -42,5 +42,5 @@ fn interleaved_channels_come_apart() {
     let bytes: Vec<u8> = (0..6_i16).flat_map(i16::to_le_bytes).collect();
     let second = StoredChannel::run(Number::plain(Kind::I16, false), 2, 3, 4);
     let read = second.read(&mut io::Cursor::new(bytes), 0, 0..3).unwrap();
-    assert_eq!(read.volts(), [1.0, 3.0, 5.0]);
+    assert_eq!(read, [1.0, 3.0, 5.0]);
 }

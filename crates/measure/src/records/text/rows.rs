@@ -6,7 +6,7 @@ use super::{Ending, Lines, text};
 use crate::error::{MeasureError, file_name};
 use crate::records::interval::{self, Interval};
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, Samples};
+use crate::records::record::{Channel, Record};
 use crate::records::stored::{MOST_SAMPLES, from_sample};
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -323,7 +323,8 @@ impl Segments {
         let channels = self.plan.names.iter().zip(&block.columns);
         let channels = channels.map(|(name, column)| Channel {
             name: name.clone(),
-            samples: Samples::Volts(column[range.clone()].to_vec()),
+            volts: column[range.clone()].to_vec(),
+            range_v: None,
         });
         let channels = channels.collect();
         let notes = self.plan.note.iter().cloned();
