@@ -175,7 +175,6 @@ impl GroupSpeed {
     }
 }
 
-/// A shot that has speed and time.
 #[derive(Clone, Copy)]
 struct Timed<'a> {
     group: GroupSpeed,
@@ -321,7 +320,7 @@ fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedR
         speed_m_s,
         speed_error_shots: if are_known(&speeds) { 0 } else { speeds.len() },
         shared_s: [0, 1].map(|time| shared_s(&counted, time)),
-        at_mean_speed_s: moved.map(|of| of.map(AtSpeed::estimate)),
+        at_mean_speed_s: moved.map(|of| of.map(TimeAtSpeed::estimate)),
         correlation: reflected_s.and_then(|back| both_times(&counted, None).of_means(errors(back))),
         correlation_at_mean_speed: correlation_at_speed(&counted, speed_m_s, moved),
         shots: (counted.len(), untimed + group.len() - counted.len()),
@@ -366,7 +365,7 @@ fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
 
 /// Mean of times that are taken to one speed, and the parts of its error.
 #[derive(Clone, Copy)]
-struct AtSpeed {
+struct TimeAtSpeed {
     mean_s: f64,
     /// Variance in s² by the errors of picking, as far as shots do not share them.
     picking_s2: f64,
@@ -378,7 +377,7 @@ struct AtSpeed {
     of_speed_s: f64,
 }
 
-impl AtSpeed {
+impl TimeAtSpeed {
     fn estimate(self) -> Estimate {
         let alone = (self.picking_s2 + self.excess_s2).sqrt();
         Estimate {
@@ -396,7 +395,7 @@ fn to_speed(shot: &Timed<'_>, speed_m_s: Estimate) -> f64 {
 /// Mean of times that are taken to one speed, with the error of what scatters besides
 /// measured speeds: their errors are the mean speed's, and count there. At least
 /// that of picking; and what all shots share on top.
-fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtSpeed> {
+fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<TimeAtSpeed> {
     let moved = |shot: &Timed<'_>| {
         let of = shot.flight.times_s()[time]?;
         let factor = to_speed(shot, speed_m_s);
@@ -411,7 +410,7 @@ fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtS
     let picking_s2 = squares / (summary.count as f64).powi(2);
     let of_speed_s = EXPONENT * summary.mean * speed_m_s.sigma / speed_m_s.value;
     let besides = summary.error.powi(2) - of_speed_s.powi(2);
-    Some(AtSpeed {
+    Some(TimeAtSpeed {
         mean_s: summary.mean,
         picking_s2,
         excess_s2: (besides - picking_s2).max(0.0),
@@ -440,7 +439,7 @@ fn both_times(shots: &[Timed<'_>], speed_m_s: Option<Estimate>) -> Pairs {
 fn correlation_at_speed(
     shots: &[Timed<'_>],
     speed_m_s: Estimate,
-    moved: [Option<AtSpeed>; 2],
+    moved: [Option<TimeAtSpeed>; 2],
 ) -> Option<f64> {
     let [forth, back] = [moved[0]?, moved[1]?];
     let pairs = both_times(shots, Some(speed_m_s));

@@ -111,7 +111,6 @@ impl MeasureError {
         Self::Samples(source, detail)
     }
 
-    /// An error unless an option is `accepted`.
     pub(crate) fn require(
         accepted: bool,
         name: &'static str,

@@ -25,9 +25,8 @@ const BASELINE: usize = 4096;
 /// Samples tested together: enough to keep the processor busy without a branch each.
 const STRIDE: usize = 64;
 
-/// A trigger on a level in V.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Trigger {
+struct LevelTrigger {
     level: f64,
     /// Whether signals fall through it rather than rise.
     falling: bool,
@@ -40,7 +39,7 @@ struct Trigger {
     hold_off: u64,
 }
 
-impl Trigger {
+impl LevelTrigger {
     fn check(&self) -> Result<(), MeasureError> {
         let (level, hysteresis) = (self.level, self.hysteresis);
         let name = "level of the trigger";
@@ -78,7 +77,7 @@ struct Segment {
 /// recording was divided; the caller keeps the samples from [`Cutter::needed_from`] on.
 #[derive(Debug)]
 struct Cutter {
-    trigger: Trigger,
+    trigger: LevelTrigger,
     /// Number of the next sample, and end of the last shot.
     position: u64,
     free_from: u64,
@@ -95,7 +94,7 @@ enum TriggerState {
 }
 
 impl Cutter {
-    fn new(trigger: Trigger) -> Result<Self, MeasureError> {
+    fn new(trigger: LevelTrigger) -> Result<Self, MeasureError> {
         trigger.check()?;
         Ok(Self {
             trigger,
@@ -197,14 +196,12 @@ pub(crate) struct AtLevel<I> {
     pieces: I,
     level: Level,
     shots: u64,
-    /// The recording that is being cut.
     under_way: Option<UnderWay>,
     ready: VecDeque<Result<Record, MeasureError>>,
 }
 
 /// A recording that is being cut.
 struct UnderWay {
-    /// Its first piece without samples.
     head: Record,
     cutter: Cutter,
     /// Pieces that a shot still to come may need.
@@ -238,7 +235,6 @@ impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
         Ok(())
     }
 
-    /// The end of a recording.
     fn finish(&mut self) {
         let Some(mut ended) = self.under_way.take() else {
             return;
@@ -284,7 +280,7 @@ impl UnderWay {
         let stride = volts.len().div_ceil(BASELINE).max(1);
         let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
         let baseline_v = median(&some).unwrap_or(0.0);
-        let cutter = Cutter::new(Trigger {
+        let cutter = Cutter::new(LevelTrigger {
             level: level.volts,
             falling: level.volts < baseline_v,
             hysteresis: 0.5 * (level.volts - baseline_v).abs(),

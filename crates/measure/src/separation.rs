@@ -16,7 +16,6 @@ const QUIET: usize = 4;
 /// Swing of quiet blocks over which a pulse stands.
 const ABOVE_NOISE: f64 = 4.0;
 
-/// What a record holds.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Content {
     /// One shot.

@@ -97,7 +97,6 @@ impl Shot {
         }
     }
 
-    /// Sets what the list states of it.
     pub(crate) fn identify(&mut self, error_m_s: Option<f64>, options: &Options) {
         let list = options.list.as_ref();
         let entry = list.and_then(|list| list.find(&self.file, self.shot));

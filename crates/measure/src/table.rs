@@ -63,7 +63,6 @@ pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
     lines.try_for_each(|line| out.write_all(line.as_bytes()))
 }
 
-/// Names of the three pulses in titles.
 const PULSES: [(&str, PulseKind); 3] = [
     ("passing", PulseKind::Incident),
     ("wall", PulseKind::Wall),

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+use hertzchain_measure::records::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::signal::{
     Bandwidth, Flight, QualityFlag, SignalOptions, without_systematic,
 };
@@ -35,7 +35,7 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
 
 fn info(case: &str, told: &[(&str, &str)]) -> SeriesInfo {
     SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.0,
@@ -446,7 +446,7 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
     let folder = folder("pieces");
     let path = folder.join("long.h5");
     let info = SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.01,

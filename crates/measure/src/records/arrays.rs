@@ -76,13 +76,13 @@ impl Axes {
 }
 
 /// An array of samples with the meaning of its axes.
-pub(crate) struct Table {
+pub(crate) struct SampleTable {
     pub axes: Axes,
     pub chosen: Vec<usize>,
     pub head: Head,
 }
 
-impl Table {
+impl SampleTable {
     pub(crate) fn new(
         file: &Path,
         part: Option<String>,
@@ -149,7 +149,6 @@ fn mean_step(times: &[f64]) -> Option<f64> {
 pub(crate) trait Arrays {
     fn file(&self) -> &Path;
 
-    /// Names of all arrays of numbers.
     fn names(&self) -> Vec<String>;
 
     fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError>;
@@ -157,7 +156,6 @@ pub(crate) trait Arrays {
     /// All numbers of a small array.
     fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError>;
 
-    /// The records of an array of samples.
     fn records(
         &self,
         name: &str,
@@ -266,7 +264,6 @@ fn last(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// Number of recordings in one array.
 fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, MeasureError> {
     let shape = arrays.shape(name)?;
     let axes = Axes::new(&shape, options.rows_of(&shape));

@@ -17,7 +17,6 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 /// What stands between the name of the file and the random letters.
 const MARK: &str = ".hertzchain-";
 
-/// Ending of a file that grows.
 const ENDING: &str = ".part";
 
 /// Random letters: 62¹² names.
@@ -38,7 +37,6 @@ const MOST_TEXT: u64 = 1 << 24;
 /// Most bytes that are read from a pipe or device: 1 GiB.
 const MOST_PIPED: u64 = 1 << 30;
 
-/// Standard input.
 const STDIN: &str = "-";
 
 /// Writes one file: whole, or not at all.

@@ -1,18 +1,17 @@
 //! HDF5: datasets of any program, and tables of results.
 
 use crate::error::{MeasureError, file_name};
-use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, Table};
+use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, SampleTable};
 use crate::records::files::{exclusive, persist};
 use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
 use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
-use crate::records::stored::Source;
+use crate::records::stored::SampleSource;
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Dataset of the text of a table.
 const ABOUT: &str = "about";
 
 /// Effort of the compression of tables: numbers that follow a curve lose a third of their bytes at
@@ -117,7 +116,6 @@ pub(crate) fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf
     Ok(())
 }
 
-/// The unit that a name ends in.
 pub(crate) fn unit(name: &str) -> &'static str {
     let lower = name.to_ascii_lowercase();
     let found = UNITS.iter().find(|ending| lower.ends_with(ending.0));
@@ -169,7 +167,7 @@ impl Arrays for Datasets {
         let dataset = self.dataset(name)?;
         let shape = dataset.shape();
         let part = Some(name.to_owned());
-        let table = Table::new(&self.file, part, &shape, interval_s, options)?;
+        let table = SampleTable::new(&self.file, part, &shape, interval_s, options)?;
         let slices = Slices {
             file: self.file.clone(),
             name: name.to_owned(),
@@ -199,7 +197,7 @@ struct Slices {
     chosen: Vec<usize>,
 }
 
-impl Source for Slices {
+impl SampleSource for Slices {
     fn samples(
         &mut self,
         row: usize,

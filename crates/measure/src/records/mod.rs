@@ -26,4 +26,4 @@ pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
 pub(crate) use record::extremes;
 pub use record::{Channel, Record};
-pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
+pub use series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

@@ -1,10 +1,10 @@
 //! NumPy arrays, one in an NPY or several in an NPZ: headers by npyz, numbers raw.
 
 use crate::error::{MeasureError, file_name};
-use crate::records::arrays::{self, Arrays, Table};
+use crate::records::arrays::{self, Arrays, SampleTable};
 use crate::records::options::{ReadOptions, no_channel};
 use crate::records::read::Raw;
-use crate::records::stored::{Kind, MOST_SAMPLES, Number, StoredChannel, StoredTable};
+use crate::records::stored::{MOST_SAMPLES, NumberKind, StoredChannel, StoredNumber, StoredTable};
 use flate2::read::DeflateDecoder;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use std::fs::File;
@@ -20,9 +20,8 @@ const MOST_TOGETHER: u64 = 1 << 28;
 const MOST_HEADER: usize = 10_000;
 const MOST_NESTED: usize = 16;
 
-/// Opens one array.
 pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
-    let entry = Entry {
+    let entry = NpyEntry {
         name: String::new(),
         start: 0,
         size: u64::MAX,
@@ -35,7 +34,6 @@ pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, Measur
     arrays::open(Rc::new(archive), options)
 }
 
-/// Opens an archive of arrays.
 pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
     let refused = |detail: String| MeasureError::malformed(file, "NPZ", detail);
     let damaged = |error: zip::result::ZipError| refused(format!("cut short or damaged ({error})"));
@@ -54,7 +52,7 @@ pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw, Measur
             return Err(refused(detail));
         }
         let start = entry.data_start();
-        entries.push(Entry {
+        entries.push(NpyEntry {
             start: start.ok_or_else(|| refused(format!("{name} has no place in the file")))?,
             name,
             size: entry.compressed_size(),
@@ -68,11 +66,10 @@ pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw, Measur
 /// Arrays by name; a single one has none.
 struct Archive {
     file: PathBuf,
-    entries: Vec<Entry>,
+    entries: Vec<NpyEntry>,
 }
 
-/// Where an array lies in a file.
-struct Entry {
+struct NpyEntry {
     name: String,
     start: u64,
     /// Bytes in the file.
@@ -80,13 +77,12 @@ struct Entry {
     deflated: bool,
 }
 
-/// An array's header.
 struct Array<'a> {
     file: &'a Path,
-    entry: &'a Entry,
+    entry: &'a NpyEntry,
     shape: Vec<usize>,
     fortran: bool,
-    number: Number,
+    number: StoredNumber,
     /// Bytes before the first number, and of all numbers.
     start: u64,
     length: u64,
@@ -139,7 +135,7 @@ impl Arrays for Archive {
     }
 }
 
-impl Entry {
+impl NpyEntry {
     fn bytes(&self, file: &Path) -> io::Result<Box<dyn Read>> {
         let mut opened = File::open(file)?;
         opened.seek(SeekFrom::Start(self.start))?;
@@ -152,7 +148,7 @@ impl Entry {
 }
 
 impl<'a> Array<'a> {
-    fn open(file: &'a Path, entry: &'a Entry) -> Result<Self, MeasureError> {
+    fn open(file: &'a Path, entry: &'a NpyEntry) -> Result<Self, MeasureError> {
         let reading = |cause| MeasureError::reading(file, cause);
         let malformed = |detail: String| MeasureError::malformed(file, "a NumPy array", detail);
         let mut begins = Vec::new();
@@ -232,10 +228,9 @@ impl<'a> Array<'a> {
         (there < self.length).then(|| MeasureError::truncated(file_name(self.file), detail))
     }
 
-    /// The records of an array of samples.
     fn records(&self, interval_s: f64, options: &ReadOptions) -> Result<Raw, MeasureError> {
         let part = Some(self.entry.name.clone()).filter(|name| !name.is_empty());
-        let table = Table::new(self.file, part, &self.shape, interval_s, options)?;
+        let table = SampleTable::new(self.file, part, &self.shape, interval_s, options)?;
         let strides = self.strides();
         let stride = |axis: Option<usize>| axis.map_or(0, |axis| strides[axis]);
         let (frames, wide) = (table.head.frames, self.number.width());
@@ -327,7 +322,7 @@ fn nested(header: &[u8]) -> usize {
 }
 
 /// How items are stored, or why they are not read.
-fn number(dtype: &DType) -> Result<Number, String> {
+fn number(dtype: &DType) -> Result<StoredNumber, String> {
     let no_number = || {
         format!(
             "its items are {}, not real numbers; save a plain array",
@@ -338,17 +333,17 @@ fn number(dtype: &DType) -> Result<Number, String> {
         return Err(no_number());
     };
     let kind = match (plain.type_char(), plain.size_field()) {
-        (TypeChar::Int, 1) => Kind::I8,
-        (TypeChar::Uint, 1) => Kind::U8,
-        (TypeChar::Int, 2) => Kind::I16,
-        (TypeChar::Uint, 2) => Kind::U16,
-        (TypeChar::Int, 4) => Kind::I32,
-        (TypeChar::Uint, 4) => Kind::U32,
-        (TypeChar::Int, 8) => Kind::I64,
-        (TypeChar::Uint, 8) => Kind::U64,
-        (TypeChar::Float, 2) => Kind::F16,
-        (TypeChar::Float, 4) => Kind::F32,
-        (TypeChar::Float, 8) => Kind::F64,
+        (TypeChar::Int, 1) => NumberKind::I8,
+        (TypeChar::Uint, 1) => NumberKind::U8,
+        (TypeChar::Int, 2) => NumberKind::I16,
+        (TypeChar::Uint, 2) => NumberKind::U16,
+        (TypeChar::Int, 4) => NumberKind::I32,
+        (TypeChar::Uint, 4) => NumberKind::U32,
+        (TypeChar::Int, 8) => NumberKind::I64,
+        (TypeChar::Uint, 8) => NumberKind::U64,
+        (TypeChar::Float, 2) => NumberKind::F16,
+        (TypeChar::Float, 4) => NumberKind::F32,
+        (TypeChar::Float, 8) => NumberKind::F64,
         (TypeChar::Float, bytes) => {
             return Err(format!(
                 "its floating-point numbers of {bytes} bytes differ between machines; save them as \
@@ -357,5 +352,8 @@ fn number(dtype: &DType) -> Result<Number, String> {
         }
         _ => return Err(no_number()),
     };
-    Ok(Number::plain(kind, plain.endianness() == Endianness::Big))
+    Ok(StoredNumber::plain(
+        kind,
+        plain.endianness() == Endianness::Big,
+    ))
 }

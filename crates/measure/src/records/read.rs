@@ -10,7 +10,6 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Records as a format's reader returns them.
 pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, MeasureError>>>;
 
 /// Most records of a file: an array of more rows is one of something else.
@@ -76,9 +75,7 @@ const FORMATS: &[Format] = &[
 pub struct Records {
     records: Raw,
     parts: Parts,
-    /// Whether the options choose the channels.
     are_chosen: bool,
-    /// Samples of the first record.
     length: Option<usize>,
     file: PathBuf,
     count: usize,
@@ -296,7 +293,6 @@ fn format_of(file: &Path) -> Result<&'static Format, MeasureError> {
     Err(MeasureError::Format(file_name(file), detail))
 }
 
-/// Text has no control characters but spaces.
 fn is_text(bytes: &[u8]) -> bool {
     let text = text::decoded(bytes);
     let mut letters = text.iter();

@@ -3,7 +3,7 @@
 
 mod write;
 
-pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+pub use write::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow};
 
 use crate::error::{MeasureError, file_name};
 use crate::records::hdf5::{attribute, column, damaged, dataset};
@@ -38,7 +38,6 @@ const INTERVAL: &str = "sampling_interval_s";
 const VOLTS_PER_COUNT: &str = "volts_per_count";
 const OFFSET: &str = "offset_v";
 const PRETRIGGER: &str = "pretrigger_samples";
-/// Attributes of the file.
 const CASE: &str = "case";
 const EXPERIMENT: &str = "experiment";
 /// Standard error of the measured speed in m/s, if the rig states it.
@@ -52,12 +51,10 @@ fn malformed(file: &Path, what: impl std::fmt::Display) -> MeasureError {
     MeasureError::malformed(file, "a series", what)
 }
 
-/// Whether an open file is a series.
 pub(crate) fn is_series(open: &H5File) -> bool {
     text(open, FORMAT.0).as_deref() == Some(FORMAT.1)
 }
 
-/// Opens a series.
 pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, MeasureError> {
     let foreign = |error: Hdf5Error| malformed(file, damaged(&error));
     let channels = channels(open).map_err(foreign)?;
@@ -79,7 +76,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
     let wanted = chosen(file, &names, options)?;
     let positive =
         |name, least: f64| number_text(open, name).filter(|n| n.is_finite() && *n >= least);
-    let series = Series {
+    let series = OpenSeries {
         // What all its records share.
         head: Record {
             pretrigger: Some(number(PRETRIGGER)? as usize),
@@ -106,8 +103,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
     Ok(Box::new((0..shots).map(move |row| series.record(row))))
 }
 
-/// An open series.
-struct Series {
+struct OpenSeries {
     head: Record,
     volts_per_count: f64,
     offset_v: f64,
@@ -119,7 +115,7 @@ struct Series {
     length: usize,
 }
 
-impl Series {
+impl OpenSeries {
     fn record(&self, row: usize) -> Result<Record, MeasureError> {
         let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
         let number = shot.unwrap_or(row as u64);

@@ -16,7 +16,7 @@ const BLOCK: usize = 1 << 22;
 const PAGE: usize = 1 << 12;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum NumberKind {
     I8,
     U8,
     I16,
@@ -33,15 +33,15 @@ pub(crate) enum Kind {
 
 /// Encoding of a number: value = stored · scale + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Number {
-    pub kind: Kind,
+pub(crate) struct StoredNumber {
+    pub kind: NumberKind,
     pub big_endian: bool,
     pub scale: f64,
     pub offset: f64,
 }
 
-impl Number {
-    pub(super) fn plain(kind: Kind, big_endian: bool) -> Self {
+impl StoredNumber {
+    pub(super) fn plain(kind: NumberKind, big_endian: bool) -> Self {
         Self {
             kind,
             big_endian,
@@ -50,14 +50,13 @@ impl Number {
         }
     }
 
-    /// Bytes of a number.
     pub(super) fn width(&self) -> usize {
         match self.kind {
-            Kind::I8 | Kind::U8 => 1,
-            Kind::I16 | Kind::U16 | Kind::F16 => 2,
-            Kind::I24 => 3,
-            Kind::I32 | Kind::U32 | Kind::F32 => 4,
-            Kind::I64 | Kind::U64 | Kind::F64 => 8,
+            NumberKind::I8 | NumberKind::U8 => 1,
+            NumberKind::I16 | NumberKind::U16 | NumberKind::F16 => 2,
+            NumberKind::I24 => 3,
+            NumberKind::I32 | NumberKind::U32 | NumberKind::F32 => 4,
+            NumberKind::I64 | NumberKind::U64 | NumberKind::F64 => 8,
         }
     }
 
@@ -73,20 +72,20 @@ impl Number {
 
     fn values(&self, bytes: &[u8]) -> Vec<f64> {
         match self.kind {
-            Kind::I8 => self.each(bytes, |b| f64::from(i8::from_le_bytes(b))),
-            Kind::U8 => self.each(bytes, |b| f64::from(u8::from_le_bytes(b))),
-            Kind::I16 => self.each(bytes, |b| f64::from(i16::from_le_bytes(b))),
-            Kind::U16 => self.each(bytes, |b| f64::from(u16::from_le_bytes(b))),
-            Kind::I24 => self.each(bytes, |[low, middle, high]: [u8; 3]| {
+            NumberKind::I8 => self.each(bytes, |b| f64::from(i8::from_le_bytes(b))),
+            NumberKind::U8 => self.each(bytes, |b| f64::from(u8::from_le_bytes(b))),
+            NumberKind::I16 => self.each(bytes, |b| f64::from(i16::from_le_bytes(b))),
+            NumberKind::U16 => self.each(bytes, |b| f64::from(u16::from_le_bytes(b))),
+            NumberKind::I24 => self.each(bytes, |[low, middle, high]: [u8; 3]| {
                 f64::from(i32::from_le_bytes([0, low, middle, high]) >> 8)
             }),
-            Kind::I32 => self.each(bytes, |b| f64::from(i32::from_le_bytes(b))),
-            Kind::U32 => self.each(bytes, |b| f64::from(u32::from_le_bytes(b))),
-            Kind::I64 => self.each(bytes, |b| i64::from_le_bytes(b) as f64),
-            Kind::U64 => self.each(bytes, |b| u64::from_le_bytes(b) as f64),
-            Kind::F16 => self.each(bytes, |b| half(u16::from_le_bytes(b))),
-            Kind::F32 => self.each(bytes, |b| f64::from(f32::from_le_bytes(b))),
-            Kind::F64 => self.each(bytes, f64::from_le_bytes),
+            NumberKind::I32 => self.each(bytes, |b| f64::from(i32::from_le_bytes(b))),
+            NumberKind::U32 => self.each(bytes, |b| f64::from(u32::from_le_bytes(b))),
+            NumberKind::I64 => self.each(bytes, |b| i64::from_le_bytes(b) as f64),
+            NumberKind::U64 => self.each(bytes, |b| u64::from_le_bytes(b) as f64),
+            NumberKind::F16 => self.each(bytes, |b| half(u16::from_le_bytes(b))),
+            NumberKind::F32 => self.each(bytes, |b| f64::from(f32::from_le_bytes(b))),
+            NumberKind::F64 => self.each(bytes, f64::from_le_bytes),
         }
     }
 
@@ -118,7 +117,7 @@ fn half(bits: u16) -> f64 {
 
 /// Equal runs of samples of one channel, one a chunk of the file.
 #[derive(Clone, Debug)]
-pub(crate) struct Runs {
+pub(crate) struct SampleRuns {
     /// Of the first sample, from the file's beginning.
     pub offset: u64,
     /// Samples a run.
@@ -132,16 +131,15 @@ pub(crate) struct Runs {
 /// Where the samples of one channel are, and what makes volts of them.
 #[derive(Clone, Debug)]
 pub(crate) struct StoredChannel {
-    pub number: Number,
+    pub number: StoredNumber,
     /// Polynomials in turn, by their coefficients from that of power 0 on.
     pub scales: Vec<Vec<f64>>,
-    pub runs: Vec<Runs>,
+    pub runs: Vec<SampleRuns>,
 }
 
 impl StoredChannel {
-    /// One run of numbers.
-    pub(super) fn run(number: Number, offset: u64, count: usize, stride: usize) -> Self {
-        let run = Runs {
+    pub(super) fn run(number: StoredNumber, offset: u64, count: usize, stride: usize) -> Self {
+        let run = SampleRuns {
             offset,
             count,
             stride,
@@ -155,7 +153,6 @@ impl StoredChannel {
         }
     }
 
-    /// Number of samples.
     pub(super) fn len(&self) -> usize {
         let runs = self.runs.iter();
         runs.map(|run| run.count * run.chunks).sum()
@@ -225,7 +222,7 @@ fn append(
 }
 
 /// Samples of the channels of a table of shots.
-pub(crate) trait Source {
+pub(crate) trait SampleSource {
     /// `count` samples of every channel from sample `from` of a row on.
     fn samples(
         &mut self,
@@ -244,7 +241,7 @@ pub(crate) struct StoredTable<R> {
     pub row_bytes: u64,
 }
 
-impl<R: Read + Seek> Source for StoredTable<R> {
+impl<R: Read + Seek> SampleSource for StoredTable<R> {
     fn samples(
         &mut self,
         row: usize,
@@ -255,7 +252,7 @@ impl<R: Read + Seek> Source for StoredTable<R> {
         let channels = self.channels.iter();
         let read = channels.map(|one| {
             let volts = one.read(&mut self.reader, shift, from..from + count)?;
-            let is_counts = one.number.kind == Kind::I16 && one.scales.is_empty();
+            let is_counts = one.number.kind == NumberKind::I16 && one.scales.is_empty();
             let range = || converter_range_v(one.number.scale, one.number.offset);
             Ok((volts, is_counts.then(range)))
         });
@@ -281,7 +278,7 @@ pub(crate) struct Head {
 impl Head {
     /// The records: rows, or parts of them. Several rows are not divided into shots here, which are
     /// counted by row first.
-    pub(super) fn records(self, parts: Parts, mut source: impl Source + 'static) -> Raw {
+    pub(super) fn records(self, parts: Parts, mut source: impl SampleSource + 'static) -> Raw {
         let pieces = matches!(parts, Parts::Pieces(_));
         let each = match parts {
             Parts::Pieces(most) => most.clamp(1, self.frames),
@@ -341,7 +338,6 @@ impl Head {
     }
 }
 
-/// Name of a piece of a recording.
 pub(crate) fn from_sample(source: String, first_sample: u64) -> String {
     match first_sample {
         0 => source,

@@ -6,7 +6,9 @@ use crate::records::arrays;
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
-use crate::records::stored::{Head, Kind, Number, Runs, StoredChannel, StoredTable};
+use crate::records::stored::{
+    Head, NumberKind, SampleRuns, StoredChannel, StoredNumber, StoredTable,
+};
 use indexmap::IndexMap;
 use std::collections::HashMap;
 use std::fs::File;
@@ -209,7 +211,6 @@ const MOST_METADATA: u64 = 1 << 28;
 /// Most objects of all segments together: a day of a hundred channels, a segment a second.
 const MOST_OBJECTS: usize = 1 << 23;
 
-/// Bits of a lead-in's flags.
 const METADATA: u32 = 1 << 1;
 const NEW_LIST: u32 = 1 << 2;
 const SAMPLES: u32 = 1 << 3;
@@ -227,19 +228,18 @@ const NO_TYPE: u32 = u32::MAX;
 /// Types of a DAQ card's readings as LabVIEW numbers them elsewhere, by their number here.
 const CARD_TYPES: [u32; 10] = [5, 1, 6, 2, 7, 3, 8, 4, 9, 10];
 
-/// Encoding of a type of numbers.
-fn kind(code: u32) -> Option<Kind> {
+fn kind(code: u32) -> Option<NumberKind> {
     Some(match code {
-        1 => Kind::I8,
-        2 => Kind::I16,
-        3 => Kind::I32,
-        4 => Kind::I64,
-        5 => Kind::U8,
-        6 => Kind::U16,
-        7 => Kind::U32,
-        8 => Kind::U64,
-        9 | 0x19 => Kind::F32,
-        10 | 0x1a => Kind::F64,
+        1 => NumberKind::I8,
+        2 => NumberKind::I16,
+        3 => NumberKind::I32,
+        4 => NumberKind::I64,
+        5 => NumberKind::U8,
+        6 => NumberKind::U16,
+        7 => NumberKind::U32,
+        8 => NumberKind::U64,
+        9 | 0x19 => NumberKind::F32,
+        10 | 0x1a => NumberKind::F64,
         _ => return None,
     })
 }
@@ -247,7 +247,7 @@ fn kind(code: u32) -> Option<Kind> {
 /// Bytes of a value of any type but text.
 fn width(code: u32) -> Option<usize> {
     match (kind(code), code) {
-        (Some(kind), _) => Some(Number::plain(kind, false).width()),
+        (Some(kind), _) => Some(StoredNumber::plain(kind, false).width()),
         (None, 0x21) => Some(1),
         (None, 0x44 | 0x10_000d) => Some(16),
         (None, 0x08_000c) => Some(8),
@@ -294,7 +294,6 @@ impl<'a> Bytes<'a> {
         Some(String::from_utf8_lossy(bytes).into_owned())
     }
 
-    /// Name and value.
     fn property(&mut self) -> Option<(String, Property)> {
         let (name, code) = (self.text()?, self.u32()?);
         if code == TEXT {
@@ -302,7 +301,7 @@ impl<'a> Bytes<'a> {
         }
         let raw = self.take(width(code)?)?;
         let value = kind(code).and_then(|kind| {
-            let number = Number::plain(kind, self.big_endian);
+            let number = StoredNumber::plain(kind, self.big_endian);
             number.scaled(raw).first().copied()
         });
         Some((name, value.map_or(Property::Other, Property::Number)))
@@ -322,12 +321,10 @@ enum Values {
 struct Card {
     /// Type of a reading, as LabVIEW numbers it.
     code: u32,
-    /// Readings a chunk.
     count: usize,
     /// Which card, and bytes before the reading in a row of it.
     card: usize,
     within: usize,
-    /// Bytes of a row of every card.
     rows: Vec<usize>,
 }
 
@@ -376,9 +373,8 @@ struct Index {
     cut_short: Option<String>,
 }
 
-/// The state while segments are read.
 #[derive(Default)]
-struct Walk {
+struct TdmsWalk {
     /// Objects of the segment by path.
     objects: IndexMap<String, Option<Values>>,
     /// The last layout of each object so far.
@@ -386,7 +382,6 @@ struct Walk {
     groups: IndexMap<String, Channels>,
 }
 
-/// A segment's lead-in.
 struct Lead {
     flags: u32,
     /// Bytes of metadata and samples, as many as there are if the file was not closed; and of
@@ -417,13 +412,12 @@ impl Lead {
 }
 
 impl Index {
-    /// Reads all metadata of a file.
     fn read(file: &Path) -> Result<Self, MeasureError> {
         let reading = |cause| MeasureError::reading(file, cause);
         let malformed = |detail: String| MeasureError::malformed(file, "TDMS", detail);
         let mut opened = File::open(file).map_err(reading)?;
         let length = opened.metadata().map_err(reading)?.len();
-        let (mut walk, mut at, mut seen) = (Walk::default(), 0, 0_usize);
+        let (mut walk, mut at, mut seen) = (TdmsWalk::default(), 0, 0_usize);
         let mut cut_short = None;
         while at < length && cut_short.is_none() {
             let lead = read_at(&mut opened, at, LEAD).map_err(reading)?;
@@ -477,7 +471,7 @@ fn read_at(opened: &mut File, at: u64, count: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-impl Walk {
+impl TdmsWalk {
     /// One segment's list of objects; `None` if it is cut short.
     fn metadata(&mut self, lead: &Lead, metadata: &[u8]) -> Option<()> {
         let mut bytes = Bytes {
@@ -530,7 +524,7 @@ impl Walk {
         let group = self.groups.entry(group.replace("''", "'")).or_default();
         let name = name.replace("''", "'");
         if !group.contains_key(&name) {
-            let number = Number::plain(kind(code?)?, big);
+            let number = StoredNumber::plain(kind(code?)?, big);
             let stored = StoredChannel {
                 number,
                 scales: Vec::new(),
@@ -542,7 +536,6 @@ impl Walk {
         group.get_mut(&name)
     }
 
-    /// Where the samples of one segment are.
     fn samples(&mut self, lead: &Lead, raw: u64, end: u64) {
         let with = self.objects.iter();
         let with = with.filter_map(|(path, values)| Some((path.clone(), values.clone()?)));
@@ -555,7 +548,7 @@ impl Walk {
         for (path, place) in places {
             let channel = self.channel(path, Some(place.code), lead.has(BIG_ENDIAN));
             if let (Some(channel), true) = (channel, place.count > 0 && chunk_bytes > 0) {
-                channel.stored.runs.push(Runs {
+                channel.stored.runs.push(SampleRuns {
                     offset: raw.saturating_add(place.begin as u64),
                     count: place.count,
                     stride: place.stride,
@@ -568,7 +561,7 @@ impl Walk {
 }
 
 /// A channel's place in every chunk of a segment.
-struct Place {
+struct ChunkPlace {
     code: u32,
     /// Bytes before its first value.
     begin: usize,
@@ -577,7 +570,7 @@ struct Place {
 }
 
 /// Places of objects one after the other, or row by row, and the bytes of a chunk.
-fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, Place)>, usize) {
+fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, ChunkPlace)>, usize) {
     let own = with.iter().filter_map(|(path, values)| match values {
         Values::Own(code, count, size) => Some((path.as_str(), *code, *count, *size)),
         Values::Card(_) => None,
@@ -586,7 +579,7 @@ fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, Place)>, usi
     let (mut places, mut begin, mut chunk_bytes) = (Vec::new(), 0_usize, 0_usize);
     for (path, code, count, size) in own {
         let wide = width(code).unwrap_or(0);
-        let place = Place {
+        let place = ChunkPlace {
             code,
             begin,
             count,
@@ -601,7 +594,7 @@ fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, Place)>, usi
 
 /// Places of channels in the rows of DAQ cards, which come one after the other, and the bytes of a
 /// chunk.
-fn of_cards(with: &[(String, Values)]) -> (Vec<(&str, Place)>, usize) {
+fn of_cards(with: &[(String, Values)]) -> (Vec<(&str, ChunkPlace)>, usize) {
     let own = with.iter().filter_map(|(path, values)| match values {
         Values::Card(layout) => Some((path.as_str(), layout)),
         Values::Own(..) => None,
@@ -622,10 +615,10 @@ fn of_cards(with: &[(String, Values)]) -> (Vec<(&str, Place)>, usize) {
 }
 
 /// Place of a channel in its card's rows; none of one that is beyond them.
-fn in_row(layout: &Card, begins: &[usize]) -> Option<Place> {
+fn in_row(layout: &Card, begins: &[usize]) -> Option<ChunkPlace> {
     let stride = *layout.rows.get(layout.card)?;
     let end = layout.within.checked_add(width(layout.code)?)?;
-    (end <= stride).then_some(Place {
+    (end <= stride).then_some(ChunkPlace {
         code: layout.code,
         begin: begins.get(layout.card)?.saturating_add(layout.within),
         count: layout.count,

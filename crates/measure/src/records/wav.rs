@@ -4,7 +4,7 @@ use crate::error::{MeasureError, file_name};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen, numbered};
 use crate::records::read::Raw;
-use crate::records::stored::{Head, Kind, Number, StoredChannel, StoredTable};
+use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber, StoredTable};
 use hound::{SampleFormat, WavReader, WavSpec};
 use std::fs::File;
 use std::io::{BufReader, Seek};
@@ -47,22 +47,22 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     Ok(head.records(options.parts, table))
 }
 
-fn number(file: &Path, spec: WavSpec) -> Result<Number, MeasureError> {
+fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber, MeasureError> {
     let (kind, scale, offset) = match (spec.sample_format, spec.bits_per_sample.div_ceil(8)) {
-        (SampleFormat::Int, 1) => (Kind::U8, 1.0 / 128.0, -1.0),
-        (SampleFormat::Int, 2) => (Kind::I16, 1.0 / 32_768.0, 0.0),
-        (SampleFormat::Int, 3) => (Kind::I24, 1.0 / 8_388_608.0, 0.0),
-        (SampleFormat::Int, 4) => (Kind::I32, 1.0 / 2_147_483_648.0, 0.0),
-        (SampleFormat::Float, 4) => (Kind::F32, 1.0, 0.0),
+        (SampleFormat::Int, 1) => (NumberKind::U8, 1.0 / 128.0, -1.0),
+        (SampleFormat::Int, 2) => (NumberKind::I16, 1.0 / 32_768.0, 0.0),
+        (SampleFormat::Int, 3) => (NumberKind::I24, 1.0 / 8_388_608.0, 0.0),
+        (SampleFormat::Int, 4) => (NumberKind::I32, 1.0 / 2_147_483_648.0, 0.0),
+        (SampleFormat::Float, 4) => (NumberKind::F32, 1.0, 0.0),
         (_, bytes) => {
             let detail = format!("samples of {bytes} bytes are not read");
             return Err(MeasureError::malformed(file, "WAV", detail));
         }
     };
-    Ok(Number {
+    Ok(StoredNumber {
         scale,
         offset,
-        ..Number::plain(kind, false)
+        ..StoredNumber::plain(kind, false)
     })
 }
 

@@ -137,12 +137,10 @@ impl Flight {
         (product > 0.0).then(|| self.covariance_s2 / product)
     }
 
-    /// Incident and reflected time in s.
     pub(crate) fn times_s(&self) -> [Option<Estimate>; 2] {
         [Some(self.incident_s), self.reflected_s]
     }
 
-    /// The same shot without its reflected pulse.
     pub(crate) fn without_return(&self) -> Self {
         let mut picks = self.picks;
         picks.reflected = None;

@@ -123,7 +123,6 @@ pub fn power_law_both_errors(
     points.fit().ok_or(MeasureError::TooFew)
 }
 
-/// Logarithms of points with their variances.
 struct LogPoints {
     x: Vec<f64>,
     y: Vec<f64>,

@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-fn cut(trigger: Trigger, recording: &[i16], pieces: &[usize]) -> Vec<Segment> {
+fn cut(trigger: LevelTrigger, recording: &[i16], pieces: &[usize]) -> Vec<Segment> {
     let mut shots = Vec::new();
     let mut cutter = Cutter::new(trigger).unwrap();
     let (mut left, mut needed_from) = (recording, 0);
@@ -29,8 +29,8 @@ fn places(shots: &[Segment]) -> Vec<(u64, u64, u64)> {
     shots.iter().map(one).collect()
 }
 
-fn level(level: f64, before: usize, length: usize) -> Trigger {
-    Trigger {
+fn level(level: f64, before: usize, length: usize) -> LevelTrigger {
+    LevelTrigger {
         level,
         falling: false,
         hysteresis: 2.0,
@@ -78,7 +78,7 @@ fn a_falling_trigger_is_a_rising_one_upside_down() {
     let recording: Vec<i16> = (0..500).map(|i| (i * i * 7 % 41) as i16 - 20).collect();
     let turned: Vec<i16> = recording.iter().map(|x| -x).collect();
     let rising = level(12.0, 3, 9);
-    let falling = Trigger {
+    let falling = LevelTrigger {
         level: -12.0,
         falling: true,
         ..rising
@@ -115,7 +115,7 @@ proptest! {
         hold_off in 0_u64..200,
         falling: bool,
     ) {
-        let trigger = Trigger {
+        let trigger = LevelTrigger {
             falling,
             hold_off,
             ..level(threshold, before, before + after)
@@ -140,7 +140,7 @@ proptest! {
             prop_oneof![prop::num::f64::ANY, -1.0..1.0_f64], 0..300),
         threshold in -1.0..1.0_f64,
     ) {
-        let trigger = Trigger { hysteresis: 0.1, hold_off: u64::MAX, ..level(threshold, 5, 20) };
+        let trigger = LevelTrigger { hysteresis: 0.1, hold_off: u64::MAX, ..level(threshold, 5, 20) };
         let mut cutter = Cutter::new(trigger).unwrap();
         let shots = cutter.feed(&recording).len() + cutter.finish().iter().len();
         prop_assert!(shots <= 1);

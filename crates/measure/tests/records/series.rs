@@ -3,15 +3,15 @@
 use crate::common::{folder, python};
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{
-    Channels, ReadOptions, Record, SeriesInfo, SeriesWriter, ShotRow, read, truth, untriggered,
-    verify,
+    ReadOptions, Record, SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, read, truth,
+    untriggered, verify,
 };
 use std::fs;
 use std::path::Path;
 
 fn info(samples_per_shot: usize) -> SeriesInfo {
     SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: 10.0 / 32_768.0,
         offset_v: 0.25,

@@ -186,7 +186,7 @@ fn what_daq_cards_logged_is_read_and_scaled() {
     let record = records[0].as_ref().unwrap();
     assert_eq!(record.interval_s, 2e-6);
     // Halves and quarters are exact.
-    let found = [0, 1].map(|at: usize| record.channels[at].volts);
+    let found = [0, 1].map(|at: usize| record.channels[at].volts.clone());
     assert_eq!(found, volts_of_cards());
 }
 

@@ -27,15 +27,14 @@ const SAMPLE: &str = "sample";
 
 /// Channels of a series: both sensors added up in one, or one each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channels {
+pub enum SeriesChannels {
     /// Both sensors added up in one.
     Summed,
     /// The bead's sensor in one, the wall's in another.
     Separate,
 }
 
-impl Channels {
-    /// Names of the channels in a file.
+impl SeriesChannels {
     pub(super) fn names(self) -> &'static [&'static str] {
         match self {
             Self::Summed => SUMMED,
@@ -48,7 +47,7 @@ impl Channels {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesInfo {
     /// Channels of its samples.
-    pub channels: Channels,
+    pub channels: SeriesChannels,
     /// Time between samples in s.
     pub interval_s: f64,
     /// Size of the converter's step in V.
@@ -101,13 +100,12 @@ pub struct ShotRow<'a> {
 /// its part.
 pub struct SeriesWriter {
     path: PathBuf,
-    /// Removed when it is dropped.
     part: NamedTempFile,
     /// Dropped, the library would complete a file that goes away and, on a full disk, complain of
     /// it to the terminal.
     open: ManuallyDrop<Open>,
     samples_per_shot: usize,
-    columns: Columns,
+    columns: SeriesColumns,
 }
 
 struct Open {
@@ -132,9 +130,9 @@ impl SeriesWriter {
             part,
             open: ManuallyDrop::new(open),
             samples_per_shot: info.samples_per_shot,
-            columns: Columns {
+            columns: SeriesColumns {
                 long_names: info.long_names,
-                ..Columns::default()
+                ..SeriesColumns::default()
             },
         })
     }
@@ -206,7 +204,7 @@ impl SeriesWriter {
 
 /// What is small and written last, a column each.
 #[derive(Default)]
-struct Columns {
+struct SeriesColumns {
     shots: Vec<i64>,
     programmed: Vec<f64>,
     measured: Vec<f64>,
@@ -216,7 +214,7 @@ struct Columns {
     long_names: &'static [(&'static str, &'static str)],
 }
 
-impl Columns {
+impl SeriesColumns {
     fn push(&mut self, row: &ShotRow<'_>) {
         if self.shots.is_empty() {
             let truth = row.truth.iter().map(|value| (value.0, Vec::new()));
@@ -273,7 +271,6 @@ impl Columns {
         self.write_contacts(&truth, &shots)
     }
 
-    /// Tables of shots and contacts.
     fn write_contacts(&self, truth: &H5Group, shots: &H5Dataset) -> Result<(), Hdf5Error> {
         let Some((_, first)) = self.contacts.first() else {
             return Ok(());
@@ -307,7 +304,6 @@ fn sample_axis(file: &H5File, count: usize) -> Result<H5Dataset, Hdf5Error> {
     Ok(axis)
 }
 
-/// A column of numbers with its unit.
 fn column<T: H5Type>(
     group: &H5Group,
     name: &str,
@@ -354,8 +350,8 @@ fn channel(file: &H5File, name: &str, info: &SeriesInfo) -> Result<H5Dataset, Hd
         .shuffle_deflate(DEFLATE)
         .create(name)?;
     let what = match info.channels {
-        Channels::Summed => "voltage of the summed sensors".to_owned(),
-        Channels::Separate => format!("voltage of the {name}"),
+        SeriesChannels::Summed => "voltage of the summed sensors".to_owned(),
+        SeriesChannels::Separate => format!("voltage of the {name}"),
     };
     describe(&samples, &what, "V")?;
     for (name, value) in [

@@ -1,6 +1,6 @@
 //! Delimiter, decimal sign and columns of a text; its fields as numbers.
 
-use super::{Ending, Lines, text};
+use super::{LineEnding, Lines, text};
 use std::borrow::Cow;
 use std::io;
 use std::path::Path;
@@ -8,7 +8,6 @@ use std::path::Path;
 /// Bytes of a file that show its dialect.
 const BEGINNING: usize = 1 << 18;
 
-/// Rows that are compared.
 const ROWS: usize = 60;
 
 /// Share of rows in which a column must hold a number to be one of numbers.
@@ -45,7 +44,6 @@ const MISSING: &[&str] = &[
     "#div/0!", "1.#qnan", "1.#ind", "-1.#ind", "-1.#qnan",
 ];
 
-/// How a text writes its columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Dialect {
     pub delimiter: char,
@@ -106,7 +104,6 @@ impl Dialect {
     }
 }
 
-/// Share of the fields that are numbers.
 fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
     let (mut numbers, mut all) = (0.0, 0.0);
     for row in rows {
@@ -129,8 +126,8 @@ pub(super) fn beginning(file: &Path) -> io::Result<String> {
     let (mut all, mut line) = (String::new(), Vec::new());
     while all.len() < BEGINNING {
         let ending = lines.next(&mut line)?;
-        let goes_on = ending == Ending::Begun && !all.is_empty();
-        if ending == Ending::Nothing || goes_on && all.len() + line.len() > BEGINNING {
+        let goes_on = ending == LineEnding::Begun && !all.is_empty();
+        if ending == LineEnding::Nothing || goes_on && all.len() + line.len() > BEGINNING {
             break;
         }
         line.truncate(BEGINNING);

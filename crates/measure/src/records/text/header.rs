@@ -3,13 +3,11 @@
 use super::dialect::{Dialect, last_digit, leading_number, number, time_of_day_s};
 use super::times::{self, Printed};
 
-/// Units of seconds.
 const SECONDS: &[&str] = &[
     "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden", "seconde", "secondes",
     "segundos",
 ];
 
-/// Prefixes of units of time.
 const PREFIXES: &[(&[&str], f64)] = &[
     (&[""], 1.0),
     (&["m", "milli"], 1e-3),
@@ -57,9 +55,8 @@ const APART: [char; 4] = ['_', '/', ' ', ','];
 /// Lines that may state the sampling next to numbers, and rows that show what a column is.
 const SHOWN: usize = 40;
 
-/// Meaning of the columns.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Header {
+pub(super) struct TextHeader {
     /// Columns that are channels.
     pub channels: Vec<usize>,
     pub names: Vec<String>,
@@ -72,7 +69,7 @@ pub(super) struct Header {
     pub interval_s: Option<f64>,
 }
 
-impl Header {
+impl TextHeader {
     /// Reads the lines before the first row and the first rows. A column that counts is one of
     /// times if `counts_are_times`.
     pub(super) fn of(beginning: &str, dialect: &Dialect, counts_are_times: bool) -> Self {
@@ -238,7 +235,6 @@ fn split_unit(title: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// A title without a unit in brackets.
 fn without_bracket(title: &str) -> &str {
     match title.trim().ends_with([')', ']']) {
         true => split_unit(title).0,
@@ -269,7 +265,6 @@ fn stated_s(beginning: &str, dialect: &Dialect) -> Option<f64> {
     beside.or_else(|| pairs.find_map(|(titles, values)| below_s(titles, values, dialect)))
 }
 
-/// The interval that stands under its name.
 fn below_s(titles: &str, values: &str, dialect: &Dialect) -> Option<f64> {
     let titles = dialect.fields(titles);
     let mut names = titles.iter().map(|title| title.to_lowercase());

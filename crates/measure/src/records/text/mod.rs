@@ -6,12 +6,12 @@ mod rows;
 mod times;
 
 use crate::error::MeasureError;
-use crate::records::interval::{Interval, interval_s, seconds_assumed};
+use crate::records::interval::{SampleInterval, interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use dialect::Dialect;
-use header::Header;
-use rows::{Plan, Segments};
+use header::TextHeader;
+use rows::{RowPlan, Segments};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
@@ -33,7 +33,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     let beginning = dialect::beginning(file).map_err(reading)?;
     let dialect = Dialect::of(&beginning);
     let dialect = dialect.ok_or_else(|| malformed("no columns of numbers were found"))?;
-    let header = Header::of(&beginning, &dialect, options.time_unit_s.is_some());
+    let header = TextHeader::of(&beginning, &dialect, options.time_unit_s.is_some());
     let needs_unit = options.time_unit_s.is_none() && options.trusted_rate_hz().is_none();
     if let Some(unit) = header.strange_unit.as_ref().filter(|_| needs_unit) {
         return Err(malformed(&format!(
@@ -48,11 +48,11 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     let unit_s = header.time.map(|time| time.1);
     let interval = match header.time {
         // Follows from the times.
-        Some(_) => Interval::exact(f64::NAN),
-        None => Interval::exact(interval_s(file, header.interval_s, options)?),
+        Some(_) => SampleInterval::exact(f64::NAN),
+        None => SampleInterval::exact(interval_s(file, header.interval_s, options)?),
     };
     let before = beginning.lines().take(dialect.first_row);
-    let plan = Plan {
+    let plan = RowPlan {
         names,
         columns,
         time: header.time.map(|(column, unit_s)| {
@@ -105,9 +105,8 @@ struct Lines {
     blank: usize,
 }
 
-/// How a line was read.
 #[derive(PartialEq)]
-enum Ending {
+enum LineEnding {
     /// With its end.
     Whole,
     /// The file ended first.
@@ -132,18 +131,18 @@ impl Lines {
     }
 
     /// Reads the next line without its end.
-    fn next(&mut self, line: &mut Vec<u8>) -> io::Result<Ending> {
+    fn next(&mut self, line: &mut Vec<u8>) -> io::Result<LineEnding> {
         line.clear();
         if self.blank > 0 {
             self.blank -= 1;
-            return Ok(Ending::Whole);
+            return Ok(LineEnding::Whole);
         }
         loop {
             let buffer = self.reader.fill_buf()?;
             if buffer.is_empty() {
                 return Ok(match line.is_empty() {
-                    true => Ending::Nothing,
-                    false => Ending::Begun,
+                    true => LineEnding::Nothing,
+                    false => LineEnding::Begun,
                 });
             }
             let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
@@ -159,7 +158,7 @@ impl Lines {
                 self.blank = self.blank_lines()?;
             }
             if end.is_some() {
-                return Ok(Ending::Whole);
+                return Ok(LineEnding::Whole);
             }
         }
     }

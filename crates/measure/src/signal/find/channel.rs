@@ -72,7 +72,6 @@ impl<'a> ChannelSignal<'a> {
         })
     }
 
-    /// Height of a block above the baseline.
     fn block_height(&self, block: usize) -> f64 {
         let value = self.blocks.get(block).copied();
         value.map_or(0.0, |value| self.normalisation.height(value))
@@ -172,9 +171,8 @@ pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
     (low, high)
 }
 
-/// A maximum of a smoothed stretch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Maximum {
+pub(super) struct SmoothedMaximum {
     pub(super) at: usize,
     pub(super) height: f64,
 }
@@ -182,15 +180,13 @@ pub(super) struct Maximum {
 /// Heights above the baseline of a stretch, smoothed without delay, and their maxima.
 pub(super) struct Smoothed<'a> {
     pub(super) channel: &'a ChannelSignal<'a>,
-    /// Sample of the first value.
     first: usize,
     values: Vec<f64>,
-    /// Standard deviation of the remaining noise.
     pub(super) noise: f64,
     /// Samples in each of the two averages.
     length: usize,
     /// Maxima that stand out of noise and of the highest pulse's hundredths.
-    pub(super) maxima: Vec<Maximum>,
+    pub(super) maxima: Vec<SmoothedMaximum>,
 }
 
 impl<'a> Smoothed<'a> {
@@ -236,7 +232,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Maxima from which the signal falls by `drop` on both sides, in order.
-    fn maxima(&self, drop: f64) -> Vec<Maximum> {
+    fn maxima(&self, drop: f64) -> Vec<SmoothedMaximum> {
         let mut maxima = Vec::new();
         let (mut top, mut valley, mut rising) = (0, f64::INFINITY, true);
         for (i, value) in self.values.iter().enumerate() {
@@ -253,7 +249,7 @@ impl<'a> Smoothed<'a> {
         }
         // What only falls from the start on was cut off, not found.
         maxima.retain(|top| *top > 0);
-        let maximum = |top: usize| Maximum {
+        let maximum = |top: usize| SmoothedMaximum {
             at: self.first + top,
             height: self.values[top],
         };
@@ -267,7 +263,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Both sides of the full width at half maximum about a maximum, corrected for the smoothing.
-    pub(super) fn sides(&self, of: &Maximum) -> (f64, f64) {
+    pub(super) fn sides(&self, of: &SmoothedMaximum) -> (f64, f64) {
         let (left, right) = self.reach(of, 0.5 * of.height);
         let seen = right - left;
         let n = self.length as f64;
@@ -279,7 +275,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Where the signal last falls to `height` on either side of a maximum, between samples.
-    fn reach(&self, of: &Maximum, height: f64) -> (f64, f64) {
+    fn reach(&self, of: &SmoothedMaximum, height: f64) -> (f64, f64) {
         let top = of.at.saturating_sub(self.first);
         let below = |i: &usize| self.values[*i] < height;
         let left = (0..top).rev().find(below);
@@ -295,8 +291,7 @@ impl<'a> Smoothed<'a> {
         (self.first as f64 + left, self.first as f64 + right)
     }
 
-    /// The pulse about a maximum.
-    pub(super) fn pulse(&self, kind: PulseKind, maximum: &Maximum) -> Pulse {
+    pub(super) fn pulse(&self, kind: PulseKind, maximum: &SmoothedMaximum) -> Pulse {
         let (from, to) = self.reach(maximum, 0.1 * maximum.height);
         let sides_samples = self.sides(maximum);
         let last = self.channel.samples.len().saturating_sub(1);

@@ -11,7 +11,7 @@ pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
 
 use crate::error::MeasureError;
 use channel::{ChannelSignal, Smoothed};
-use select::Selection;
+use select::PulseSelection;
 
 /// Finds the incident, the wall's and the reflected pulse of one shot.
 ///
@@ -119,7 +119,7 @@ fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathe
 /// signal-to-noise ratio: with less, single samples would choose among its fragments.
 fn smooth_reflected<'a>(
     channel: &'a ChannelSignal<'a>,
-    selection: &mut Selection,
+    selection: &mut PulseSelection,
     end: usize,
 ) -> Option<Smoothed<'a>> {
     let (from, to) = selection.windows[2];
@@ -132,7 +132,7 @@ fn smooth_reflected<'a>(
 }
 
 /// Pulses with their quality flags, each from the stretch smoothed for it.
-fn gather(selection: &Selection, views: [&Smoothed<'_>; 3]) -> Gathered {
+fn gather(selection: &PulseSelection, views: [&Smoothed<'_>; 3]) -> Gathered {
     let pulse = |i: usize| {
         let maximum = selection.maxima[i].as_ref();
         maximum.map(|maximum| views[i].pulse(PulseKind::ALL[i], maximum))
@@ -181,7 +181,6 @@ const LOW: f64 = 10.0;
 /// Samples across the half maximum below which means of four hide a pulse.
 const FEW: f64 = 5.0;
 
-/// Flags of each pulse and of neighbours.
 fn pulse_flags(pulses: &[Option<Pulse>; 3], views: [&Smoothed<'_>; 3]) -> Vec<QualityFlag> {
     let seen: Vec<(&Pulse, &Smoothed<'_>)> = pulses
         .iter()

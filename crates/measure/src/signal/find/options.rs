@@ -25,7 +25,6 @@ impl<'a> Channels<'a> {
         }
     }
 
-    /// The samples that hold a pulse.
     pub(crate) fn of(&self, kind: super::PulseKind) -> &'a [f64] {
         self.both()[usize::from(kind == super::PulseKind::Wall)]
     }

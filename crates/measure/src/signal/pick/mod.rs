@@ -258,7 +258,7 @@ pub(crate) fn pick_corrected(
 }
 
 /// A pulse's maximum by a fit to the samples about it, in samples.
-pub(crate) fn fitted_maximum(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
+pub(crate) fn maximum_by_fit(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
     Picker::Maximum.pick(view, pulse).ok()
 }
 
@@ -274,7 +274,6 @@ impl Picked {
         }
     }
 
-    /// From samples to s.
     fn in_seconds(self, interval_s: f64) -> Self {
         Self {
             time_s: self.time_s * interval_s,
@@ -348,7 +347,6 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Of a clipped pulse, from its flanks.
     fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
         let none = |what| MeasureError::NoPick(pulse.kind, what);
         let top = log_polynomial::pick_from_flanks(view, pulse);
