@@ -21,52 +21,19 @@ const PROBE: u64 = 4096;
 /// Most samples of a channel that are not finite, as a share.
 const MOST_FILLED: f64 = 0.01;
 
-/// A format: its name, how files begin, their extensions, and its reader.
-struct Format {
-    name: &'static str,
-    magic: &'static [u8],
-    extensions: &'static [&'static str],
-    open: fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>,
-}
+/// Name of a format, how its files begin, their extensions, and its reader.
+type Format = (&'static str, &'static [u8], &'static [&'static str], Open);
+type Open = fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>;
 
-/// All formats; text, which has no magic, last.
-const FORMATS: &[Format] = &[
-    Format {
-        name: "HDF5",
-        magic: b"\x89HDF\r\n\x1a\n",
-        extensions: &["h5", "hdf5", "hdf"],
-        open: hdf5::open,
-    },
-    Format {
-        name: "a NumPy array",
-        magic: b"\x93NUMPY",
-        extensions: &["npy"],
-        open: numpy::open_npy,
-    },
-    Format {
-        name: "a ZIP archive, as NPZ files are",
-        magic: b"PK\x03\x04",
-        extensions: &["npz"],
-        open: numpy::open_npz,
-    },
-    Format {
-        name: "RIFF WAVE",
-        magic: b"RIFF",
-        extensions: &["wav", "wave"],
-        open: wav::open,
-    },
-    Format {
-        name: "TDMS",
-        magic: b"TDSm",
-        extensions: &["tdms"],
-        open: tdms::open,
-    },
-    Format {
-        name: "text",
-        magic: b"",
-        extensions: &["csv", "tsv", "txt", "asc", "prn"],
-        open: text::open,
-    },
+/// All formats; text, which no bytes begin, last.
+#[rustfmt::skip]
+const FORMATS: [Format; 6] = [
+    ("HDF5", b"\x89HDF\r\n\x1a\n", &["h5", "hdf5", "hdf"], hdf5::open),
+    ("a NumPy array", b"\x93NUMPY", &["npy"], numpy::open_npy),
+    ("a ZIP archive, as NPZ files are", b"PK\x03\x04", &["npz"], numpy::open_npz),
+    ("RIFF WAVE", b"RIFF", &["wav", "wave"], wav::open),
+    ("TDMS", b"TDSm", &["tdms"], tdms::open),
+    ("text", b"", &["csv", "tsv", "txt", "asc", "prn"], text::open),
 ];
 
 /// The records of a file, one at a time: a file larger than memory is never read whole.
@@ -81,18 +48,12 @@ pub struct Records {
     count: usize,
 }
 
-impl std::fmt::Debug for Records {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("Records").finish_non_exhaustive()
-    }
-}
-
 /// Reads the records of a file: HDF5, text, NPY, NPZ, WAV or TDMS, by its content.
 ///
 /// A file that cannot be read at all gives one error and nothing else.
 #[must_use]
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
-    let opened = format_of(file).and_then(|format| (format.open)(file, options));
+    let opened = format_of(file).and_then(|open| open(file, options));
     let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
     Records {
         records: match options.parts.most() {
@@ -263,30 +224,30 @@ fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
     }))
 }
 
-/// The format of a file by its content, unless its extension promises another.
-fn format_of(file: &Path) -> Result<&'static Format, MeasureError> {
+/// The reader of a file by its content, unless its extension promises another.
+fn format_of(file: &Path) -> Result<Open, MeasureError> {
     let mut bytes = Vec::new();
-    File::open(file)
-        .and_then(|file| file.take(PROBE).read_to_end(&mut bytes))
-        .map_err(|cause| MeasureError::reading(file, cause))?;
+    let opened = File::open(file);
+    let read = opened.and_then(|file| file.take(PROBE).read_to_end(&mut bytes));
+    read.map_err(|cause| MeasureError::reading(file, cause))?;
     if bytes.is_empty() {
         return Err(MeasureError::empty(file_name(file)));
     }
-    let is = |format: &&Format| match format.magic {
+    let found = FORMATS.iter().find(|format| match format.1 {
         b"" => is_text(&bytes),
         magic => bytes.starts_with(magic),
-    };
-    let found = FORMATS.iter().find(is);
+    });
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     let extension = extension.to_ascii_lowercase();
-    let mut formats = FORMATS.iter();
-    let promised = formats.find(|format| format.extensions.contains(&&*extension));
+    let promised = FORMATS
+        .iter()
+        .find(|format| format.2.contains(&&*extension));
     let detail = match (found, promised) {
-        (Some(found), None) => return Ok(found),
-        (Some(found), Some(promised)) if found.name == promised.name => return Ok(found),
+        (Some(found), None) => return Ok(found.3),
+        (Some(found), Some(promised)) if found.0 == promised.0 => return Ok(found.3),
         (None, None) => "is none of HDF5, CSV or other text, NPY, NPZ, WAV and TDMS".to_owned(),
         (found, Some(_)) => {
-            let content = found.map_or("something else", |found| found.name);
+            let content = found.map_or("something else", |found| found.0);
             format!("is called .{extension} but holds {content}; give it its right ending")
         }
     };

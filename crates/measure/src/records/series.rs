@@ -243,15 +243,15 @@ pub fn verify(
 ) -> Result<(), MeasureError> {
     let reading = |cause| MeasureError::reading(file, cause);
     let opened = File::open(file).map_err(reading)?;
+    let expected = (shots, programmed_speed_m_s);
     let difference = match has_checksum(&opened).map_err(reading)? {
-        Some(true) => difference(file, info, shots, programmed_speed_m_s)
-            .unwrap_or_else(|error| Some(damaged(&error))),
-        Some(false) => Some("damaged: its bytes do not have its checksum".to_owned()),
-        None => Some("cut short or damaged: its checksum is missing".to_owned()),
+        Some(true) => difference(file, info, expected).map_err(|error| damaged(&error)),
+        Some(false) => Err("damaged: its bytes do not have its checksum".to_owned()),
+        None => Err("cut short or damaged: its checksum is missing".to_owned()),
     };
     match difference {
-        Some(what) => Err(MeasureError::malformed(file, "this series", what)),
-        None => Ok(()),
+        Ok(None) => Ok(()),
+        Ok(Some(what)) | Err(what) => Err(MeasureError::malformed(file, "this series", what)),
     }
 }
 
@@ -259,8 +259,7 @@ pub fn verify(
 fn difference(
     file: &Path,
     info: &SeriesInfo,
-    shots: usize,
-    programmed_speed_m_s: f64,
+    (shots, programmed_speed_m_s): (usize, f64),
 ) -> Result<Option<String>, Hdf5Error> {
     let open = H5File::open(file)?;
     let own = [FORMAT, (CASE, &*info.case), (EXPERIMENT, &*info.experiment)];
@@ -281,12 +280,14 @@ fn difference(
         )));
     }
     let numbers = column::<i64>(&open, SHOT, shots)?;
-    if !numbers.into_iter().eq(0..shots as i64) {
-        return Ok(Some("it has other shots".to_owned()));
-    }
     let speeds = column::<f64>(&open, PROGRAMMED, shots)?;
-    let same = speeds.iter().all(|speed| *speed == programmed_speed_m_s);
-    Ok((!same).then(|| "it has another programmed speed".to_owned()))
+    Ok(if !numbers.into_iter().eq(0..shots as i64) {
+        Some("it has other shots".to_owned())
+    } else if speeds.iter().any(|speed| *speed != programmed_speed_m_s) {
+        Some("it has another programmed speed".to_owned())
+    } else {
+        None
+    })
 }
 
 /// What stands before the eight hexadecimal digits of a CRC-32 at the end of a file, of all bytes

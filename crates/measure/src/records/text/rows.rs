@@ -80,7 +80,7 @@ struct Footer {
 enum Line {
     Row(Option<Printed>, Vec<f64>),
     Separator,
-    Words { shown: String, detail: String },
+    Words(Footer),
     Bad(String),
     End,
 }
@@ -173,7 +173,11 @@ impl Segments {
         let shown: String = line.chars().take(60).collect();
         let detail = format!("line {} is no row of numbers: {shown:?}", self.line);
         match (is_worded(&line), whole) {
-            (true, _) => Line::Words { shown, detail },
+            (true, _) => Line::Words(Footer {
+                shown,
+                detail,
+                lines: 0,
+            }),
             (false, true) => Line::Bad(detail),
             (false, false) => Line::Bad(format!("line {} stops in the middle", self.line)),
         }
@@ -181,7 +185,7 @@ impl Segments {
 
     fn advance(&mut self) {
         match self.line() {
-            Line::Row(..) | Line::Words { .. } | Line::Bad(_) if self.skipping => {}
+            Line::Row(..) | Line::Words(_) | Line::Bad(_) if self.skipping => {}
             Line::Row(time, values) => match self.footer.take() {
                 Some(footer) => self.reject(footer.detail),
                 None => {
@@ -196,12 +200,8 @@ impl Segments {
                 self.skipping = false;
                 self.trailing = true;
             }
-            Line::Words { shown, detail } => {
-                let footer = self.footer.get_or_insert(Footer {
-                    shown,
-                    detail,
-                    lines: 0,
-                });
+            Line::Words(first) => {
+                let footer = self.footer.get_or_insert(first);
                 footer.lines += 1;
                 if footer.lines > LONGEST_FOOTER {
                     let detail = std::mem::take(&mut footer.detail);
