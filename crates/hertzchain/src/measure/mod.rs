@@ -14,8 +14,8 @@ use crate::options::{
 use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_infer::Data;
-use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::signal::{
     Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalOptions,
 };

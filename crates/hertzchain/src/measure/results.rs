@@ -1,7 +1,9 @@
 //! Everything measured, as JSON in SI.
 
 use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, Ratio, Summary};
-use hertzchain_measure::{Case, Curves, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry};
+use hertzchain_measure::{
+    Case, Curves, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry,
+};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
 use std::io;

@@ -3,8 +3,8 @@
 use crate::InferError;
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::signal::{
-    Channels, Estimate, Flight, Normalisation, Polarity, QualityFlag, SignalOptions,
-    measure, normalisation, without_spikes,
+    Channels, Estimate, Flight, Normalisation, Polarity, QualityFlag, SignalOptions, measure,
+    normalisation, without_spikes,
 };
 
 /// Samples are used from so many incident times of flight before the passing

@@ -16,6 +16,9 @@ use zip::{CompressionMethod, ZipArchive};
 /// Most bytes of shots with alternating samples that are held in memory.
 const MOST_TOGETHER: u64 = 1 << 28;
 
+/// Most bytes of a compressed array, which is inflated into a temporary file: 16 GiB.
+const MOST_INFLATED: u64 = 1 << 34;
+
 /// Most bytes of a header, which NumPy itself enforces, and most brackets within each other.
 const MOST_HEADER: usize = 10_000;
 const MOST_NESTED: usize = 16;
@@ -193,6 +196,10 @@ impl<'a> Array<'a> {
     fn numbers(&self) -> Result<(File, u64), MeasureError> {
         let reading = |cause| MeasureError::reading(self.file, cause);
         let end = self.start.saturating_add(self.length);
+        if self.entry.deflated && end > MOST_INFLATED {
+            let detail = "a compressed array of more than 16 GiB; save it with numpy.savez";
+            return Err(MeasureError::malformed(self.file, "NPZ", detail));
+        }
         if self.entry.deflated {
             let bytes = self.entry.bytes(self.file).map_err(reading)?;
             let mut inflated = tempfile::tempfile().map_err(reading)?;
@@ -256,7 +263,8 @@ impl<'a> Array<'a> {
             return Ok(table.head.records(options.parts, transposed));
         }
         let channel = |at: &usize| {
-            let first = start + (*at as u64).saturating_mul(stride(table.axes.channels) as u64);
+            let skipped = (*at as u64).saturating_mul(stride(table.axes.channels) as u64);
+            let first = start.saturating_add(skipped);
             StoredChannel::run(self.number, first, frames, between)
         };
         let stored = StoredTable {
