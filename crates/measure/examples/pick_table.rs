@@ -1,7 +1,7 @@
 //! Bias and spread of times of flight by every picking method, and what their stated errors cover,
 //! as tables in Markdown.
 //!
-//! `cargo run --release -p hertzchain-signal --example pick_table [SHOTS]`
+//! `cargo run --release -p hertzchain-measure --example pick_table [SHOTS]`
 //! prints what stands in docs/explanation/picking.md.
 
 #[path = "../tests/signal/common/mod.rs"]
@@ -12,7 +12,7 @@ mod dry;
 mod source;
 
 use hertzchain_measure::signal::{
-    Channels, Estimate, FindOptions, Flight, QualityFlag, coverage, median, pick, pulses,
+    Channels, Estimate, Flight, QualityFlag, SignalOptions, coverage, measure, median,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -52,13 +52,17 @@ fn run(source: &Source, interval_s: f64, ratio_db: u32, shots: u64) -> [Errors; 
         rng.set_stream(shot);
         let samples = source.recorded(interval_s, noise, &mut rng);
         let channels = Channels::Summed(&samples);
-        let Ok(found) = pulses(channels, &FindOptions::default()) else {
-            continue;
-        };
-        let counts = !found.flags.iter().any(QualityFlag::is_grave);
         for ((_, method), errors) in methods().iter().zip(&mut errors) {
-            if let Ok(picks) = pick(channels, interval_s, &found, method, [None; 2]) {
-                errors.take(&picks.flight(), source.times_s, counts);
+            let options = SignalOptions {
+                method: method.clone(),
+                ..SignalOptions::default()
+            };
+            let Ok(shot) = measure(channels, interval_s, &options) else {
+                continue;
+            };
+            let counts = !shot.found.flags.iter().any(QualityFlag::is_grave);
+            if let Ok(flight) = shot.flight {
+                errors.take(&flight, source.times_s, counts);
             }
         }
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::error::MeasureError;
 use crate::signal::find::conditioned_pulses;
-use crate::signal::pick::pick_corrected;
+use crate::signal::pick::pick;
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
     Picks, Polarity, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
@@ -78,7 +78,7 @@ pub fn measure(
         find.ranges(channels)
     };
     let corrections = (ranges, options.bandwidth);
-    let picks = pick_corrected(channels, interval_s, &found, &options.method, corrections);
+    let picks = pick(channels, interval_s, &found, &options.method, corrections);
     let flight = picks.map(Picks::flight);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();

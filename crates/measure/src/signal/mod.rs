@@ -3,7 +3,7 @@
 //! Independent of chains and files: functions take plain slices and, where time matters, a sampling
 //! interval in s. From samples to a curve:
 //!
-//! 1. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
+//! 1. [`measure`] conditions a shot, finds its [`pulses`], picks them and
 //!    returns a [`Flight`] with its uncertainty and [`QualityFlag`]s.
 //! 2. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
 //!    [`power_law_both_errors`], [`chi_square`] and [`coverage`] reduce shots to curves.
@@ -43,7 +43,7 @@ pub use find::{
 };
 pub use flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic};
 pub use pick::{
-    CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation, pick,
+    CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation,
 };
 pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,

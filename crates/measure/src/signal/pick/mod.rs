@@ -196,23 +196,9 @@ impl<'a> ChannelView<'a> {
 }
 
 /// Picks the pulses that were found, given the digitiser's range, where it is known, in the
-/// channels that hold the sensor's and the wall's pulses.
-///
-/// # Errors
-/// No incident or no wall's pulse; no maximum or crossing where one of these is; options out of
-/// range. A reflected pulse that cannot be picked is left out.
-pub fn pick(
-    channels: Channels<'_>,
-    interval_s: f64,
-    found: &Found,
-    method: &Method,
-    ranges: [Option<DigitiserRange>; 2],
-) -> Result<Picks, MeasureError> {
-    pick_corrected(channels, interval_s, found, method, (ranges, None))
-}
-
-/// As [`pick`], with maxima corrected for an amplifier's low-pass; times of other methods are not.
-pub(crate) fn pick_corrected(
+/// channels that hold the sensor's and the wall's pulses. Maxima are corrected for an amplifier's
+/// low-pass; times of other methods are not. A reflected pulse that cannot be picked is left out.
+pub(crate) fn pick(
     channels: Channels<'_>,
     interval_s: f64,
     found: &Found,

@@ -38,7 +38,7 @@ fn delimiters_and_decimal_signs_are_told_apart() {
 
 #[test]
 fn a_preamble_beside_the_numbers_is_no_column() {
-    let mut text = "Record Length,2500,,0.1,0.2\nSample SampleInterval,1e-6,,0.2,0.3\n".to_owned();
+    let mut text = "Record Length,2500,,0.1,0.2\nSample Interval,1e-6,,0.2,0.3\n".to_owned();
     text += &",,,0.3,0.4\n".repeat(20);
     assert_eq!(found(&text), (',', false, vec![3, 4], 0));
 }

@@ -116,8 +116,8 @@ fn an_interval_may_stand_under_its_title() {
 #[test]
 fn intervals_and_rates_are_read_with_their_units() {
     for line in [
-        "Sample SampleInterval,1e-06",
-        "\"Sampling SampleInterval\";\"1 us\"",
+        "Sample Interval,1e-06",
+        "\"Sampling Interval\";\"1 us\"",
         "# sample rate: 1 MS/s",
         "Sampling Rate (MHz) = 1",
         "fs=1000000 Hz",
