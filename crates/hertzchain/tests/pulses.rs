@@ -91,7 +91,7 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
         }
         for record in read(&series, &ReadOptions::default()) {
             let record = record.unwrap();
-            let volts = record.channels[0].samples.volts();
+            let volts = record.channels[0].volts.clone();
             let case = record.case.clone().unwrap();
             let number = table.lines().count();
             let (speed, error) = (record.speed_m_s.unwrap(), record.speed_error_m_s.unwrap());

@@ -1,7 +1,7 @@
 //! Bias and spread of times of flight by every picking method, and what their stated errors cover,
 //! as tables in Markdown.
 //!
-//! `cargo run --release -p hertzchain-signal --example pick_table [SHOTS]`
+//! `cargo run --release -p hertzchain-measure --example pick_table [SHOTS]`
 //! prints what stands in docs/explanation/picking.md.
 
 #[path = "../tests/signal/common/mod.rs"]
@@ -12,8 +12,7 @@ mod dry;
 mod source;
 
 use hertzchain_measure::signal::{
-    Channels, Estimate, FindOptions, Flight, QualityFlag, coverage, cramer_rao_of_samples_s,
-    median, pick, pulses,
+    Channels, Estimate, Flight, QualityFlag, SignalOptions, coverage, measure, median,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -53,13 +52,17 @@ fn run(source: &Source, interval_s: f64, ratio_db: u32, shots: u64) -> [Errors; 
         rng.set_stream(shot);
         let samples = source.recorded(interval_s, noise, &mut rng);
         let channels = Channels::Summed(&samples);
-        let Ok(found) = pulses(channels, &FindOptions::default()) else {
-            continue;
-        };
-        let counts = !found.flags.iter().any(QualityFlag::is_grave);
         for ((_, method), errors) in methods().iter().zip(&mut errors) {
-            if let Ok(picks) = pick(channels, interval_s, &found, method, [None; 2]) {
-                errors.take(&picks.flight(), source.times_s, counts);
+            let options = SignalOptions {
+                method: method.clone(),
+                ..SignalOptions::default()
+            };
+            let Ok(shot) = measure(channels, interval_s, &options) else {
+                continue;
+            };
+            let counts = !shot.found.flags.iter().any(QualityFlag::is_grave);
+            if let Ok(flight) = shot.flight {
+                errors.take(&flight, source.times_s, counts);
             }
         }
     }
@@ -117,14 +120,15 @@ fn cell(errors: &[(Estimate, bool)], shots: u64) -> String {
     format!("{mean:+.0} ± {:.0}{lost}", spread.sqrt())
 }
 
-/// Bound of incident and reflected time in ns.
+/// Cramér–Rao bound of incident and reflected time in ns: noise/√(Σ s'²) of each pulse.
 fn bounds(source: &Source, interval_s: f64, noise: f64) -> [f64; 2] {
     let around = |at: f64| {
         let reach = (70e-6 / interval_s) as i32;
         let pulse: Vec<f64> = (-reach..=reach)
             .map(|i| (source.signal)(at + f64::from(i) * interval_s))
             .collect();
-        cramer_rao_of_samples_s(&pulse, interval_s, noise) * 1e9
+        let slopes = pulse.windows(3).map(|w| 0.5 * (w[2] - w[0]) / interval_s);
+        1e9 * noise / slopes.map(|s| s * s).sum::<f64>().sqrt()
     };
     let [passing, wall, returning] = source.times_s.map(around);
     [passing.hypot(wall), wall.hypot(returning)]

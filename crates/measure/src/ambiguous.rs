@@ -19,8 +19,9 @@ const SAME: f64 = 0.5;
 pub fn resolve_ambiguous(flights: &[&Flight]) -> Vec<Option<Flight>> {
     let mut resolved: Vec<Flight> = flights.iter().map(|flight| **flight).collect();
     for kind in [PulseKind::Incident, PulseKind::Wall, PulseKind::Reflected] {
-        let pairs: Vec<Option<Pair>> = flights.iter().map(|f| Pair::new(f, kind)).collect();
-        let all: Vec<Pair> = pairs.iter().flatten().copied().collect();
+        let pairs: Vec<Option<MaximumPair>> =
+            flights.iter().map(|f| MaximumPair::new(f, kind)).collect();
+        let all: Vec<MaximumPair> = pairs.iter().flatten().copied().collect();
         for (flight, pair) in resolved.iter_mut().zip(&pairs) {
             if let Some(pair) = pair.filter(|_| is_open(flight, kind)) {
                 let lower = turned(pair.combined(&all), pair.after_s);
@@ -45,9 +46,8 @@ fn decided(flight: Flight) -> Option<Flight> {
     })
 }
 
-/// The two largest maxima of a pulse.
 #[derive(Clone, Copy)]
-struct Pair {
+struct MaximumPair {
     /// Time from the one that was picked to the other in s.
     after_s: f64,
     width_s: f64,
@@ -55,7 +55,7 @@ struct Pair {
     later_higher: Estimate,
 }
 
-impl Pair {
+impl MaximumPair {
     fn new(flight: &Flight, kind: PulseKind) -> Option<Self> {
         let pulse = flight.picks.pulse(kind)?;
         let other = flight.picks.competing[kind as usize]?;

@@ -77,11 +77,8 @@ pub(crate) fn shared_s2(flights: &[&Flight]) -> f64 {
     let mean = |of: &dyn Fn(&Flight) -> f64| flights.iter().map(|f| of(f)).sum::<f64>() / count;
     let under = mean(&|flight| flight.picks.wall.systematic.superposition_s);
     let shape = mean(&|flight| flight.picks.wall.systematic.shape_s);
-    let interval = |time: Option<Estimate>, flight: &Flight| {
-        flight.interval_error * time.map_or(0.0, |time| time.value)
-    };
-    let forth = mean(&|flight| interval(Some(flight.incident_s), flight));
-    let back = mean(&|flight| interval(flight.reflected_s, flight));
+    let [forth, back] = [0, 1]
+        .map(|at| mean(&|f| f.interval_error * f.times_s()[at].map_or(0.0, |time| time.value)));
     forth * back - under.powi(2) - shape.powi(2)
 }
 

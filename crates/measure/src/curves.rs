@@ -3,12 +3,12 @@
 use crate::Shot;
 use crate::ambiguous::resolve_ambiguous;
 use crate::correlation::{Pairs, correlation, of_ratios, shared_s2};
-use crate::lost::{At, Lost, lost};
 use crate::signal::{
-    Estimate, FitError, Flight, Point, PowerLaw, Ratio, Summary, Systematic, groups,
+    Estimate, FitError, Flight, Point, PowerLaw, PulseKind, Ratio, Summary, groups,
     mean_systematic, power_law, power_law_both_errors, ratios_at_common, summary,
     without_systematic,
 };
+use indexmap::IndexMap;
 
 /// How shots are grouped into curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +105,17 @@ pub struct WetOverDry {
     pub correlations: Vec<Option<f64>>,
 }
 
+/// A speed of a case at which no shot has a time of flight that counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnmeasuredSpeed {
+    /// The case's name; empty if it has none.
+    pub case: String,
+    /// Programmed speed in m/s if it is known, else the first shot's own.
+    pub speed_m_s: f64,
+    /// Shots of this speed.
+    pub shots: usize,
+}
+
 /// Curves of all cases and their ratios.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
@@ -112,84 +123,115 @@ pub struct Curves {
     pub cases: Vec<Case>,
     /// Ratios of all others to the reference.
     pub ratios: Vec<WetOverDry>,
-    /// Speeds of cases at which no shot counts, by the order of cases and speeds.
-    pub lost: Vec<Lost>,
+    /// Speeds at which no shot counts, in the order of cases and speeds.
+    pub unmeasured: Vec<UnmeasuredSpeed>,
 }
 
-/// How times of flight change with speed between neighbouring speeds: a Hertz
-/// chain's exponent, −1/5 [Nesterenko1983].
+/// How times of flight change with speed between neighbouring speeds: a Hertz chain's exponent,
+/// −1/5 [Nesterenko1983].
 const EXPONENT: f64 = -0.2;
 
 impl Curves {
     /// Reduces shots; those without a speed or a time are left out.
     #[must_use]
     pub fn of(shots: &[Shot], grouping: &Grouping) -> Self {
-        let mut names: Vec<&str> = Vec::new();
+        let mut by_name: IndexMap<&str, Vec<&Shot>> = IndexMap::new();
         for shot in shots {
-            if !names.contains(&shot.case.as_str()) {
-                names.push(&shot.case);
-            }
+            by_name.entry(&shot.case).or_default().push(shot);
         }
-        let (mut cases, mut all_lost) = (Vec::new(), Vec::new());
-        for name in names {
-            let (case, undecided) = Case::of(name, shots, grouping);
-            let mut lost = lost(name, shots, grouping);
-            lost.extend(undecided);
-            lost.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-            all_lost.extend(lost);
-            cases.extend(Some(case).filter(|case| !case.rows.is_empty()));
+        let mut curves = Self::default();
+        for (name, shots) in by_name {
+            let (case, mut unmeasured) = Case::new(name, &shots, grouping);
+            unmeasured.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+            curves.unmeasured.extend(unmeasured);
+            curves
+                .cases
+                .extend(Some(case).filter(|case| !case.rows.is_empty()));
         }
-        Self {
-            ratios: ratios(&cases, grouping),
-            lost: all_lost,
-            cases,
-        }
+        curves.ratios = ratios(&curves.cases, grouping);
+        curves
     }
 }
 
-/// A shot that has speed and time.
+/// The speed by which a shot is grouped: the programmed one, if it is known.
+#[derive(Clone, Copy)]
+struct GroupSpeed {
+    m_s: f64,
+    is_programmed: bool,
+}
+
+impl GroupSpeed {
+    fn new(shot: &Shot) -> Option<Self> {
+        let own = shot.true_speed().map(|speed| speed.value);
+        Some(Self {
+            m_s: shot.programmed_speed_m_s.or(own)?,
+            is_programmed: shot.programmed_speed_m_s.is_some(),
+        })
+    }
+
+    fn is_same(&self, other: &Self, gap_m_s: f64) -> bool {
+        let gap_m_s = if self.is_programmed { 0.0 } else { gap_m_s };
+        self.is_programmed == other.is_programmed && (self.m_s - other.m_s).abs() <= gap_m_s
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Timed<'a> {
-    at: At,
+    group: GroupSpeed,
     speed: Estimate,
-    programmed: Option<f64>,
     flight: &'a Flight,
     counts: bool,
 }
 
 impl<'a> Timed<'a> {
-    fn of(shot: &'a Shot, grouping: &Grouping) -> Option<Self> {
+    fn new(shot: &'a Shot, grouping: &Grouping) -> Option<Self> {
         Some(Self {
-            at: At::of(shot)?,
+            group: GroupSpeed::new(shot)?,
             speed: shot.true_speed()?,
-            programmed: shot.programmed_speed_m_s,
             flight: shot.flight.as_ref().ok()?,
             counts: grouping.keep_dubious || !shot.is_dubious(),
         })
     }
 }
 
+const SPEEDS_UNKNOWN: &str = "errors of speeds are not known and were taken for 0";
+
 impl Case {
-    /// The curve, and speeds at which all shots leave open which maxima are the largest.
-    fn of(name: &str, shots: &[Shot], grouping: &Grouping) -> (Self, Vec<Lost>) {
-        let own: Vec<&Shot> = shots.iter().filter(|shot| shot.case == name).collect();
-        let untimed = own
-            .iter()
-            .filter(|shot| Timed::of(shot, grouping).is_none());
-        let untimed: Vec<At> = untimed.filter_map(|shot| At::of(shot)).collect();
-        let timed = own.iter().filter_map(|shot| Timed::of(shot, grouping));
-        let timed: Vec<Timed<'_>> = timed.collect();
+    /// The curve, and speeds at which no shot counts.
+    fn new(name: &str, shots: &[&Shot], grouping: &Grouping) -> (Self, Vec<UnmeasuredSpeed>) {
         let gap_m_s = grouping.gap_m_s;
-        let (mut rows, mut undecided) = (Vec::new(), Vec::new());
+        let timed = shots.iter().filter_map(|shot| Timed::new(shot, grouping));
+        let timed: Vec<Timed<'_>> = timed.collect();
+        let untimed = shots
+            .iter()
+            .filter(|shot| Timed::new(shot, grouping).is_none());
+        let mut untimed: Vec<GroupSpeed> =
+            untimed.filter_map(|shot| GroupSpeed::new(shot)).collect();
+        let (mut rows, mut none) = (Vec::new(), Vec::<(GroupSpeed, usize)>::new());
         for group in grouped(&timed, gap_m_s) {
-            let of_this = |at: &&At| group.iter().any(|timed| timed.at.is_like(at, gap_m_s));
-            let untimed = untimed.iter().filter(of_this).count();
-            match row(&group, untimed, grouping.keep_dubious) {
+            let before = untimed.len();
+            untimed.retain(|at| !group.iter().any(|shot| shot.group.is_same(at, gap_m_s)));
+            let of_this = before - untimed.len();
+            match row(&group, of_this, grouping.keep_dubious) {
                 Some(row) => rows.push(row),
-                None => undecided.extend(nothing_decided(name, &group)),
+                None => none.extend(group.first().map(|one| (one.group, group.len() + of_this))),
+            }
+        }
+        for at in untimed {
+            match none
+                .iter_mut()
+                .find(|(other, _)| other.is_same(&at, gap_m_s))
+            {
+                Some((_, shots)) => *shots += 1,
+                None => none.push((at, 1)),
             }
         }
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
+        let unmeasured = none.into_iter().map(|(at, shots)| UnmeasuredSpeed {
+            case: name.to_owned(),
+            speed_m_s: at.m_s,
+            shots,
+        });
         let case = Self {
             name: name.to_owned(),
             laws: Laws {
@@ -198,23 +240,9 @@ impl Case {
             },
             rows,
         };
-        (case, undecided)
+        (case, unmeasured.collect())
     }
-}
 
-/// A speed whose shots would count if their largest maxima were known; for others see [`lost`].
-fn nothing_decided(case: &str, group: &[&Timed<'_>]) -> Option<Lost> {
-    let first = group.iter().find(|shot| shot.counts)?;
-    Some(Lost {
-        case: case.to_owned(),
-        speed_m_s: first.programmed.unwrap_or(first.speed.value),
-        shots: group.len(),
-    })
-}
-
-const SPEEDS_UNKNOWN: &str = "errors of speeds are not known and were taken for 0";
-
-impl Case {
     /// Whether points follow a power law of this case within their errors, as
     /// [`PowerLaw::is_supported`].
     ///
@@ -231,63 +259,68 @@ impl Case {
 }
 
 /// Shots of one programmed speed, then those that have none by their speeds.
-fn grouped<'a>(timed: &'a [Timed<'a>], gap_m_s: f64) -> Vec<Vec<&'a Timed<'a>>> {
-    let (programmed, free): (Vec<&Timed<'_>>, Vec<&Timed<'_>>) =
-        timed.iter().partition(|shot| shot.programmed.is_some());
-    let key = |shot: &&Timed<'_>| shot.programmed.unwrap_or(f64::NAN);
-    let mut all = by(&programmed, key, 0.0);
-    all.extend(by(&free, |shot| shot.speed.value, gap_m_s));
-    all
-}
-
-fn by<'a>(
-    shots: &[&'a Timed<'a>],
-    key: impl Fn(&&Timed<'_>) -> f64,
-    gap: f64,
-) -> Vec<Vec<&'a Timed<'a>>> {
-    let keys: Vec<f64> = shots.iter().map(key).collect();
-    let pick = |group: Vec<usize>| group.iter().map(|index| shots[*index]).collect();
-    groups(&keys, gap).into_iter().map(pick).collect()
+fn grouped<'a>(timed: &[Timed<'a>], gap_m_s: f64) -> Vec<Vec<Timed<'a>>> {
+    let by = |programmed: bool, gap_m_s: f64| -> Vec<Vec<Timed<'a>>> {
+        let of = timed
+            .iter()
+            .filter(|shot| shot.group.is_programmed == programmed);
+        let of: Vec<Timed<'_>> = of.copied().collect();
+        let speeds: Vec<f64> = of.iter().map(|shot| shot.group.m_s).collect();
+        let pick = |group: Vec<usize>| group.iter().map(|index| of[*index]).collect();
+        groups(&speeds, gap_m_s).into_iter().map(pick).collect()
+    };
+    [by(true, 0.0), by(false, gap_m_s)].concat()
 }
 
 /// Of shots of one speed, and of how many more that have no time or speed.
-fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
-    let counted: Vec<&Timed<'_>> = group.iter().copied().filter(|shot| shot.counts).collect();
+fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
+    let counted: Vec<&Timed<'_>> = group.iter().filter(|shot| shot.counts).collect();
     let own: Vec<&Flight> = counted.iter().map(|shot| shot.flight).collect();
     let mut resolved = match keep_dubious {
         true => own.iter().map(|flight| Some(**flight)).collect(),
         false => resolve_ambiguous(&own),
     };
-    let timed = |flight: &&Flight| flight.reflected_s.is_some();
+    let has_return = |flight: &Flight| flight.reflected_s.is_some();
+    let ambiguous = own.iter().zip(&resolved).filter(|(own, now)| {
+        let without = now.as_ref().is_some_and(|now| !has_return(now));
+        without && has_return(own)
+    });
+    let returns_undecided = ambiguous.count();
     let now = resolved.iter().flatten();
-    let few = 2 * now.clone().filter(timed).count() < now.count();
-    let returns_undecided = undecided(&own, &resolved);
+    let few = 2 * now.clone().filter(|f| has_return(f)).count() < now.count();
     if few && !keep_dubious {
         let flights = resolved.iter_mut().flatten();
-        flights.for_each(|flight| *flight = without_return(flight));
+        flights.for_each(|flight| *flight = flight.without_return());
     }
     let pairs = counted.iter().zip(&resolved);
     let counted: Vec<Timed<'_>> = pairs
         .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
         .collect();
-    let returns = counted.iter().filter(|shot| timed(&shot.flight)).count();
+    let returns = counted
+        .iter()
+        .filter(|shot| has_return(shot.flight))
+        .count();
     let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
         let values = counted.iter().filter_map(|shot| value(shot.flight));
         summary(&values.collect::<Vec<_>>())
     };
-    let exact = |value: f64| Estimate { value, sigma: 0.0 };
+    let width = |kind: PulseKind| {
+        of(&|flight| {
+            let value = flight.picks.pulse(kind)?.width_s;
+            Some(Estimate { value, sigma: 0.0 })
+        })
+    };
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
     let speed_m_s = mean_speed(&speeds)?;
-    let speed_error_shots = if are_known(&speeds) { 0 } else { speeds.len() };
     let moved = [0, 1].map(|time| at_speed(&counted, speed_m_s, time));
     let incident_s = of(&|flight| Some(flight.incident_s))?;
     let reflected_s = of(&|flight| flight.reflected_s);
     let errors = |back: Summary| [incident_s.error, back.error];
     Some(SpeedRow {
         speed_m_s,
-        speed_error_shots,
-        shared_s: [shared_s(&counted, 0), shared_s(&counted, 1)],
-        at_mean_speed_s: moved.map(|of| of.map(AtSpeed::estimate)),
+        speed_error_shots: if are_known(&speeds) { 0 } else { speeds.len() },
+        shared_s: [0, 1].map(|time| shared_s(&counted, time)),
+        at_mean_speed_s: moved.map(|of| of.map(TimeAtSpeed::estimate)),
         correlation: reflected_s.and_then(|back| both_times(&counted, None).of_means(errors(back))),
         correlation_at_mean_speed: correlation_at_speed(&counted, speed_m_s, moved),
         shots: (counted.len(), untimed + group.len() - counted.len()),
@@ -297,32 +330,8 @@ fn row(group: &[&Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<Speed
         reflected_s,
         wall_over_incident: of(&|flight| Some(flight.wall_over_incident))?,
         reflected_over_incident: of(&|flight| flight.reflected_over_incident),
-        widths_s: [
-            of(&|flight| Some(exact(flight.picks.incident.width_s))),
-            of(&|flight| Some(exact(flight.picks.wall.width_s))),
-            of(&|flight| Some(exact(flight.picks.reflected?.width_s))),
-        ],
+        widths_s: PulseKind::ALL.map(width),
     })
-}
-
-/// Number of flights whose reflected pulse's maximum stays ambiguous.
-fn undecided(own: &[&Flight], resolved: &[Option<Flight>]) -> usize {
-    let pairs = own.iter().zip(resolved);
-    let ambiguous = pairs.filter(|(own, now)| {
-        let now = now.is_some_and(|now| now.reflected_s.is_none());
-        now && own.reflected_s.is_some()
-    });
-    ambiguous.count()
-}
-
-/// The same shot without its reflected pulse.
-fn without_return(flight: &Flight) -> Flight {
-    let mut flight = *flight;
-    flight.reflected_s = None;
-    flight.covariance_s2 = 0.0;
-    flight.reflected_over_incident = None;
-    flight.picks.reflected = None;
-    flight
 }
 
 /// The mean of measured speeds is the mean of these very shots' speeds, whatever
@@ -346,15 +355,17 @@ fn are_known(speeds: &[Estimate]) -> bool {
 
 /// Systematic error of the mean of this time over all shots that have it.
 fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
-    let has = |shot: &&Timed<'_>| time == 0 || shot.flight.reflected_s.is_some();
-    let own = shots.iter().filter(has);
-    let own: Vec<[Systematic; 2]> = own.map(|shot| shot.flight.systematic()[time]).collect();
-    mean_systematic(&own)
+    let flights = shots.iter().map(|shot| shot.flight);
+    let own = flights.filter(|flight| flight.times_s()[time].is_some());
+    mean_systematic(
+        &own.map(|flight| flight.systematic()[time])
+            .collect::<Vec<_>>(),
+    )
 }
 
 /// Mean of times that are taken to one speed, and the parts of its error.
 #[derive(Clone, Copy)]
-struct AtSpeed {
+struct TimeAtSpeed {
     mean_s: f64,
     /// Variance in s² by the errors of picking, as far as shots do not share them.
     picking_s2: f64,
@@ -366,7 +377,7 @@ struct AtSpeed {
     of_speed_s: f64,
 }
 
-impl AtSpeed {
+impl TimeAtSpeed {
     fn estimate(self) -> Estimate {
         let alone = (self.picking_s2 + self.excess_s2).sqrt();
         Estimate {
@@ -384,9 +395,9 @@ fn to_speed(shot: &Timed<'_>, speed_m_s: Estimate) -> f64 {
 /// Mean of times that are taken to one speed, with the error of what scatters besides
 /// measured speeds: their errors are the mean speed's, and count there. At least
 /// that of picking; and what all shots share on top.
-fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtSpeed> {
+fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<TimeAtSpeed> {
     let moved = |shot: &Timed<'_>| {
-        let of = [Some(shot.flight.incident_s), shot.flight.reflected_s][time]?;
+        let of = shot.flight.times_s()[time]?;
         let factor = to_speed(shot, speed_m_s);
         Some(Estimate {
             value: factor * of.value,
@@ -399,7 +410,7 @@ fn at_speed(shots: &[Timed<'_>], speed_m_s: Estimate, time: usize) -> Option<AtS
     let picking_s2 = squares / (summary.count as f64).powi(2);
     let of_speed_s = EXPONENT * summary.mean * speed_m_s.sigma / speed_m_s.value;
     let besides = summary.error.powi(2) - of_speed_s.powi(2);
-    Some(AtSpeed {
+    Some(TimeAtSpeed {
         mean_s: summary.mean,
         picking_s2,
         excess_s2: (besides - picking_s2).max(0.0),
@@ -428,7 +439,7 @@ fn both_times(shots: &[Timed<'_>], speed_m_s: Option<Estimate>) -> Pairs {
 fn correlation_at_speed(
     shots: &[Timed<'_>],
     speed_m_s: Estimate,
-    moved: [Option<AtSpeed>; 2],
+    moved: [Option<TimeAtSpeed>; 2],
 ) -> Option<f64> {
     let [forth, back] = [moved[0]?, moved[1]?];
     let pairs = both_times(shots, Some(speed_m_s));

@@ -1,10 +1,13 @@
 //! Errors of reading, writing and measuring records.
 
+use crate::signal::PulseKind;
 use std::io;
 use std::path::Path;
 
-/// Why a file, a record or a list of shots cannot be used: what, where and the remedy.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why a file, a record, samples, points or a list of shots cannot be used: what, where and the
+/// remedy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeasureError {
     /// The operating system cannot read the file.
     #[error("{0}: cannot be read: {1}")]
@@ -33,6 +36,40 @@ pub enum MeasureError {
     /// A list of shots is malformed.
     #[error("{0}")]
     List(String),
+    /// Fewer samples, the first number, than the computation needs.
+    #[error("{0} samples are too few: at least {1} are needed")]
+    TooShort(usize, usize),
+    /// A sample, by its number from 0, is not a number, infinite, or so large that its square
+    /// overflows.
+    #[error(
+        "sample {0} is {1}: not a finite number of sensible size; cut the record before it, or \
+         repair it"
+    )]
+    NotFinite(usize, f64),
+    /// All samples are equal.
+    #[error("all samples equal {0}: nothing was recorded; is the channel connected?")]
+    Constant(f64),
+    /// The largest swing over the noise is too small, both after averaging over four samples.
+    #[error("no pulse: the largest swing is {0:.1} times the noise, 6 are needed")]
+    NoPulse(f64),
+    /// Columns or channels of different lengths.
+    #[error("{0}")]
+    Lengths(String),
+    /// An option, by its name, with its value and what is accepted.
+    #[error("{0} is {1}: expected {2}")]
+    Option(&'static str, f64, &'static str),
+    /// A pulse that the computation needs was not found.
+    #[error("the {0} pulse was not found")]
+    Missing(PulseKind),
+    /// The method found no maximum, or no crossing, where the pulse is.
+    #[error("the {0} pulse has no {1} where it was looked for")]
+    NoPick(PulseKind, &'static str),
+    /// Fewer than two different abscissas.
+    #[error("a power law needs at least two different abscissas")]
+    TooFew,
+    /// A point, by its number from 0, has no logarithm.
+    #[error("point {0} is not positive and finite")]
+    NotPositive(usize),
 }
 
 impl MeasureError {
@@ -73,6 +110,35 @@ impl MeasureError {
         );
         Self::Samples(source, detail)
     }
+
+    pub(crate) fn require(
+        accepted: bool,
+        name: &'static str,
+        value: f64,
+        expected: &'static str,
+    ) -> Result<(), Self> {
+        let error = Self::Option(name, value, expected);
+        accepted.then_some(()).ok_or(error)
+    }
+
+    pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Self> {
+        let accepted = value > 0.0 && value.is_finite();
+        Self::require(accepted, name, value, "a positive, finite number")
+    }
+
+    pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Self> {
+        (found >= needed)
+            .then_some(())
+            .ok_or(Self::TooShort(found, needed))
+    }
+}
+
+/// Rejects samples that are not finite numbers or whose squares, summed, would overflow.
+pub(crate) fn all_finite(samples: &[f64]) -> Result<(), MeasureError> {
+    let bad = samples.iter().position(|x| x.is_nan() || x.abs() >= 1e140);
+    bad.map_or(Ok(()), |index| {
+        Err(MeasureError::NotFinite(index, samples[index]))
+    })
 }
 
 /// A path in messages.

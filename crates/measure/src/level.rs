@@ -1,9 +1,10 @@
-//! Shots cut out of a recording where it passes a level.
+//! Shots cut out of a recording that comes in pieces, where it passes a level.
 
 use crate::MeasureError;
-use crate::records::{Channel, Record, Samples};
-use crate::signal::{Cutter, Segment, Trigger, median};
+use crate::records::{Channel, Record, extremes};
+use crate::signal::median;
 use std::collections::VecDeque;
+use std::ops::Range;
 
 /// A level trigger, as an oscilloscope has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,33 +15,197 @@ pub struct Level {
     pub samples: Option<usize>,
 }
 
-/// Length of a shot in s if nobody says: three times what a wave takes along
-/// forty balls of steel and back.
+/// Length of a shot in s by default: three times what a wave takes along forty balls of steel and
+/// back.
 const SHOT_S: f64 = 10e-3;
-
 /// Share of a shot that lies before it passes the level.
 const BEFORE: f64 = 0.1;
+/// Samples of a recording that its baseline is computed from.
+const BASELINE: usize = 4096;
+/// Samples tested together: enough to keep the processor busy without a branch each.
+const STRIDE: usize = 64;
 
-/// Samples of a recording that tell its baseline.
-const LOOKED_AT: usize = 4096;
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LevelTrigger {
+    level: f64,
+    /// Whether signals fall through it rather than rise.
+    falling: bool,
+    /// How far the signal must have returned before it can fire again.
+    hysteresis: f64,
+    /// Samples of a shot before the one that fires, and in all.
+    before: usize,
+    length: usize,
+    /// Samples after one firing before which there is no other; at least the shot's own.
+    hold_off: u64,
+}
+
+impl LevelTrigger {
+    fn check(&self) -> Result<(), MeasureError> {
+        let (level, hysteresis) = (self.level, self.hysteresis);
+        let name = "level of the trigger";
+        MeasureError::require(level.is_finite(), name, level, "a finite number")?;
+        let name = "hysteresis of the trigger";
+        MeasureError::require(hysteresis >= 0.0, name, hysteresis, "0 or more")?;
+        let after = self.length as f64 - self.before as f64;
+        MeasureError::positive("number of samples of a shot after its trigger", after)
+    }
+
+    fn sign(self) -> f64 {
+        if self.falling { -1.0 } else { 1.0 }
+    }
+
+    fn fires(self, x: f64) -> bool {
+        self.sign() * x >= self.sign() * self.level
+    }
+
+    fn is_back(self, x: f64) -> bool {
+        self.sign() * x < self.sign() * self.level - self.hysteresis
+    }
+}
+
+/// The range of a shot in a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Segment {
+    /// Numbers of its samples in the recording, from 0: fewer than the trigger's length at the
+    /// recording's end, and soon after its beginning or another shot.
+    samples: Range<u64>,
+    /// Number of the sample that fired.
+    trigger: u64,
+}
+
+/// Locates the shots of a recording that is fed piece by piece. Results do not depend on how the
+/// recording was divided; the caller keeps the samples from [`Cutter::needed_from`] on.
+#[derive(Debug)]
+struct Cutter {
+    trigger: LevelTrigger,
+    /// Number of the next sample, and end of the last shot.
+    position: u64,
+    free_from: u64,
+    state: TriggerState,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum TriggerState {
+    /// Not armed before this sample, nor before the signal has returned.
+    Resting(u64),
+    Armed,
+    /// In a shot that fired at this sample.
+    Collecting(u64),
+}
+
+impl Cutter {
+    fn new(trigger: LevelTrigger) -> Result<Self, MeasureError> {
+        trigger.check()?;
+        Ok(Self {
+            trigger,
+            position: 0,
+            free_from: 0,
+            state: TriggerState::Resting(0),
+        })
+    }
+
+    /// The shots that end in the next piece of the recording.
+    fn feed(&mut self, piece: &[f64]) -> Vec<Segment> {
+        let (mut left, mut shots) = (piece, Vec::new());
+        while !left.is_empty() {
+            let used = match self.state {
+                TriggerState::Collecting(fired) => self.collect(left.len(), fired, &mut shots),
+                TriggerState::Resting(until) => self.rest(left, until),
+                TriggerState::Armed => self.wait(left),
+            };
+            left = left.get(used..).unwrap_or_default();
+        }
+        shots
+    }
+
+    /// The shot that the recording's end cut short.
+    fn finish(&self) -> Option<Segment> {
+        let TriggerState::Collecting(trigger) = self.state else {
+            return None;
+        };
+        let samples = self.begins(trigger)..self.position;
+        Some(Segment { samples, trigger })
+    }
+
+    /// The first sample that a shot still to come may have.
+    fn needed_from(&self) -> u64 {
+        self.begins(match self.state {
+            TriggerState::Collecting(fired) => fired,
+            TriggerState::Resting(_) | TriggerState::Armed => self.position,
+        })
+    }
+
+    fn begins(&self, fires: u64) -> u64 {
+        let before = self.trigger.before as u64;
+        fires.saturating_sub(before).max(self.free_from)
+    }
+
+    /// Continues the current shot; returns how many samples it took.
+    fn collect(&mut self, left: usize, trigger: u64, shots: &mut Vec<Segment>) -> usize {
+        let end = trigger + (self.trigger.length - self.trigger.before) as u64;
+        let wanted = end - self.position;
+        if wanted > left as u64 {
+            self.position += left as u64;
+            return left;
+        }
+        let samples = self.begins(trigger)..end;
+        shots.push(Segment { samples, trigger });
+        (self.position, self.free_from) = (end, end);
+        let until = trigger.saturating_add(self.trigger.hold_off);
+        self.state = TriggerState::Resting(end.max(until));
+        wanted as usize
+    }
+
+    fn rest(&mut self, left: &[f64], until: u64) -> usize {
+        let waiting = until.saturating_sub(self.position);
+        let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
+        let back = first(&left[skip..], |x| self.trigger.is_back(x));
+        if back.is_some() {
+            self.state = TriggerState::Armed;
+        }
+        let used = back.map_or(left.len(), |at| skip + at);
+        self.position += used as u64;
+        used
+    }
+
+    fn wait(&mut self, left: &[f64]) -> usize {
+        let fires = first(left, |x| self.trigger.fires(x));
+        let used = fires.unwrap_or(left.len());
+        self.position += used as u64;
+        if fires.is_some() {
+            self.state = TriggerState::Collecting(self.position);
+        }
+        used
+    }
+}
+
+/// First sample for which `test` holds.
+fn first(samples: &[f64], test: impl Fn(f64) -> bool) -> Option<usize> {
+    for (number, chunk) in samples.chunks(STRIDE).enumerate() {
+        // Without early exit inside, so that it runs many samples at a time.
+        if chunk.iter().fold(false, |any, x| any | test(*x)) {
+            let at = chunk.iter().position(|x| test(*x))?;
+            return Some(number * STRIDE + at);
+        }
+    }
+    None
+}
 
 /// The shots of recordings that come in pieces, one recording after the other.
 pub(crate) struct AtLevel<I> {
     pieces: I,
     level: Level,
     shots: u64,
-    /// The recording that is being cut.
     under_way: Option<UnderWay>,
     ready: VecDeque<Result<Record, MeasureError>>,
 }
 
 /// A recording that is being cut.
 struct UnderWay {
-    /// Its first piece without samples.
     head: Record,
     cutter: Cutter,
     /// Pieces that a shot still to come may need.
-    kept: VecDeque<Record>,
+    stored: VecDeque<Record>,
     /// Lowest and highest voltage until a shot was found.
     extremes_v: (f64, f64),
     found: bool,
@@ -57,23 +222,33 @@ impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
         }
     }
 
-    fn piece(&mut self, piece: Record) {
+    fn piece(&mut self, piece: Record) -> Result<(), MeasureError> {
         if piece.first_sample == 0 {
             self.finish();
-            match UnderWay::new(&piece, self.level) {
-                Ok(begun) => self.under_way = Some(begun),
-                Err(error) => self.ready.push_back(Err(error)),
-            }
+            self.under_way = Some(UnderWay::new(&piece, self.level)?);
         }
         if let Some(under_way) = &mut self.under_way {
-            under_way.feed(piece, &mut self.shots, &mut self.ready);
+            let cut = under_way.feed(piece);
+            under_way.shots(&cut, &mut self.shots, &mut self.ready);
+            under_way.drop_old();
         }
+        Ok(())
     }
 
-    /// The end of a recording.
     fn finish(&mut self) {
-        if let Some(mut ended) = self.under_way.take() {
-            ended.finish(self.level, &mut self.shots, &mut self.ready);
+        let Some(mut ended) = self.under_way.take() else {
+            return;
+        };
+        let last: Vec<Segment> = ended.cutter.finish().into_iter().collect();
+        ended.shots(&last, &mut self.shots, &mut self.ready);
+        if !ended.found {
+            let (low_v, high_v) = ended.extremes_v;
+            let detail = format!(
+                "never passes the level of {} V; its samples lie between {low_v:.4} and {high_v:.4} V",
+                self.level.volts
+            );
+            let error = MeasureError::Shots(ended.head.source, detail);
+            self.ready.push_back(Err(error));
         }
     }
 }
@@ -83,16 +258,13 @@ impl<I: Iterator<Item = Result<Record, MeasureError>>> Iterator for AtLevel<I> {
 
     fn next(&mut self) -> Option<Self::Item> {
         while self.ready.is_empty() {
-            match self.pieces.next() {
-                Some(Ok(piece)) => self.piece(piece),
-                Some(Err(error)) => {
-                    self.finish();
-                    self.ready.push_back(Err(error));
-                }
-                None => {
-                    self.finish();
-                    break;
-                }
+            let Some(piece) = self.pieces.next() else {
+                self.finish();
+                break;
+            };
+            if let Err(error) = piece.and_then(|piece| self.piece(piece)) {
+                self.finish();
+                self.ready.push_back(Err(error));
             }
         }
         self.ready.pop_front()
@@ -103,15 +275,12 @@ impl UnderWay {
     fn new(piece: &Record, level: Level) -> Result<Self, MeasureError> {
         let usual = (SHOT_S / piece.interval_s).round() as usize;
         let length = level.samples.unwrap_or(usual.max(1));
-        let volts = piece
-            .channels
-            .first()
-            .map(|channel| channel.samples.volts());
-        let volts = volts.unwrap_or_default();
-        let stride = volts.len().div_ceil(LOOKED_AT).max(1);
+        let channel = piece.channels.first();
+        let volts = channel.map_or(&[][..], |channel| &channel.volts);
+        let stride = volts.len().div_ceil(BASELINE).max(1);
         let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
         let baseline_v = median(&some).unwrap_or(0.0);
-        let cutter = Cutter::new(Trigger {
+        let cutter = Cutter::new(LevelTrigger {
             level: level.volts,
             falling: level.volts < baseline_v,
             hysteresis: 0.5 * (level.volts - baseline_v).abs(),
@@ -124,99 +293,60 @@ impl UnderWay {
             cutter: cutter.map_err(|cause| {
                 MeasureError::Shots(piece.source.clone(), format!("cannot be cut: {cause}"))
             })?,
-            kept: VecDeque::new(),
+            stored: VecDeque::new(),
             extremes_v: (f64::INFINITY, f64::NEG_INFINITY),
             found: false,
         })
     }
 
-    fn feed(
-        &mut self,
-        piece: Record,
-        shots: &mut u64,
-        ready: &mut VecDeque<Result<Record, MeasureError>>,
-    ) {
-        self.kept.push_back(piece);
-        let mut cut = Vec::new();
-        let newest = self.kept.back().and_then(|piece| piece.channels.first());
-        let Some(Channel { samples, .. }) = newest else {
-            return;
+    fn feed(&mut self, piece: Record) -> Vec<Segment> {
+        self.stored.push_back(piece);
+        let newest = self.stored.back().and_then(|piece| piece.channels.first());
+        let Some(Channel { volts, .. }) = newest else {
+            return Vec::new();
         };
         if !self.found {
-            let (low, high) = samples.extremes_v();
+            let (low, high) = extremes(volts.iter().copied());
             self.extremes_v = (self.extremes_v.0.min(low), self.extremes_v.1.max(high));
         }
-        match samples {
-            Samples::Volts(volts) => self.cutter.feed(volts, |volt| volt, |one| cut.push(one)),
-            Samples::Counts {
-                counts,
-                volts_per_count,
-                offset_v,
-            } => {
-                let volts = |count| f64::from(count) * volts_per_count + offset_v;
-                self.cutter.feed(counts, volts, |one| cut.push(one));
-            }
-        }
-        self.hand_out(&cut, shots, ready);
-        let needed_from = self.cutter.needed_from();
-        self.kept
-            .retain(|piece| piece.first_sample + piece.len() as u64 > needed_from);
+        self.cutter.feed(volts)
     }
 
-    fn hand_out(
+    /// The shots that were cut out, by their numbers in the file.
+    fn shots(
         &mut self,
         cut: &[Segment],
-        shots: &mut u64,
+        number: &mut u64,
         ready: &mut VecDeque<Result<Record, MeasureError>>,
     ) {
         self.found |= !cut.is_empty();
-        for segment in cut {
-            *shots += 1;
-            ready.push_back(Ok(self.shot(*shots, segment)));
+        for Segment { samples, trigger } in cut {
+            *number += 1;
+            let fired_s = *trigger as f64 * self.head.interval_s;
+            let mut shot = Record {
+                source: format!("{}, shot {number} at {fired_s:.4} s", self.head.source),
+                shot: Some(*number),
+                ..self.head.clone()
+            };
+            for piece in &self.stored {
+                let first = piece.first_sample;
+                let within = |at: u64| (at.saturating_sub(first) as usize).min(piece.len());
+                let (from, to) = (within(samples.start), within(samples.end));
+                if from < to {
+                    shot.append(piece, from, to - from);
+                }
+            }
+            ready.push_back(Ok(shot));
         }
     }
 
-    /// A shot that was cut out, by its number in the file.
-    fn shot(&self, number: u64, segment: &Segment) -> Record {
-        let fired_s = segment.trigger as f64 * self.head.interval_s;
-        let mut shot = Record {
-            source: format!("{}, shot {number} at {fired_s:.4} s", self.head.source),
-            shot: Some(number),
-            ..self.head.clone()
-        };
-        for piece in &self.kept {
-            add(&mut shot, piece, segment);
-        }
-        shot
-    }
-
-    fn finish(
-        &mut self,
-        level: Level,
-        shots: &mut u64,
-        ready: &mut VecDeque<Result<Record, MeasureError>>,
-    ) {
-        let mut cut = Vec::new();
-        self.cutter.finish(|one| cut.push(one));
-        self.hand_out(&cut, shots, ready);
-        if !self.found {
-            let (low_v, high_v) = self.extremes_v;
-            let detail = format!(
-                "never passes the level of {} V; its samples lie between {low_v:.4} and {high_v:.4} V",
-                level.volts
-            );
-            let source = self.head.source.clone();
-            ready.push_back(Err(MeasureError::Shots(source, detail)));
-        }
+    fn drop_old(&mut self) {
+        let needed_from = self.cutter.needed_from();
+        let end = |piece: &Record| piece.first_sample + piece.len() as u64;
+        self.stored.retain(|piece| end(piece) > needed_from);
     }
 }
 
-/// Adds what a piece has of a shot.
-fn add(shot: &mut Record, piece: &Record, segment: &Segment) {
-    let first = piece.first_sample;
-    let within = |sample: u64| (sample.saturating_sub(first) as usize).min(piece.len());
-    let (from, to) = (within(segment.samples.start), within(segment.samples.end));
-    if from < to {
-        shot.append(piece, from, to - from);
-    }
-}
+#[cfg(test)]
+#[path = "tests/cutting.rs"]
+mod tests;

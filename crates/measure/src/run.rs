@@ -1,19 +1,20 @@
 //! Recordings into shots, over threads, in the order in which they came.
 
+use crate::error::file_name;
 use crate::level::AtLevel;
 use crate::records::{Parts, ReadOptions, Record, read};
-use crate::several::{Content, content};
+use crate::separation::{Content, content};
 use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
-use crate::speeds::Speeds;
 use crate::{Example, Level, MeasureError, Shot, ShotList};
+use indexmap::IndexMap;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Samples that are read before they are measured together: enough for all
-/// threads, and some 100 MB at most.
+/// Samples that are read before they are measured together: enough for all threads, and some
+/// 100 MB at most.
 const BATCH: usize = 1 << 22;
 
-/// Samples of a recording that are looked through for a level at a time.
+/// Samples of a recording that are searched for a level at a time.
 const PIECE: usize = 1 << 20;
 
 /// How recordings are read and measured.
@@ -23,8 +24,8 @@ pub struct Options {
     pub reading: ReadOptions,
     /// How recordings that hold several shots are cut, unless `reading` does.
     pub cutting: Cut,
-    /// How pulses are found and picked. Without a high-pass of its own, that of which a
-    /// recording tells is taken out of it.
+    /// How pulses are found and picked. Without a high-pass of its own, the one that a recording
+    /// states is corrected.
     pub measuring: SignalOptions,
     /// Whether the droop of such a high-pass stays in the recording.
     pub keep_droop: bool,
@@ -32,7 +33,7 @@ pub struct Options {
     pub keep_low_pass: bool,
     /// Speeds and cases of files.
     pub list: Option<ShotList>,
-    /// Standard error of speeds in m/s where nobody else tells one.
+    /// Standard error of speeds in m/s where neither file nor list states one.
     pub speed_error_m_s: Option<f64>,
 }
 
@@ -55,7 +56,7 @@ pub struct Measurement {
     pub shots: Vec<Shot>,
     /// What could not be read.
     pub refused: Vec<MeasureError>,
-    /// What was taken for granted, and of which files.
+    /// Assumptions, and of which files.
     pub notes: Vec<Note>,
     /// The amplifier's low-pass that maxima were corrected for.
     pub bandwidth: Option<Bandwidth>,
@@ -65,7 +66,7 @@ pub struct Measurement {
     pub examples: Vec<Example>,
 }
 
-/// Something that was taken for granted.
+/// An assumption.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// What, and how to say otherwise.
@@ -74,7 +75,7 @@ pub struct Note {
     pub files: Vec<PathBuf>,
 }
 
-/// Who follows a measurement, from any thread.
+/// Progress of a measurement, from any thread.
 pub trait Watch: Sync {
     /// A record is done.
     fn seen(&self) {}
@@ -85,16 +86,18 @@ pub trait Watch: Sync {
     }
 }
 
-/// Nobody.
 impl Watch for () {}
 
-type Read = Box<dyn Iterator<Item = Result<Record, (PathBuf, MeasureError)>>>;
+/// A record, or why there is none and in which file.
+type Read = Result<Record, (PathBuf, MeasureError)>;
 
-/// Reads and measures recordings while somebody may watch.
+/// A shot, and where it begins and ends in a record that was cut.
+type Done = (Shot, Option<(usize, usize)>);
+
+/// Reads and measures recordings.
 ///
-/// Holds two batches of records at a time, one being read while the other is
-/// measured: a recording may be larger than memory. Results do not depend on the
-/// number of threads.
+/// Holds two batches of records at a time, one being read while the other is measured: a recording
+/// may be larger than memory. Results do not depend on the number of threads.
 #[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
     let mut measurement = Measurement {
@@ -103,8 +106,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
     };
     let records = files.iter().flat_map(|file| records(file, options));
     let mut records = records.take_while(|_| !watch.stopped());
-    let mut refused = Vec::new();
-    let mut speeds = Speeds::default();
+    let (mut refused, mut speeds) = (Vec::new(), IndexMap::new());
     let mut batch = gather(&mut records, &mut refused);
     while !batch.is_empty() {
         let mut done = Vec::new();
@@ -114,13 +116,24 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
             gather(&mut records, &mut refused)
         });
         for (shots, record) in done.into_iter().zip(batch) {
-            speeds.hear(&record);
-            measurement.keep(shots, &record, options);
+            if !record.speeds_m_s.is_empty() {
+                speeds
+                    .entry(record.file.clone())
+                    .or_insert_with(|| record.speeds_m_s.clone());
+            }
+            measurement.add(shots, &record, options);
         }
         batch = next;
     }
     let (of_files, refused): (Vec<PathBuf>, Vec<MeasureError>) = refused.into_iter().unzip();
-    speeds.deal(&mut measurement, options, &of_files);
+    for (file, speeds_m_s) in speeds {
+        // Shots of equal length keep their numbers where others were refused, maybe the last ones.
+        let missing = match options.reading.parts {
+            Parts::Shots(_) => of_files.iter().filter(|other| **other == file).count(),
+            _ => 0,
+        };
+        measurement.assign_speeds(&file, &speeds_m_s, missing as u64, options);
+    }
     measurement.refused.splice(0..0, refused);
     measurement.note_spikes();
     if let Some(list) = &options.list {
@@ -130,32 +143,27 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
 }
 
 /// The records of a file, cut at a level if one is given.
-fn records(file: &Path, options: &Options) -> Read {
+fn records(file: &Path, options: &Options) -> Box<dyn Iterator<Item = Read>> {
     let of = file.to_owned();
     let refused = move |error: MeasureError| (of.clone(), error);
-    match options.cutting {
-        Cut::Level(level) => {
-            let pieces = ReadOptions {
-                parts: Parts::Pieces(PIECE),
-                ..options.reading.clone()
-            };
-            let cut = AtLevel::new(read(file, &pieces), level);
-            Box::new(cut.map(move |record| record.map_err(&refused)))
-        }
-        _ => {
-            let records = read(file, &options.reading);
-            Box::new(records.map(move |record| record.map_err(&refused)))
-        }
-    }
+    let Cut::Level(level) = options.cutting else {
+        let records = read(file, &options.reading);
+        return Box::new(records.map(move |record| record.map_err(&refused)));
+    };
+    let pieces = ReadOptions {
+        parts: Parts::Pieces(PIECE),
+        ..options.reading.clone()
+    };
+    let cut = AtLevel::new(read(file, &pieces), level);
+    Box::new(cut.map(move |record| record.map_err(&refused)))
 }
 
 /// The next records that can be read, as many as are measured together.
 fn gather(
-    records: &mut dyn Iterator<Item = Result<Record, (PathBuf, MeasureError)>>,
+    records: &mut dyn Iterator<Item = Read>,
     refused: &mut Vec<(PathBuf, MeasureError)>,
 ) -> Vec<Record> {
-    let mut batch = Vec::new();
-    let mut waiting = 0;
+    let (mut batch, mut waiting) = (Vec::new(), 0);
     while waiting < BATCH {
         match records.next() {
             None => break,
@@ -169,29 +177,22 @@ fn gather(
     batch
 }
 
-/// A shot, and where it begins and ends in a record that was cut.
-type Done = (Shot, Option<(usize, usize)>);
-
 fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<Done>> {
     let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
-        let volts = volts(record);
         let found = match searched {
-            true => content(&volts),
+            true => content(&record.channels),
             false => Content::One,
         };
         if let Content::Plain(ranges) = found {
             let part = |(from, to)| {
                 let part = record.part(from, to - from);
-                let volts = self::volts(&part);
-                (Shot::of(&part, &volts, options), Some((from, to)))
+                (Shot::measure(&part, options), Some((from, to)))
             };
             return ranges.into_iter().map(part).collect();
         }
-        let shot = Shot {
-            holds_several: found == Content::Mixed,
-            ..Shot::of(record, &volts, options)
-        };
+        let mut shot = Shot::measure(record, options);
+        shot.holds_several = found == Content::Mixed;
         vec![(shot, None)]
     };
     let watched = |record: &Record| {
@@ -205,63 +206,45 @@ fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<D
     batch.par_iter().map(watched).collect()
 }
 
-/// The corner in Hz of the high-pass whose droop is taken out because the recording tells of it.
-pub(crate) fn told_high_pass_hz(record: &Record, options: &Options) -> Option<f64> {
-    let nobody_says = options.measuring.high_pass_s.is_none() && !options.keep_droop;
-    record.high_pass_hz.filter(|hz| nobody_says && *hz > 0.0)
+/// The corner in Hz of the high-pass that is corrected because the recording states it.
+pub(crate) fn stated_high_pass_hz(record: &Record, options: &Options) -> Option<f64> {
+    let is_free = options.measuring.high_pass_s.is_none() && !options.keep_droop;
+    record.high_pass_hz.filter(|hz| is_free && *hz > 0.0)
 }
 
 /// The amplifier's low-pass that maxima are corrected for because the recording states it.
 pub(crate) fn stated_bandwidth(record: &Record, options: &Options) -> Option<Bandwidth> {
     let measuring = &options.measuring;
-    let asked = measuring.bandwidth.is_some() || options.keep_low_pass;
-    let low_pass = record.low_pass.filter(|_| !asked)?;
-    (measuring.method == Method::Maximum).then_some(Bandwidth {
-        corner_hz: low_pass.corner_hz,
-        order: low_pass.order,
-    })
-}
-
-/// Every channel of a record in V.
-fn volts(record: &Record) -> Vec<Vec<f64>> {
-    let channels = record.channels.iter();
-    channels.map(|channel| channel.samples.volts()).collect()
+    let is_free = measuring.bandwidth.is_none() && !options.keep_low_pass;
+    let is_maximum = measuring.method == Method::Maximum;
+    record.low_pass.filter(|_| is_free && is_maximum)
 }
 
 impl Measurement {
-    fn keep(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
-        for note in &record.notes {
-            self.note(note, &record.file);
-        }
-        if let Some(corner_hz) = told_high_pass_hz(record, options) {
-            self.note(
-                &format!(
-                    "states that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
-                     corrected; --ac-coupling states another corner, 0 leaves the droop"
-                ),
-                &record.file,
-            );
-        }
+    fn add(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
+        let several = shots.len() > 1;
+        let mut notes = record.notes.clone();
+        notes.extend(stated_high_pass_hz(record, options).map(|corner_hz| {
+            format!(
+                "states that its amplifier had a high-pass of {corner_hz} Hz, whose droop is \
+                 corrected; --ac-coupling states another corner, 0 leaves the droop"
+            )
+        }));
         if let Some(bandwidth) = stated_bandwidth(record, options) {
             self.bandwidth.get_or_insert(bandwidth);
             let Bandwidth { corner_hz, order } = bandwidth;
-            self.note(
-                &format!(
-                    "states that its amplifier had a low-pass of {corner_hz} Hz, order {order}, \
-                     which maxima are corrected for; --low-pass states another corner, 0 leaves \
-                     times as they are"
-                ),
-                &record.file,
-            );
+            notes.push(format!(
+                "states that its amplifier had a low-pass of {corner_hz} Hz, order {order}, which \
+                 maxima are corrected for; --low-pass states another corner, 0 leaves times as they \
+                 are"
+            ));
         }
-        if shots.len() > 1 {
-            self.note(
-                "several shots with quiet between them were cut apart; --whole keeps a record one \
-                 shot, --level and --shot-samples cut otherwise",
-                &record.file,
-            );
-        }
-        let several = shots.len() > 1;
+        notes.extend(several.then(|| {
+            "several shots with quiet between them were cut apart; --whole keeps a record one shot, \
+             --level and --shot-samples cut otherwise"
+                .to_owned()
+        }));
+        notes.iter().for_each(|note| self.note(note, &record.file));
         for (mut shot, range) in shots {
             if several {
                 let of_file = self.shots.iter().rev();
@@ -270,23 +253,54 @@ impl Measurement {
                 shot.shot = Some(number);
                 shot.source = format!("{}, shot {number}", record.source);
             }
-            shot.name(record.speed_error_m_s, options);
-            if shot.flight.is_ok() && !self.has_example(&shot.case) {
-                self.examples.push(Example::of(&shot, record, range));
+            shot.identify(record.speed_error_m_s, options);
+            let mut examples = self.examples.iter();
+            let is_new = !examples.any(|example| example.shot.case == shot.case);
+            if shot.flight.is_ok() && is_new {
+                self.examples.push(Example::new(&shot, record, range));
             }
             self.shots.push(shot);
         }
     }
 
     fn note(&mut self, text: &str, file: &Path) {
-        let known = self.notes.iter_mut().find(|note| note.text == text);
-        match known {
+        match self.notes.iter_mut().find(|note| note.text == text) {
             Some(note) if note.files.last().is_some_and(|last| last == file) => {}
             Some(note) => note.files.push(file.to_owned()),
             None => self.notes.push(Note {
                 text: text.to_owned(),
                 files: vec![file.to_owned()],
             }),
+        }
+    }
+
+    /// Assigns the shots of a file its speeds, in order, once all of them are cut out. Where there
+    /// are not as many speeds as shots, those that the list does not name have none.
+    fn assign_speeds(&mut self, file: &Path, speeds: &[f64], missing: u64, options: &Options) {
+        let number = |shot: &Shot| shot.shot.unwrap_or(1);
+        let of_file = |shot: &&mut Shot| shot.file == file;
+        let shots: Vec<&mut Shot> = self.shots.iter_mut().filter(of_file).collect();
+        let found = shots.iter().map(|shot| number(shot)).max().unwrap_or(0);
+        if !(found..=found + missing).contains(&(speeds.len() as u64)) {
+            if shots.iter().any(|shot| shot.speed_m_s.is_none()) {
+                let s = if found == 1 { "" } else { "s" };
+                let detail = format!(
+                    "has {} speeds, and {found} shot{s} were found in it: none was given a speed; \
+                     say which is which with --shots, or cut it otherwise with --level or \
+                     --shot-samples",
+                    speeds.len()
+                );
+                self.refused
+                    .push(MeasureError::Shots(file_name(file), detail));
+            }
+            return;
+        }
+        let examples = self.examples.iter_mut().map(|example| &mut example.shot);
+        for shot in shots.into_iter().chain(examples.filter(of_file)) {
+            let speed = speeds
+                .get((number(shot) as usize).saturating_sub(1))
+                .copied();
+            shot.set_speed(speed.filter(|speed| speed.is_finite()), options);
         }
     }
 
@@ -299,24 +313,14 @@ impl Measurement {
             });
             counts.sum::<usize>()
         };
+        let samples: usize = self.shots.iter().map(of).sum();
         let spiked = self.shots.iter().filter(|shot| of(shot) > 0);
-        let (shots, samples) = (
-            spiked.clone().count(),
-            spiked.clone().map(of).sum::<usize>(),
-        );
         let files: Vec<PathBuf> = spiked.map(|shot| shot.file.clone()).collect();
         let text = format!(
-            "{samples} samples of spikes in {shots} shots were replaced by what their neighbours \
-             say; the flags of these shots count them"
+            "{samples} samples of spikes in {} shots were replaced by what their neighbours say; \
+             the flags of these shots count them",
+            files.len()
         );
-        for file in files {
-            self.note(&text, &file);
-        }
-    }
-
-    fn has_example(&self, case: &str) -> bool {
-        self.examples
-            .iter()
-            .any(|example| example.shot.case == case)
+        files.iter().for_each(|file| self.note(&text, file));
     }
 }

@@ -1,12 +1,12 @@
 //! One measured shot.
 
-use crate::Options;
 use crate::records::Record;
-use crate::run::{stated_bandwidth, told_high_pass_hz};
+use crate::run::{stated_bandwidth, stated_high_pass_hz};
 use crate::signal::{
-    Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, QualityFlag, SignalError,
+    Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, PulseKind, QualityFlag,
     SignalOptions,
 };
+use crate::{MeasureError, Options};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -14,22 +14,22 @@ use std::path::PathBuf;
 /// What was measured on one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
-    /// Which file and which shot in it, as it is told to people.
+    /// File and shot, for messages.
     pub source: String,
-    /// Which file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Number of the shot, if the file holds several or says.
     pub shot: Option<u64>,
-    /// Which section of the chain was wet and with what; empty if nobody says.
+    /// Which section of the chain was wet and with what; empty if unknown.
     pub case: String,
-    /// Speed that the striker was told, in m/s.
+    /// Programmed speed of the striker in m/s.
     pub programmed_speed_m_s: Option<f64>,
-    /// Speed of the striker in m/s, sigma 0 if nobody says.
+    /// Speed of the striker in m/s, sigma 0 if unknown.
     pub speed_m_s: Option<Estimate>,
     /// Time between samples in s.
     pub interval_s: f64,
     /// Times of flight, heights, widths; or why there are none.
-    pub flight: Result<Flight, SignalError>,
+    pub flight: Result<Flight, MeasureError>,
     /// What is doubtful.
     pub doubts: Vec<QualityFlag>,
     /// Whether its recorder waited for a trigger in vain.
@@ -43,25 +43,31 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// Measures one record, given its channels in V.
-    pub(crate) fn of(record: &Record, volts: &[Vec<f64>], options: &Options) -> Self {
-        let measuring = &options.measuring;
-        let told_s = told_high_pass_hz(record, options).map(|hz| (TAU * hz).recip());
-        let channels = match volts {
-            [sensor, wall, ..] => Channels::Separate { sensor, wall },
-            one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
+    pub(crate) fn measure(record: &Record, options: &Options) -> Self {
+        let asked = &options.measuring;
+        let stated_s = stated_high_pass_hz(record, options).map(|hz| (TAU * hz).recip());
+        let channels = match record.channels.as_slice() {
+            [sensor, wall, ..] => Channels::Separate {
+                sensor: &sensor.volts,
+                wall: &wall.volts,
+            },
+            one => Channels::Summed(one.first().map_or(&[], |one| &one.volts)),
+        };
+        let range = |channel: usize| {
+            let (low, high) = record.channels.get(channel)?.range_v?;
+            Some(DigitiserRange { low, high })
         };
         let measuring = SignalOptions {
             find: FindOptions {
-                range: measuring.find.range.or_else(|| range(record, 0)),
-                wall_range: measuring.find.wall_range.or_else(|| range(record, 1)),
-                ..measuring.find
+                range: asked.find.range.or_else(|| range(0)),
+                wall_range: asked.find.wall_range.or_else(|| range(1)),
+                ..asked.find
             },
-            high_pass_s: measuring.high_pass_s.or(told_s),
-            bandwidth: measuring
+            high_pass_s: asked.high_pass_s.or(stated_s),
+            bandwidth: asked
                 .bandwidth
                 .or_else(|| stated_bandwidth(record, options)),
-            ..measuring.clone()
+            ..asked.clone()
         };
         let measured = crate::signal::measure(channels, record.interval_s, &measuring);
         let (flight, doubts) = match measured {
@@ -72,15 +78,11 @@ impl Shot {
             }
             Err(error) => (Err(error), Vec::new()),
         };
-        let gap_in_pulse = flight
-            .as_ref()
-            .is_ok_and(|flight| record.gaps.iter().any(|gap| lies_in(gap, flight, record)));
+        let in_pulse = |flight: &Flight| record.gaps.iter().any(|gap| lies_in(gap, flight, record));
+        let filled = record.gaps.iter().map(Range::len).sum();
         Self {
-            gaps: record.gaps.first().map(|first| {
-                let all: usize = record.gaps.iter().map(Range::len).sum();
-                (all, first.start)
-            }),
-            gap_in_pulse,
+            gaps: record.gaps.first().map(|first| (filled, first.start)),
+            gap_in_pulse: flight.as_ref().is_ok_and(in_pulse),
             source: record.source.clone(),
             file: record.file.clone(),
             shot: record.shot,
@@ -95,74 +97,69 @@ impl Shot {
         }
     }
 
-    /// Takes over what the list says of it.
-    pub(crate) fn name(&mut self, error_m_s: Option<f64>, options: &Options) {
+    pub(crate) fn identify(&mut self, error_m_s: Option<f64>, options: &Options) {
         let list = options.list.as_ref();
         let entry = list.and_then(|list| list.find(&self.file, self.shot));
-        let listed_m_s = entry.and_then(|entry| entry.speed_m_s);
-        let listed_error_m_s = entry.and_then(|entry| entry.speed_error_m_s);
+        let listed = entry.map(|entry| (entry.speed_m_s, entry.speed_error_m_s));
+        let (speed_m_s, listed_error_m_s) = listed.unwrap_or_default();
         let error_m_s = listed_error_m_s.or(error_m_s).or(options.speed_error_m_s);
-        let speed_m_s = listed_m_s.or(self.speed_m_s.map(|speed| speed.value));
-        self.speed_m_s = speed_m_s.map(|value| Estimate {
-            value,
-            sigma: error_m_s.unwrap_or(0.0),
-        });
+        let speed_m_s = speed_m_s.or(self.speed_m_s.map(|speed| speed.value));
+        let sigma = error_m_s.unwrap_or(0.0);
+        self.speed_m_s = speed_m_s.map(|value| Estimate { value, sigma });
         if let Some(case) = entry.and_then(|entry| entry.case.clone()) {
             self.case = case;
         }
     }
 
-    /// Takes the speed that its file tells, unless the list tells one.
-    pub(crate) fn take(&mut self, speed_m_s: Option<f64>, options: &Options) {
+    /// Sets the speed that its file states, unless the list states one.
+    pub(crate) fn set_speed(&mut self, speed_m_s: Option<f64>, options: &Options) {
         self.speed_m_s = speed_m_s.map(|value| Estimate { value, sigma: 0.0 });
-        self.name(None, options);
+        self.identify(None, options);
     }
 
-    /// Whether its times may be of something else than the wave: a clipped
-    /// pulse or one with a gap, or pulses of which one may be lost or that may have been taken for one another
-    /// or be of several shots.
+    /// Whether its times may be of something else than the wave: a clipped pulse or one with a gap,
+    /// pulses taken for one another or of several shots, or a missing one.
     #[must_use]
     pub fn is_dubious(&self) -> bool {
         self.holds_several || self.gap_in_pulse || self.doubts.iter().any(QualityFlag::is_grave)
     }
 
-    /// Its speed, if that is one: a photogate with a large error may tell speeds below zero.
+    /// Its speed, if it is above 0, below which a photogate with a large error may come.
     pub(crate) fn true_speed(&self) -> Option<Estimate> {
         self.speed_m_s.filter(|speed| speed.value > 0.0)
     }
 
-    /// What is doubtful, as it is told to people.
+    /// What is doubtful, in words.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
-        let none = self.speed_m_s.filter(|_| self.true_speed().is_none());
-        let none = none.map(|speed| {
-            let speed = speed.value;
-            format!("a measured speed of {speed:.4} m/s is none: left out of curves")
-        });
-        let several = "several shots: cut the recording with --level or --shot-samples";
-        let several = self.holds_several.then(|| several.to_owned());
-        let untriggered =
-            "no trigger: its level was never passed, and the record may not hold the shot";
-        let untriggered = self.untriggered.then(|| untriggered.to_owned());
-        let gaps = self.gaps.map(|(count, first)| {
+        let mut remarks = Vec::new();
+        if let (Some(Estimate { value, .. }), None) = (self.speed_m_s, self.true_speed()) {
+            let remark = format!("a measured speed of {value:.4} m/s is none: left out of curves");
+            remarks.push(remark);
+        }
+        if self.holds_several {
+            let remark = "several shots: cut the recording with --level or --shot-samples";
+            remarks.push(remark.to_owned());
+        }
+        if self.untriggered {
+            let remark =
+                "no trigger: its level was never passed, and the record may not hold the shot";
+            remarks.push(remark.to_owned());
+        }
+        if let Some((count, first)) = self.gaps {
             let (are, were) = if count == 1 {
                 (" is", "was")
             } else {
                 ("s are", "were")
             };
             let inside = if self.gap_in_pulse { " in a pulse" } else { "" };
-            format!(
+            remarks.push(format!(
                 "{count} sample{are} no number{inside}, from sample {} on, and {were} filled",
                 first + 1
-            )
-        });
-        let doubts = self.doubts.iter().map(ToString::to_string);
-        let of_record = none
-            .into_iter()
-            .chain(several)
-            .chain(untriggered)
-            .chain(gaps);
-        of_record.chain(doubts).collect()
+            ));
+        }
+        remarks.extend(self.doubts.iter().map(ToString::to_string));
+        remarks
     }
 
     /// What is doubtful and what is missing, as one text.
@@ -187,32 +184,23 @@ pub struct Example {
 
 impl Example {
     /// A shot of a record, of which it may be a part.
-    pub(crate) fn of(shot: &Shot, record: &Record, range: Option<(usize, usize)>) -> Self {
+    pub(crate) fn new(shot: &Shot, record: &Record, range: Option<(usize, usize)>) -> Self {
         let (from, to) = range.unwrap_or((0, record.len()));
         let channels = record.part(from, to - from).channels;
         Self {
             shot: shot.clone(),
-            volts: channels.iter().map(|c| c.samples.volts()).collect(),
-            names: channels.into_iter().map(|c| c.name).collect(),
+            names: channels.iter().map(|c| c.name.clone()).collect(),
+            volts: channels.into_iter().map(|c| c.volts).collect(),
         }
     }
 }
 
 /// Whether a gap is within a width and a half of a pulse's time.
 fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
-    let picks = &flight.picks;
-    let pulses = [Some(picks.incident), Some(picks.wall), picks.reflected];
+    let pulses = PulseKind::ALL.map(|kind| flight.picks.pulse(kind));
     pulses.into_iter().flatten().any(|pulse| {
-        let (from, to) = (
-            pulse.time_s - 1.5 * pulse.width_s,
-            pulse.time_s + 1.5 * pulse.width_s,
-        );
-        gap.end as f64 * record.interval_s > from && (gap.start as f64) * record.interval_s < to
+        let (at, reach) = (pulse.time_s, 1.5 * pulse.width_s);
+        let [from, to] = [gap.start, gap.end].map(|sample| sample as f64 * record.interval_s);
+        to > at - reach && from < at + reach
     })
-}
-
-/// The converter's range, where the channel tells.
-fn range(record: &Record, channel: usize) -> Option<DigitiserRange> {
-    let (low, high) = record.channels.get(channel)?.samples.range_v()?;
-    Some(DigitiserRange { low, high })
 }

@@ -1,41 +1,54 @@
 //! Results as CSV, in SI.
 
 use crate::records::no_formula;
-use crate::signal::{Estimate, Flight, Picked, PowerLaw, Ratio, Summary};
-use crate::{Case, Curves, Lost, Shot, SpeedRow};
+use crate::signal::{Estimate, Flight, PowerLaw, PulseKind, Ratio, Summary};
+use crate::{Case, Curves, Shot, SpeedRow, UnmeasuredSpeed};
 use std::io::{self, Write};
 use std::iter::once;
 
-/// A number in a cell; empty where there is none.
-fn cell(value: Option<f64>) -> String {
+/// Titles with the cells of one line; of a line of nothing only its titles count.
+type Line = Vec<(String, String)>;
+
+/// A number; an empty cell where there is none.
+fn number(title: &str, value: Option<f64>) -> (String, String) {
     let finite = value.filter(|value| value.is_finite());
-    finite.map_or(String::new(), |value| format!("{value:e}"))
+    let cell = finite.map_or(String::new(), |value| format!("{value:e}"));
+    (title.to_owned(), cell)
 }
 
-/// A text in a cell.
-fn quoted(text: &str) -> String {
-    let text = no_formula(text);
-    match text.contains([',', '"', '\n', '\r']) {
+fn words(title: &str, text: Option<impl ToString>) -> (String, String) {
+    let text = text.map_or(String::new(), |text| text.to_string());
+    let text = no_formula(&text);
+    let cell = match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.into_owned(),
-    }
+    };
+    (title.to_owned(), cell)
 }
 
-fn both(estimate: Option<Estimate>) -> [String; 2] {
+fn estimate(title: &str, error: &str, of: Option<Estimate>) -> [(String, String); 2] {
     [
-        cell(estimate.map(|e| e.value)),
-        cell(estimate.map(|e| e.sigma)),
+        number(title, of.map(|of| of.value)),
+        number(error, of.map(|of| of.sigma)),
     ]
 }
 
-fn line(cells: impl IntoIterator<Item = String>) -> String {
-    cells.into_iter().collect::<Vec<_>>().join(",") + "\n"
+/// The lines of a table, with that of its titles.
+fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item = String> {
+    let joined = |cells: Vec<String>| cells.join(",") + "\n";
+    let cells = move |line: Line| joined(line.into_iter().map(|cell| cell.1).collect());
+    let titles = titles.into_iter().map(|cell| cell.0).collect();
+    once(joined(titles)).chain(lines.map(cells))
 }
 
 /// One line a shot.
 #[must_use]
 pub fn shots_csv(shots: &[Shot]) -> String {
-    shot_lines(shots).collect()
+    table(
+        shot_line(None),
+        shots.iter().map(|shot| shot_line(Some(shot))),
+    )
+    .collect()
 }
 
 /// Writes the same line by line: recordings may have any number of shots.
@@ -43,171 +56,174 @@ pub fn shots_csv(shots: &[Shot]) -> String {
 /// # Errors
 /// Those of what is written to.
 pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
-    shot_lines(shots).try_for_each(|line| out.write_all(line.as_bytes()))
+    let mut lines = table(
+        shot_line(None),
+        shots.iter().map(|shot| shot_line(Some(shot))),
+    );
+    lines.try_for_each(|line| out.write_all(line.as_bytes()))
 }
 
-fn shot_lines(shots: &[Shot]) -> impl Iterator<Item = String> {
-    let titles = "file,shot,case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s,\
-                    tof_reflected_s,tof_reflected_sigma_s,tof_correlation,wall_over_passing,\
-                    wall_over_passing_sigma,returning_over_passing,returning_over_passing_sigma,\
-                    passing_peak_v,wall_peak_v,returning_peak_v,\
-                    passing_width_s,wall_width_s,returning_width_s,flags\n"
-        .to_owned();
-    once(titles).chain(shots.iter().map(shot_line))
-}
+const PULSES: [(&str, PulseKind); 3] = [
+    ("passing", PulseKind::Incident),
+    ("wall", PulseKind::Wall),
+    ("returning", PulseKind::Reflected),
+];
 
-fn shot_line(shot: &Shot) -> String {
-    let flight = shot.flight.as_ref().ok();
-    let picks = flight.map(|flight| &flight.picks);
-    let picked = [
-        picks.map(|picks| picks.incident),
-        picks.map(|picks| picks.wall),
-        picks.and_then(|picks| picks.reflected),
+fn shot_line(shot: Option<&Shot>) -> Line {
+    let flight = shot.and_then(|shot| shot.flight.as_ref().ok());
+    let picked = |kind| flight.and_then(|flight| flight.picks.pulse(kind));
+    let mut line = vec![
+        words("file", shot.map(|shot| shot.file.display())),
+        words("shot", shot.and_then(|shot| shot.shot)),
+        words("case", shot.map(|shot| &shot.case)),
     ];
-    let each = |of: fn(&Picked) -> f64| picked.map(|picked| cell(picked.as_ref().map(of)));
-    let name = [
-        quoted(&shot.file.display().to_string()),
-        shot.shot.map_or(String::new(), |shot| shot.to_string()),
-        quoted(&shot.case),
-    ];
-    let cells = name
-        .into_iter()
-        .chain(both(shot.speed_m_s))
-        .chain(both(flight.map(|flight| flight.incident_s)))
-        .chain(both(flight.and_then(|flight| flight.reflected_s)))
-        .chain([cell(flight.and_then(Flight::correlation))])
-        .chain(both(flight.map(|flight| flight.wall_over_incident)))
-        .chain(both(
+    line.extend(estimate(
+        "speed_m_s",
+        "speed_sigma_m_s",
+        shot.and_then(|shot| shot.speed_m_s),
+    ));
+    for (at, time) in ["incident", "reflected"].into_iter().enumerate() {
+        let value = flight.and_then(|flight| flight.times_s()[at]);
+        line.extend(estimate(
+            &format!("tof_{time}_s"),
+            &format!("tof_{time}_sigma_s"),
+            value,
+        ));
+    }
+    line.push(number(
+        "tof_correlation",
+        flight.and_then(Flight::correlation),
+    ));
+    for (name, ratio) in [
+        ("wall", flight.map(|flight| flight.wall_over_incident)),
+        (
+            "returning",
             flight.and_then(|flight| flight.reflected_over_incident),
-        ))
-        .chain(each(|picked| picked.height))
-        .chain(each(|picked| picked.width_s))
-        .chain([quoted(&shot.flags())]);
-    line(cells)
+        ),
+    ] {
+        let title = format!("{name}_over_passing");
+        line.extend(estimate(&title, &format!("{title}_sigma"), ratio));
+    }
+    let height = |(name, kind)| number(&format!("{name}_peak_v"), picked(kind).map(|p| p.height));
+    line.extend(PULSES.map(height));
+    let width = |(name, kind)| number(&format!("{name}_width_s"), picked(kind).map(|p| p.width_s));
+    line.extend(PULSES.map(width));
+    line.push(words("flags", shot.map(Shot::flags)));
+    line
 }
 
 /// One line a case and speed; last those at which no shot counts, without times.
 #[must_use]
 pub fn speeds_csv(curves: &Curves) -> String {
-    let mut text = "case,speed_m_s,speed_error_m_s,shots,left_out".to_owned();
-    for name in [
-        "tof_incident_s",
-        "tof_reflected_s",
-        "wall_over_passing",
-        "returning_over_passing",
-    ] {
-        text += &format!(",{name},{name}_deviation,{name}_error,{name}_count");
-    }
-    text += ",passing_width_s,wall_width_s,returning_width_s";
-    text += ",tof_incident_shared_s,tof_reflected_shared_s";
-    for time in ["tof_incident", "tof_reflected"] {
-        text += &format!(",{time}_at_mean_speed_s,{time}_at_mean_speed_s_error");
-    }
-    text += ",speed_error_shots,returns_undecided,returns_missing";
-    text += ",tof_correlation,tof_at_mean_speed_correlation\n";
-    for case in &curves.cases {
-        text.extend(case.rows.iter().map(|row| speed_line(&case.name, row)));
-    }
-    let cells = text
-        .lines()
-        .next()
-        .map_or(0, |titles| titles.split(',').count());
-    text.extend(curves.lost.iter().map(|lost| lost_line(lost, cells)));
-    text
+    let rows = curves.cases.iter().flat_map(|case| {
+        let rows = case.rows.iter();
+        rows.map(|row| speed_line(Some(&case.name), Some(row), None))
+    });
+    let unmeasured = curves.unmeasured.iter();
+    let unmeasured = unmeasured.map(|of| speed_line(Some(&of.case), None, Some(of)));
+    table(speed_line(None, None, None), rows.chain(unmeasured)).collect()
 }
 
-/// All its shots are left out, and what would be told of the others is empty.
-fn lost_line(lost: &Lost, cells: usize) -> String {
-    let told = [
-        quoted(&lost.case),
-        cell(Some(lost.speed_m_s)),
-        String::new(),
-        "0".to_owned(),
-        lost.shots.to_string(),
-    ];
-    let empty = std::iter::repeat_n(String::new(), cells.saturating_sub(told.len()));
-    line(told.into_iter().chain(empty))
-}
-
-fn speed_line(case: &str, row: &SpeedRow) -> String {
-    let summarised = |summary: Option<Summary>| {
-        [
-            cell(summary.map(|s| s.mean)),
-            cell(summary.map(|s| s.deviation)),
-            cell(summary.map(|s| s.error)),
-            summary.map_or(String::new(), |s| s.count.to_string()),
-        ]
+fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&UnmeasuredSpeed>) -> Line {
+    let mut line = vec![words("case", case)];
+    let exact = |value| Estimate {
+        value,
+        sigma: f64::NAN,
     };
-    let cells = [quoted(case)]
-        .into_iter()
-        .chain(both(Some(row.speed_m_s)))
-        .chain([row.shots.0.to_string(), row.shots.1.to_string()])
-        .chain(summarised(Some(row.incident_s)))
-        .chain(summarised(row.reflected_s))
-        .chain(summarised(Some(row.wall_over_incident)))
-        .chain(summarised(row.reflected_over_incident))
-        .chain(row.widths_s.map(|width| cell(width.map(|w| w.mean))))
-        .chain(row.shared_s.map(|shared_s| cell(Some(shared_s))))
-        .chain(row.at_mean_speed_s.into_iter().flat_map(both))
-        .chain([
-            row.speed_error_shots.to_string(),
-            row.returns_undecided.to_string(),
-            row.returns_missing.to_string(),
-            cell(row.correlation),
-            cell(row.correlation_at_mean_speed),
+    let speed = row
+        .map(|row| row.speed_m_s)
+        .or(none.map(|of| exact(of.speed_m_s)));
+    line.extend(estimate("speed_m_s", "speed_error_m_s", speed));
+    let shots = row.map(|row| row.shots).or(none.map(|of| (0, of.shots)));
+    line.push(words("shots", shots.map(|shots| shots.0)));
+    line.push(words("left_out", shots.map(|shots| shots.1)));
+    let mut summarised = |title: &str, of: Option<Summary>| {
+        line.extend([
+            number(title, of.map(|of| of.mean)),
+            number(&format!("{title}_deviation"), of.map(|of| of.deviation)),
+            number(&format!("{title}_error"), of.map(|of| of.error)),
+            words(&format!("{title}_count"), of.map(|of| of.count)),
         ]);
-    line(cells)
+    };
+    summarised("tof_incident_s", row.map(|row| row.incident_s));
+    summarised("tof_reflected_s", row.and_then(|row| row.reflected_s));
+    summarised("wall_over_passing", row.map(|row| row.wall_over_incident));
+    summarised(
+        "returning_over_passing",
+        row.and_then(|row| row.reflected_over_incident),
+    );
+    for (at, (name, _)) in PULSES.into_iter().enumerate() {
+        let width = row.and_then(|row| row.widths_s[at]);
+        line.push(number(
+            &format!("{name}_width_s"),
+            width.map(|width| width.mean),
+        ));
+    }
+    let times = ["tof_incident", "tof_reflected"].into_iter().enumerate();
+    for (at, time) in times.clone() {
+        let shared_s = row.map(|row| row.shared_s[at]);
+        line.push(number(&format!("{time}_shared_s"), shared_s));
+    }
+    for (at, time) in times {
+        let title = format!("{time}_at_mean_speed_s");
+        let moved = row.and_then(|row| row.at_mean_speed_s[at]);
+        line.extend(estimate(&title, &format!("{title}_error"), moved));
+    }
+    line.extend([
+        words("speed_error_shots", row.map(|row| row.speed_error_shots)),
+        words("returns_undecided", row.map(|row| row.returns_undecided)),
+        words("returns_missing", row.map(|row| row.returns_missing)),
+        number("tof_correlation", row.and_then(|row| row.correlation)),
+        number(
+            "tof_at_mean_speed_correlation",
+            row.and_then(|row| row.correlation_at_mean_speed),
+        ),
+    ]);
+    line
 }
 
 /// One line a power law: of each case incident and reflected times of flight. It is supported or
-/// not, or that is unknown; empty where nothing judges it.
-/// Errors follow from those of the points, as they are; where the law is not
-/// supported, they are too small by √(chi-square/degrees of freedom).
+/// not, or that is unknown; empty without chi-square. Errors follow from those of the points; where
+/// the law is not supported, they are too small by √(chi-square/degrees of freedom).
 #[must_use]
 pub fn laws_csv(curves: &Curves) -> String {
-    let mut text = "case,time,prefactor_s,prefactor_error_s,exponent,exponent_error,r_squared,\
-                    chi_square,degrees_of_freedom,probability,supported\n"
-        .to_owned();
-    for case in &curves.cases {
+    let lines = curves.cases.iter().flat_map(|case| {
         let laws = [
             ("incident", &case.laws.incident),
             ("reflected", &case.laws.reflected),
         ];
-        for (time, law) in laws {
-            text.extend(law.iter().map(|law| law_line(case, time, law)));
-        }
-    }
-    text
+        let found = laws.map(|(time, law)| Some((case, time, law.as_ref().ok()?)));
+        found.into_iter().flatten()
+    });
+    table(law_line(None), lines.map(|law| law_line(Some(law)))).collect()
 }
 
-fn law_line(case: &Case, time: &str, law: &PowerLaw) -> String {
-    let judged = law.chi_square.as_ref();
-    let fitted = [
-        law.prefactor,
-        law.prefactor_error,
-        law.exponent,
-        law.exponent_error,
-        law.r_squared,
-    ];
-    let cells = [quoted(&case.name), time.to_owned()]
-        .into_iter()
-        .chain(fitted.map(|value| cell(Some(value))))
-        .chain([
-            cell(judged.map(|judged| judged.value)),
-            judged.map_or(String::new(), |judged| judged.freedom.to_string()),
-            cell(judged.map(|judged| judged.probability)),
-            match case.supports(law) {
-                Ok(supported) => supported.map_or(String::new(), |supported| supported.to_string()),
-                Err(_) => "unknown".to_owned(),
-            },
-        ]);
-    line(cells)
+fn law_line(of: Option<(&Case, &str, &PowerLaw)>) -> Line {
+    let law = of.map(|of| of.2);
+    let chi_square = law.and_then(|law| law.chi_square);
+    let supported = of.and_then(|(case, _, law)| match case.supports(law) {
+        Ok(supported) => supported.map(|supported| supported.to_string()),
+        Err(_) => Some("unknown".to_owned()),
+    });
+    vec![
+        words("case", of.map(|of| &of.0.name)),
+        words("time", of.map(|of| of.1)),
+        number("prefactor_s", law.map(|law| law.prefactor)),
+        number("prefactor_error_s", law.map(|law| law.prefactor_error)),
+        number("exponent", law.map(|law| law.exponent)),
+        number("exponent_error", law.map(|law| law.exponent_error)),
+        number("r_squared", law.map(|law| law.r_squared)),
+        number("chi_square", chi_square.map(|of| of.value)),
+        words("degrees_of_freedom", chi_square.map(|of| of.freedom)),
+        number("probability", chi_square.map(|of| of.probability)),
+        words("supported", supported),
+    ]
 }
 
 /// One line a ratio; last the correlation of its error with that of the other time's ratio.
 #[must_use]
 pub fn ratios_csv(curves: &Curves) -> String {
-    let mut text = "case,time,speed_m_s,ratio,ratio_error,correlation\n".to_owned();
+    let mut lines = Vec::new();
     for wet in &curves.ratios {
         let correlation = |ratio: &Ratio| {
             let speeds = wet.incident.iter().map(|ratio| ratio.speed);
@@ -215,13 +231,20 @@ pub fn ratios_csv(curves: &Curves) -> String {
             both.find_map(|(speed, of)| of.filter(|_| speed == ratio.speed))
         };
         for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
-            let one = |ratio: &Ratio| {
-                let name = [quoted(&wet.case), time.to_owned(), cell(Some(ratio.speed))];
-                let last = [cell(correlation(ratio))];
-                line(name.into_iter().chain(both(Some(ratio.ratio))).chain(last))
-            };
-            text.extend(ratios.iter().map(one));
+            let line = |ratio| ratio_line(Some((&wet.case, time, ratio)), correlation(ratio));
+            lines.extend(ratios.iter().map(line));
         }
     }
-    text
+    table(ratio_line(None, None), lines.into_iter()).collect()
+}
+
+fn ratio_line(of: Option<(&String, &str, &Ratio)>, correlation: Option<f64>) -> Line {
+    let mut line = vec![
+        words("case", of.map(|of| of.0)),
+        words("time", of.map(|of| of.1)),
+        number("speed_m_s", of.map(|of| of.2.speed)),
+    ];
+    line.extend(estimate("ratio", "ratio_error", of.map(|of| of.2.ratio)));
+    line.push(number("correlation", correlation));
+    line
 }

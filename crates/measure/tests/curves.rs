@@ -1,9 +1,10 @@
 //! Records into curves: what counts, what is left out, and in which order.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use hertzchain_measure::records::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::records::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow};
 use hertzchain_measure::signal::{
-    Bandwidth, Flight, QualityFlag, SignalError, SignalOptions, without_systematic,
+    Bandwidth, Flight, QualityFlag, SignalOptions, without_systematic,
 };
 use hertzchain_measure::{Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure};
 use std::fs;
@@ -34,7 +35,7 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
 
 fn info(case: &str, told: &[(&str, &str)]) -> SeriesInfo {
     SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.0,
@@ -279,13 +280,10 @@ fn shots_without_a_time_or_a_speed_of_their_own_are_counted_as_left_out_of_their
     let mut shots = measured(&[series(&folder, "dry", 0.5, 9000.0)]).shots;
     // What a photogate with a large error may tell.
     shots[0].speed_m_s.as_mut().unwrap().value = -0.1;
-    shots[1].flight = Err(SignalError::TooShort {
-        found: 3,
-        needed: 30,
-    });
+    shots[1].flight = Err(MeasureError::TooShort(3, 30));
     let curves = Curves::of(&shots, &Grouping::default());
     assert_eq!(curves.cases[0].rows[0].shots, (3, 2));
-    assert!(curves.lost.is_empty());
+    assert!(curves.unmeasured.is_empty());
     let flags = shots[0].flags();
     assert!(flags.contains("speed of -0.1000 m/s is none"), "{flags}");
 }
@@ -448,7 +446,7 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
     let folder = folder("pieces");
     let path = folder.join("long.h5");
     let info = SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: COUNT_V,
         offset_v: 0.01,

@@ -8,7 +8,7 @@
 mod judged;
 
 use hertzchain_measure::Options;
-use hertzchain_measure::signal::{Coverage, Method, Shape, Template, coverage, median};
+use hertzchain_measure::signal::{Coverage, Method, Shape, coverage, median};
 use judged::{Judged, Speed, TIMES, agreement, by_speed, judge, run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -127,7 +127,7 @@ fn others() -> [(&'static str, Method); 3] {
     let shape = Shape::cos_power(6.0);
     [
         ("onset at 50 %", Method::Onset { fraction: 0.5 }),
-        ("correlation", Method::CrossCorrelation(Template::Incident)),
+        ("correlation", Method::CrossCorrelation),
         ("matched shape", Method::MatchedShape { shape, width: 2.0 }),
     ]
 }

@@ -124,7 +124,7 @@ fn records(
                 continue;
             }
             let speed = speed(&record, told.as_ref(), experiment, arguments);
-            let volts: Vec<Vec<f64>> = record.channels.iter().map(|c| c.samples.volts()).collect();
+            let volts: Vec<Vec<f64>> = record.channels.into_iter().map(|c| c.volts).collect();
             let speeds = (speed, record.programmed_speed_m_s);
             match Pulses::of(&record.source, speeds, record.interval_s, &volts) {
                 Ok(pulses) => good.push(pulses),

@@ -14,9 +14,10 @@ use crate::options::{
 use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_infer::Data;
+use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
 use hertzchain_measure::signal::{
-    Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalError, SignalOptions, Template,
+    Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalOptions,
 };
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Options, Shot, ShotList, speeds_csv,
@@ -296,7 +297,7 @@ fn method(picking: &Picking) -> Method {
         MethodName::Onset => Method::Onset {
             fraction: picking.onset.0,
         },
-        MethodName::Correlation => Method::CrossCorrelation(Template::Incident),
+        MethodName::Correlation => Method::CrossCorrelation,
         MethodName::Shape => Method::MatchedShape {
             shape: Shape::cos_power(POWER),
             width: FITTED_WIDTHS,
@@ -319,7 +320,7 @@ pub fn grouping(arguments: &Arguments) -> Grouping {
 /// # Errors
 /// An option that its records do not take, as a low-pass above half their sampling rate.
 pub fn suits(measured: &Measurement) -> Result<(), Failure> {
-    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(SignalError::Option { .. }));
+    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(MeasureError::Option(..)));
     let first = measured.shots.first();
     let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));
     match error {

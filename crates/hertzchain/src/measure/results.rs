@@ -1,7 +1,9 @@
 //! Everything measured, as JSON in SI.
 
 use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, Ratio, Summary};
-use hertzchain_measure::{Case, Curves, Lost, Measurement, Note, Shot, SpeedRow, WetOverDry};
+use hertzchain_measure::{
+    Case, Curves, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry,
+};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
 use std::io;
@@ -42,7 +44,7 @@ impl Serialize for Report<'_> {
             .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
         all.serialize_entry("low_pass", &low_pass)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
-        all.serialize_entry("lost", &Each(&curves.lost, lost))?;
+        all.serialize_entry("lost", &Each(&curves.unmeasured, lost))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
         all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
         all.serialize_entry(
@@ -64,7 +66,7 @@ impl<T> Serialize for Each<'_, T> {
     }
 }
 
-fn lost(lost: &Lost) -> Value {
+fn lost(lost: &UnmeasuredSpeed) -> Value {
     json!({ "case": lost.case, "speed_m_s": lost.speed_m_s, "shots": lost.shots })
 }
 

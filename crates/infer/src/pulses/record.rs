@@ -1,9 +1,10 @@
 //! One shot's samples, ready to be fitted.
 
 use crate::InferError;
+use hertzchain_measure::MeasureError;
 use hertzchain_measure::signal::{
-    Channels, Estimate, Flight, Normalisation, Polarity, QualityFlag, SignalError, SignalOptions,
-    measure, normalisation, without_spikes,
+    Channels, Estimate, Flight, Normalisation, Polarity, QualityFlag, SignalOptions, measure,
+    normalisation, without_spikes,
 };
 
 /// Samples are used from so many incident times of flight before the passing
@@ -129,7 +130,7 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, I
         [sensor, wall, ..] => Channels::Separate { sensor, wall },
         one => Channels::Summed(one.first().map_or(&[], Vec::as_slice)),
     };
-    let named = |error: SignalError| InferError::Input(format!("{source}: {error}"));
+    let named = |error: MeasureError| InferError::Input(format!("{source}: {error}"));
     let found = measure(channels, interval_s, &SignalOptions::default()).map_err(named)?;
     let grave = found
         .found

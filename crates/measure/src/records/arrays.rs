@@ -1,18 +1,17 @@
-//! Arrays of numbers, alone or several by name in one file: which are samples, and which other
-//! things.
+//! Arrays of numbers, alone or several by name in one file: samples, times, rates and speeds.
 
 use crate::error::{MeasureError, file_name};
-use crate::records::interval::{interval_s, seconds_taken};
+use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{
     MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, numbered,
 };
 use crate::records::read::Raw;
 use crate::records::record::Record;
-use crate::records::stream::Head;
+use crate::records::stored::Head;
 use std::path::Path;
 use std::rc::Rc;
 
-/// Names of numbers that are an interval in s.
+/// Names of numbers that are an interval in s, and a rate in Hz.
 pub(crate) const INTERVALS: &[&str] = &[
     "dt",
     "interval",
@@ -20,7 +19,6 @@ pub(crate) const INTERVALS: &[&str] = &[
     "sampling_interval",
     "sampling_interval_s",
 ];
-/// Names of numbers that are a rate in Hz.
 pub(crate) const RATES: &[&str] = &[
     "fs",
     "rate",
@@ -43,8 +41,8 @@ pub(crate) const TIMES_SEEN: usize = 4096;
 /// Fewer numbers may rise evenly by chance.
 const LEAST_TIMES: usize = 32;
 
-/// Share of a step by which times in single or double precision may be off even ones, besides
-/// single precision's own rounding; and the most that this may be.
+/// Share of a step by which times may be off even ones, besides single precision's own rounding;
+/// and the most that both may be.
 const EVEN: f64 = 1e-3;
 const ROUNDED: f64 = 0.4;
 
@@ -58,7 +56,7 @@ pub(crate) struct Axes {
 
 impl Axes {
     /// The axes of an array of this shape, if it can be one of samples.
-    fn of(shape: &[usize], rows: Rows) -> Option<Self> {
+    fn new(shape: &[usize], rows: Rows) -> Option<Self> {
         let (shots, channels, time) = match (shape, rows) {
             (&[_], _) => (None, None, 0),
             (&[a, b], Rows::Auto) if a <= b => (Some(0), None, 1),
@@ -78,22 +76,14 @@ impl Axes {
 }
 
 /// An array of samples with the meaning of its axes.
-#[derive(Clone, Debug)]
-pub(crate) struct Table {
+pub(crate) struct SampleTable {
     pub axes: Axes,
-    /// Channels that are stored.
-    pub stored: usize,
-    pub shots: usize,
-    /// Samples of a channel in a shot.
-    pub frames: usize,
-    /// Channels that are wanted.
     pub chosen: Vec<usize>,
-    /// What its records share; none is divided yet.
     pub head: Head,
 }
 
-impl Table {
-    pub(crate) fn of(
+impl SampleTable {
+    pub(crate) fn new(
         file: &Path,
         part: Option<String>,
         shape: &[usize],
@@ -103,15 +93,14 @@ impl Table {
         if shape.contains(&0) {
             return Err(MeasureError::empty(file_name(file)));
         }
-        let axes = Axes::of(shape, options.rows_of(shape)).ok_or_else(|| {
+        let axes = Axes::new(shape, options.rows_of(shape)).ok_or_else(|| {
             let detail = format!("of {} axes, {shape:?}, is no table of samples", shape.len());
             MeasureError::malformed(file, "an array", detail)
         })?;
-        let size = |axis: Option<usize>| axis.and_then(|axis| shape.get(axis)).map_or(1, |n| *n);
-        let (stored, shots) = (size(axes.channels), size(axes.shots));
-        let frames = size(Some(axes.time));
-        let names = numbered(stored);
-        let chosen = match stored {
+        let size = |axis: Option<usize>| axis.map_or(1, |axis| shape[axis]);
+        let (rows, frames) = (size(axes.shots), shape[axes.time]);
+        let names = numbered(size(axes.channels));
+        let chosen = match names.len() {
             1 => vec![0],
             _ => chosen(file, &names, options)?,
         };
@@ -121,77 +110,17 @@ impl Table {
             part,
             names: chosen.iter().map(|index| names[*index].clone()).collect(),
             interval_s,
-            total: frames.saturating_mul(shots),
-            row: frames,
-            each: frames,
-            pieces: false,
+            rows,
+            frames,
             note: are_assumed.then(|| {
                 format!(
-                    "each of the {shots} columns, of {frames} samples, was taken for a shot; --rows times \
-                     or --channel says that they are channels"
+                    "each of the {rows} columns, of {frames} samples, was taken for a shot; --rows \
+                     times or --channel says that they are channels"
                 )
             }),
         };
-        Ok(Self {
-            axes,
-            stored,
-            shots,
-            frames,
-            chosen,
-            head,
-        })
+        Ok(Self { axes, chosen, head })
     }
-}
-
-/// An array of which the first column, or row, is times or counts.
-pub(crate) struct TimeColumn {
-    /// How the others are to be read.
-    pub options: ReadOptions,
-    /// Interval in s; `None` of counts.
-    pub interval_s: Option<f64>,
-    pub note: Option<String>,
-}
-
-/// The times among few columns, or few rows, of an array: the first, if it rises evenly, as no
-/// signal does; `open` reads the array.
-pub(crate) fn time_column(
-    shape: &[usize],
-    options: &ReadOptions,
-    open: &dyn Fn(&ReadOptions) -> Result<Raw, MeasureError>,
-) -> Option<TimeColumn> {
-    let &[first, second] = shape else { return None };
-    let (columns, long) = (first.min(second), first.max(second));
-    let rows = match first <= second {
-        true => Rows::Channels,
-        false => Rows::Times,
-    };
-    let may_be = (2..=MOST_COLUMNS).contains(&columns) && long >= LEAST_TIMES;
-    let free = options.rows == Rows::Auto || options.rows == rows;
-    if !may_be || !free || options.channels.iter().any(|name| name == "1") {
-        return None;
-    }
-    let looking = ReadOptions {
-        rows,
-        channels: vec!["1".to_owned()],
-        parts: Parts::Pieces(TIMES_SEEN),
-        ..options.clone()
-    };
-    let record = open(&looking).ok()?.next()?.ok()?;
-    let step = even_step(&record.channels.first()?.samples.volts())?;
-    let interval_s = step_s(step, options);
-    let are_chosen = !options.channels.is_empty() || columns > MOST_CHANNELS + 1;
-    Some(TimeColumn {
-        interval_s,
-        note: interval_s.and_then(|_| seconds_taken("", None, options)),
-        options: ReadOptions {
-            rows,
-            channels: match are_chosen {
-                true => options.channels.clone(),
-                false => numbered(columns).split_off(1),
-            },
-            ..options.clone()
-        },
-    })
 }
 
 /// A step between numbers in s; `None` of counts, which have no unit.
@@ -203,7 +132,7 @@ pub(crate) fn step_s(step: f64, options: &ReadOptions) -> Option<f64> {
 /// The step of numbers that rise evenly; those in single precision are rounded.
 pub(crate) fn even_step(values: &[f64]) -> Option<f64> {
     let (first, last) = (values.first()?, values.last()?);
-    let step = (last - first) / (values.len().checked_sub(1)? as f64);
+    let step = mean_step(values)?;
     let rounding = f64::from(f32::EPSILON) * first.abs().max(last.abs());
     let most = (EVEN * step + rounding).min(ROUNDED * step);
     let even = |(i, value): (usize, &f64)| (value - first - i as f64 * step).abs() <= most;
@@ -211,11 +140,15 @@ pub(crate) fn even_step(values: &[f64]) -> Option<f64> {
     all.then_some(step)
 }
 
+fn mean_step(times: &[f64]) -> Option<f64> {
+    let steps = times.len().checked_sub(1).filter(|steps| *steps > 0)?;
+    Some((times.last()? - times.first()?) / steps as f64)
+}
+
 /// A file of named arrays. Names may be paths.
 pub(crate) trait Arrays {
     fn file(&self) -> &Path;
 
-    /// Names of all arrays of numbers.
     fn names(&self) -> Vec<String>;
 
     fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError>;
@@ -223,7 +156,6 @@ pub(crate) trait Arrays {
     /// All numbers of a small array.
     fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError>;
 
-    /// The records of an array of samples.
     fn records(
         &self,
         name: &str,
@@ -233,6 +165,11 @@ pub(crate) trait Arrays {
 
     /// Sampling interval in s that the file states beside its arrays.
     fn stated_s(&self) -> Option<f64> {
+        None
+    }
+
+    /// Error of a file that ends early, which is reported before a rate is asked for.
+    fn cut_short(&self) -> Option<MeasureError> {
         None
     }
 }
@@ -246,17 +183,18 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
     let of = |known: &[&str]| names.iter().find(|name| known.contains(&last(name)));
     let values = |known| of(known).map(|name| arrays.values(name)).transpose();
     let first = |values: Option<Vec<f64>>| values?.first().copied();
+    let step = |times: Option<Vec<f64>>| mean_step(&times?);
     let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
     let stated_s = first(values(INTERVALS)?)
         .or(first(values(RATES)?).map(f64::recip))
         .or_else(|| arrays.stated_s())
-        .or(times_s.and_then(mean_step));
+        .or(step(times_s));
     let mut note = match (stated_s, of(TIMES)) {
-        (None, Some(name)) => seconds_taken(name, None, options),
+        (None, Some(name)) => seconds_assumed(name, None, options),
         _ => None,
     };
     let unit_s = options.time_unit_s.unwrap_or(1.0);
-    let mut interval = stated_s.or(times.and_then(mean_step).map(|step| step * unit_s));
+    let mut interval = stated_s.or(step(times).map(|step| step * unit_s));
     let speeds = values(SPEEDS)?.unwrap_or_default();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
     let mut samples = names.clone();
@@ -266,29 +204,59 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
         !known.contains(&last(name)) && several()
     });
     let mut read = options.clone();
-    if let Some(times) = only_time_column(&*arrays, &samples, options) {
-        read = times.options;
+    if let Some((others, step)) = time_column(&*arrays, &samples, options) {
+        read = others;
         if interval.is_none() {
-            (interval, note) = (times.interval_s, note.or(times.note));
+            interval = step_s(step, options);
+            note = note.or(interval.and_then(|_| seconds_assumed("", None, options)));
         }
     }
-    let interval_s = interval_s(arrays.file(), interval, options)?;
+    let interval_s = interval_s(arrays.file(), interval, options);
+    let interval_s = interval_s.map_err(|error| arrays.cut_short().unwrap_or(error))?;
     let (records, recordings) = of_samples(&arrays, samples, interval_s, &read)?;
     Ok(with_speeds(records, speeds, recordings, note))
 }
 
-/// Times among the columns of the only array of samples.
-fn only_time_column(
+/// Times among few columns, or few rows, of the only array of samples: the first, if it rises
+/// evenly, as no signal does. How the others are to be read, and the step of the times.
+fn time_column(
     arrays: &dyn Arrays,
     samples: &[String],
     options: &ReadOptions,
-) -> Option<TimeColumn> {
+) -> Option<(ReadOptions, f64)> {
     let [one] = samples else { return None };
-    if options.channels.contains(one) {
+    let &[first, second] = arrays.shape(one).ok()?.as_slice() else {
+        return None;
+    };
+    let (columns, long) = (first.min(second), first.max(second));
+    let rows = match first <= second {
+        true => Rows::Channels,
+        false => Rows::Times,
+    };
+    let may_be = (2..=MOST_COLUMNS).contains(&columns) && long >= LEAST_TIMES;
+    let free = options.rows == Rows::Auto || options.rows == rows;
+    let wanted = |name: &String| name == "1" || name == one;
+    if !may_be || !free || options.channels.iter().any(wanted) {
         return None;
     }
-    let open = |options: &ReadOptions| arrays.records(one, 1.0, options);
-    time_column(&arrays.shape(one).ok()?, options, &open)
+    let looking = ReadOptions {
+        rows,
+        channels: vec!["1".to_owned()],
+        parts: Parts::Pieces(TIMES_SEEN),
+        ..options.clone()
+    };
+    let record = arrays.records(one, 1.0, &looking).ok()?.next()?.ok()?;
+    let step = even_step(&record.channels.first()?.volts)?;
+    let are_chosen = !options.channels.is_empty() || columns > MOST_CHANNELS + 1;
+    let others = ReadOptions {
+        rows,
+        channels: match are_chosen {
+            true => options.channels.clone(),
+            false => numbered(columns).split_off(1),
+        },
+        ..options.clone()
+    };
+    Some((others, step))
 }
 
 /// The last part of a path.
@@ -296,16 +264,9 @@ fn last(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// The mean step of times.
-fn mean_step(times: Vec<f64>) -> Option<f64> {
-    let steps = times.len().checked_sub(1).filter(|steps| *steps > 0)?;
-    Some((times.last()? - times.first()?) / steps as f64)
-}
-
-/// Number of recordings in one array.
 fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, MeasureError> {
     let shape = arrays.shape(name)?;
-    let axes = Axes::of(&shape, options.rows_of(&shape));
+    let axes = Axes::new(&shape, options.rows_of(&shape));
     let rows = axes.and_then(|axes| shape.get(axes.shots?));
     Ok(rows.copied().unwrap_or(1))
 }
@@ -414,15 +375,14 @@ fn one_by_one(
         let opened = arrays.records(&name, interval_s, &options);
         opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
     });
-    Box::new((1..).zip(records).map(|(shot, record)| {
-        record.map(|record| Record {
-            shot: Some(shot),
-            ..record
-        })
+    Box::new((1..).zip(records).map(|(number, record)| {
+        let mut record = record?;
+        record.shot = Some(number);
+        Ok(record)
     }))
 }
 
-/// Gives recordings the speeds of the file in order; pieces of one have the same, and a single
+/// Assigns recordings the speeds of the file in order; pieces of one have the same, and a single
 /// speed is that of all. Speeds of shots that are still to be cut out go with every record.
 fn with_speeds(records: Raw, speeds: Vec<f64>, recordings: usize, note: Option<String>) -> Raw {
     let matched = speeds.len() == recordings;
@@ -440,7 +400,7 @@ fn with_speeds(records: Raw, speeds: Vec<f64>, recordings: usize, note: Option<S
         if !matched && speeds.len() > 1 {
             record.speeds_m_s.clone_from(&speeds);
         }
-        record.notes = note.clone().into_iter().collect();
+        record.notes.extend(note.clone());
         Ok(record)
     }))
 }

@@ -5,7 +5,7 @@
 //! the disk before it gets its name. What a killed program leaves is removed by the next one.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -17,7 +17,6 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 /// What stands between the name of the file and the random letters.
 const MARK: &str = ".hertzchain-";
 
-/// Ending of a file that grows.
 const ENDING: &str = ".part";
 
 /// Random letters: 62¹² names.
@@ -38,7 +37,6 @@ const MOST_TEXT: u64 = 1 << 24;
 /// Most bytes that are read from a pipe or device: 1 GiB.
 const MOST_PIPED: u64 = 1 << 30;
 
-/// Standard input.
 const STDIN: &str = "-";
 
 /// Writes one file: whole, or not at all.
@@ -204,16 +202,18 @@ fn removed(part: &Path) -> bool {
 }
 
 /// Copies of pipes and devices that this program has made.
-#[derive(Default)]
 struct Copies {
-    /// Those that were looked into and not read yet, by the path of their source.
-    unread: HashMap<PathBuf, PathBuf>,
+    /// Those that were peeked at and not read yet, by the path of their source.
+    unread: BTreeMap<PathBuf, PathBuf>,
     folders: Vec<TempDir>,
 }
 
-static COPIES: Mutex<Option<Copies>> = Mutex::new(None);
+static COPIES: Mutex<Copies> = Mutex::new(Copies {
+    unread: BTreeMap::new(),
+    folders: Vec::new(),
+});
 
-fn copies() -> MutexGuard<'static, Option<Copies>> {
+fn copies() -> MutexGuard<'static, Copies> {
     COPIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -251,21 +251,20 @@ pub fn seekable(path: &Path) -> io::Result<PathBuf> {
 pub fn peek(path: &Path) -> io::Result<PathBuf> {
     let file = seekable(path)?;
     if file != path {
-        let mut copies = copies();
-        let unread = &mut copies.get_or_insert_default().unread;
-        unread.insert(path.to_owned(), file.clone());
+        copies().unread.insert(path.to_owned(), file.clone());
     }
     Ok(file)
 }
 
 /// Removes all copies, at the end of a program.
 pub fn remove_copies() {
-    copies().take();
+    copies().unread.clear();
+    copies().folders.clear();
 }
 
 /// A copy that [`peek`] has made, or the path itself.
 fn peeked(path: &Path) -> PathBuf {
-    let copy = copies().as_mut().and_then(|all| all.unread.remove(path));
+    let copy = copies().unread.remove(path);
     copy.unwrap_or_else(|| path.to_owned())
 }
 
@@ -299,7 +298,7 @@ fn copied(path: &Path) -> io::Result<PathBuf> {
         return Err(too_long("what comes from a pipe or device", MOST_PIPED));
     }
     file.flush()?;
-    copies().get_or_insert_default().folders.push(folder);
+    copies().folders.push(folder);
     Ok(copy)
 }
 

@@ -1,18 +1,17 @@
 //! HDF5: datasets of any program, and tables of results.
 
 use crate::error::{MeasureError, file_name};
-use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, Table};
+use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, SampleTable};
 use crate::records::files::{exclusive, persist};
 use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
-use crate::records::record::Samples;
+use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
-use crate::records::stream::{Cut, Stream};
+use crate::records::stored::SampleSource;
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Dataset of the text of a table.
 const ABOUT: &str = "about";
 
 /// Effort of the compression of tables: numbers that follow a curve lose a third of their bytes at
@@ -117,7 +116,6 @@ pub(crate) fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf
     Ok(())
 }
 
-/// The unit that a name ends in.
 pub(crate) fn unit(name: &str) -> &'static str {
     let lower = name.to_ascii_lowercase();
     let found = UNITS.iter().find(|ending| lower.ends_with(ending.0));
@@ -169,17 +167,15 @@ impl Arrays for Datasets {
         let dataset = self.dataset(name)?;
         let shape = dataset.shape();
         let part = Some(name.to_owned());
-        let table = Table::of(&self.file, part, &shape, interval_s, options)?;
-        let rows = Rows {
+        let table = SampleTable::new(&self.file, part, &shape, interval_s, options)?;
+        let slices = Slices {
             file: self.file.clone(),
             name: name.to_owned(),
             dataset,
             axes: table.axes,
             chosen: table.chosen,
-            frames: table.frames,
-            at: 0,
         };
-        Ok(Box::new(Cut::new(table.head.divided(options.parts), rows)))
+        Ok(table.head.records(options.parts, slices))
     }
 
     fn stated_s(&self) -> Option<f64> {
@@ -193,34 +189,40 @@ impl Arrays for Datasets {
 }
 
 /// A dataset, read shot by shot or piece by piece.
-struct Rows {
+struct Slices {
     file: PathBuf,
     name: String,
     dataset: H5Dataset,
     axes: Axes,
     chosen: Vec<usize>,
-    frames: usize,
-    at: usize,
 }
 
-impl Stream for Rows {
-    fn take(&mut self, count: usize) -> Result<Vec<Samples>, MeasureError> {
-        let one = |channel: &usize| self.channel(*channel, count);
-        let taken: Result<Vec<Samples>, Hdf5Error> = self.chosen.iter().map(one).collect();
-        self.at += count;
+impl SampleSource for Slices {
+    fn samples(
+        &mut self,
+        row: usize,
+        from: usize,
+        count: usize,
+    ) -> Result<Vec<Samples>, MeasureError> {
+        let one = |channel: &usize| self.channel(row, *channel, (from, count));
+        let taken: Result<_, Hdf5Error> = self.chosen.iter().map(one).collect();
         taken.map_err(|error| refused(&self.file, &self.name, &error))
     }
 }
 
-impl Rows {
-    /// The next samples of one channel.
-    fn channel(&self, channel: usize, count: usize) -> Result<Samples, Hdf5Error> {
+impl Slices {
+    fn channel(
+        &self,
+        row: usize,
+        channel: usize,
+        (from, count): (usize, usize),
+    ) -> Result<Samples, Hdf5Error> {
         let rank = self.dataset.shape().len();
         let (mut starts, mut counts) = (vec![0; rank], vec![1; rank]);
         for (axis, start, count) in [
-            (self.axes.shots, self.at / self.frames, 1),
+            (self.axes.shots, row, 1),
             (self.axes.channels, channel, 1),
-            (Some(self.axes.time), self.at % self.frames, count),
+            (Some(self.axes.time), from, count),
         ] {
             if let Some(axis) = axis {
                 (starts[axis], counts[axis]) = (start, count);
@@ -228,20 +230,15 @@ impl Rows {
         }
         let (dataset, starts, counts) = (&self.dataset, &*starts, &*counts);
         Ok(match dataset.datatype()? {
-            DatatypeMessage::FixedPoint {
-                size: 2,
-                signed: true,
-                ..
-            } => Samples::Counts {
-                counts: dataset.read_slice::<i16>(starts, counts)?,
-                volts_per_count: 1.0,
-                offset_v: 0.0,
-            },
-            DatatypeMessage::FixedPoint { .. } => {
+            DatatypeMessage::FixedPoint { size, signed, .. } => {
                 let whole = dataset.read_numeric_slice_as::<i64>(starts, counts)?;
-                Samples::Volts(whole.into_iter().map(|number| number as f64).collect())
+                let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
+                (
+                    whole.into_iter().map(|number| number as f64).collect(),
+                    range_v,
+                )
             }
-            _ => Samples::Volts(dataset.read_numeric_slice_as::<f64>(starts, counts)?),
+            _ => (dataset.read_numeric_slice_as::<f64>(starts, counts)?, None),
         })
     }
 }

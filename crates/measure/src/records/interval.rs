@@ -26,13 +26,13 @@ pub(crate) struct FromTimes {
 
 /// An interval between samples with its standard error.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Interval {
+pub(crate) struct SampleInterval {
     pub s: f64,
     pub error_s: f64,
     pub note: Option<String>,
 }
 
-impl Interval {
+impl SampleInterval {
     pub(super) fn exact(s: f64) -> Self {
         Self {
             s,
@@ -77,20 +77,20 @@ pub(crate) fn from_times(
     times: &FromTimes,
     stated_s: Option<f64>,
     options: &ReadOptions,
-) -> Result<Interval, MeasureError> {
+) -> Result<SampleInterval, MeasureError> {
     let middle_s = 0.5 * (times.least_s + times.most_s);
     if let Some(given_s) = options.rate_hz.map(f64::recip) {
         return match times.allow(given_s) {
-            true => Ok(Interval::exact(given_s)),
-            false => agreed(file, middle_s, given_s).map(Interval::exact),
+            true => Ok(SampleInterval::exact(given_s)),
+            false => agreed(file, middle_s, given_s).map(SampleInterval::exact),
         };
     }
     if let Some(stated_s) = stated_s.filter(|stated_s| *stated_s > 0.0 && times.allow(*stated_s)) {
-        return Ok(Interval::exact(stated_s));
+        return Ok(SampleInterval::exact(stated_s));
     }
     if times.least_s <= 0.0 {
         let detail = format!(
-            "its times go by steps of {:.3} µs, too coarse to tell how fast it was sampled; give \
+            "its times go by steps of {:.3} µs, too coarse to show how fast it was sampled; give \
              the rate, such as --rate 1MHz",
             times.even_to_s * 1e6
         );
@@ -102,7 +102,7 @@ pub(crate) fn from_times(
     let off_s = (times.most_s - s).max(s - times.least_s);
     let error_s = off_s / 3.0_f64.sqrt();
     let note = (error_s > NOTED * s).then(|| coarse(times, s, off_s, round_s.is_some()));
-    Ok(Interval {
+    Ok(SampleInterval {
         s: interval_s(file, Some(s), options)?,
         error_s,
         note,
@@ -150,7 +150,7 @@ fn coarse(times: &FromTimes, interval_s: f64, off_s: f64, is_round: bool) -> Str
 }
 
 /// The note where times without a unit were taken as seconds, and no rate confirms it.
-pub(crate) fn seconds_taken(
+pub(crate) fn seconds_assumed(
     name: &str,
     unit_s: Option<f64>,
     options: &ReadOptions,

@@ -4,7 +4,6 @@
 //! program, one record at a time ([`read`]): HDF5, text, NPY and NPZ, WAV and LabVIEW TDMS.
 
 mod arrays;
-mod checksum;
 mod files;
 mod hdf5;
 mod interval;
@@ -13,7 +12,7 @@ mod options;
 mod read;
 mod record;
 mod series;
-mod stream;
+mod stored;
 mod tdms;
 mod text;
 mod wav;
@@ -25,5 +24,6 @@ pub use files::{
 pub use hdf5::ColumnFile;
 pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, read};
-pub use record::{Channel, LowPass, Record, Samples};
-pub use series::{Channels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};
+pub(crate) use record::extremes;
+pub use record::{Channel, Record};
+pub use series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

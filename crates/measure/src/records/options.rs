@@ -53,7 +53,6 @@ pub enum Parts {
 }
 
 impl Parts {
-    /// Most samples of a part.
     pub(crate) fn most(self) -> Option<usize> {
         match self {
             Self::Whole => None,
@@ -85,7 +84,6 @@ pub(crate) const MOST_COLUMNS: usize = 8;
 /// Most channels of a shot: the bead's sensor and the wall's.
 pub(crate) const MOST_CHANNELS: usize = 2;
 
-/// Most names in a message.
 const SHOWN: usize = 12;
 
 /// Indices of the chosen channels among those of a file.

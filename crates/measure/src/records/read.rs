@@ -2,16 +2,14 @@
 
 use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, Samples};
-use crate::records::stream::from_sample;
-use crate::records::text::Encoding;
+use crate::records::record::{Channel, Record, extremes};
+use crate::records::stored::from_sample;
 use crate::records::{hdf5, numpy, series, tdms, text, wav};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Records as a format's reader returns them.
 pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, MeasureError>>>;
 
 /// Most records of a file: an array of more rows is one of something else.
@@ -23,52 +21,19 @@ const PROBE: u64 = 4096;
 /// Most samples of a channel that are not finite, as a share.
 const MOST_FILLED: f64 = 0.01;
 
-/// A format: its name, how files begin, their extensions, and its reader.
-struct Format {
-    name: &'static str,
-    magic: &'static [u8],
-    extensions: &'static [&'static str],
-    open: fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>,
-}
+/// Name of a format, how its files begin, their extensions, and its reader.
+type Format = (&'static str, &'static [u8], &'static [&'static str], Open);
+type Open = fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>;
 
-/// All formats; text, which has no magic, last.
-const FORMATS: &[Format] = &[
-    Format {
-        name: "HDF5",
-        magic: b"\x89HDF\r\n\x1a\n",
-        extensions: &["h5", "hdf5", "hdf"],
-        open: hdf5::open,
-    },
-    Format {
-        name: "a NumPy array",
-        magic: b"\x93NUMPY",
-        extensions: &["npy"],
-        open: numpy::open_npy,
-    },
-    Format {
-        name: "a ZIP archive, as NPZ files are",
-        magic: b"PK\x03\x04",
-        extensions: &["npz"],
-        open: numpy::open_npz,
-    },
-    Format {
-        name: "RIFF WAVE",
-        magic: b"RIFF",
-        extensions: &["wav", "wave"],
-        open: wav::open,
-    },
-    Format {
-        name: "TDMS",
-        magic: b"TDSm",
-        extensions: &["tdms"],
-        open: tdms::open,
-    },
-    Format {
-        name: "text",
-        magic: b"",
-        extensions: &["csv", "tsv", "txt", "asc", "prn"],
-        open: text::open,
-    },
+/// All formats; text, which no bytes begin, last.
+#[rustfmt::skip]
+const FORMATS: [Format; 6] = [
+    ("HDF5", b"\x89HDF\r\n\x1a\n", &["h5", "hdf5", "hdf"], hdf5::open),
+    ("a NumPy array", b"\x93NUMPY", &["npy"], numpy::open_npy),
+    ("a ZIP archive, as NPZ files are", b"PK\x03\x04", &["npz"], numpy::open_npz),
+    ("RIFF WAVE", b"RIFF", &["wav", "wave"], wav::open),
+    ("TDMS", b"TDSm", &["tdms"], tdms::open),
+    ("text", b"", &["csv", "tsv", "txt", "asc", "prn"], text::open),
 ];
 
 /// The records of a file, one at a time: a file larger than memory is never read whole.
@@ -77,18 +42,10 @@ const FORMATS: &[Format] = &[
 pub struct Records {
     records: Raw,
     parts: Parts,
-    /// Whether the options choose the channels.
     are_chosen: bool,
-    /// Samples of the first record.
     length: Option<usize>,
     file: PathBuf,
     count: usize,
-}
-
-impl std::fmt::Debug for Records {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("Records").finish_non_exhaustive()
-    }
 }
 
 /// Reads the records of a file: HDF5, text, NPY, NPZ, WAV or TDMS, by its content.
@@ -96,7 +53,7 @@ impl std::fmt::Debug for Records {
 /// A file that cannot be read at all gives one error and nothing else.
 #[must_use]
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
-    let opened = format_of(file).and_then(|format| (format.open)(file, options));
+    let opened = format_of(file).and_then(|open| open(file, options));
     let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
     Records {
         records: match options.parts.most() {
@@ -149,7 +106,7 @@ impl Records {
         }
         record.gaps = gaps;
         for channel in &record.channels {
-            let found = channel.samples.len();
+            let found = channel.volts.len();
             if found != length {
                 let why = "as in its first channel";
                 return Err(MeasureError::lengths(record.source, found, length, why));
@@ -190,9 +147,7 @@ fn two_channels(record: &Record) -> Option<String> {
 
 /// Fills the samples that are not finite, and returns their runs.
 fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, MeasureError> {
-    let Samples::Volts(volts) = &mut channel.samples else {
-        return Ok(Vec::new());
-    };
+    let volts = &mut channel.volts;
     let bad = || (0..volts.len()).filter(|at| !volts[*at].is_finite());
     let Some(first) = bad().next() else {
         return Ok(Vec::new());
@@ -206,13 +161,11 @@ fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, M
         );
         return Err(MeasureError::Samples(source.to_owned(), detail));
     }
-    let finite = || volts.iter().copied().filter(|volt| volt.is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let ends = extremes(volts.iter().copied().filter(|volt| volt.is_finite()));
     let bad: Vec<usize> = bad().collect();
     let runs = bad.chunk_by(|one, next| one + 1 == *next);
     let gaps: Vec<Range<usize>> = runs.map(|run| run[0]..run[0] + run.len()).collect();
-    gaps.iter().for_each(|gap| fill(volts, gap, (low, high)));
+    gaps.iter().for_each(|gap| fill(volts, gap, ends));
     Ok(gaps)
 }
 
@@ -233,17 +186,10 @@ fn fill(volts: &mut [f64], gap: &Range<usize>, (low, high): (f64, f64)) {
 }
 
 fn reject_constant(source: &str, channel: &Channel) -> Result<(), MeasureError> {
-    fn all_same<T: PartialEq>(of: &[T]) -> bool {
-        of.iter().all(|value| Some(value) == of.first())
-    }
-    let constant = match &channel.samples {
-        Samples::Volts(volts) => all_same(volts),
-        Samples::Counts { counts, .. } => all_same(counts),
-    };
-    let first = channel.samples.part(0, 1).volts();
-    match (constant, first.first()) {
-        (true, Some(value)) => {
-            let (of, name) = (channel.samples.len(), &channel.name);
+    let Channel { name, volts, .. } = channel;
+    match volts.first() {
+        Some(value) if volts.iter().all(|volt| volt == value) => {
+            let of = volts.len();
             let detail =
                 format!("all {of} samples in {name:?} are {value}; was the sensor connected?");
             Err(MeasureError::Samples(source.to_owned(), detail))
@@ -278,40 +224,38 @@ fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
     }))
 }
 
-/// The format of a file by its content, unless its extension promises another.
-fn format_of(file: &Path) -> Result<&'static Format, MeasureError> {
+/// The reader of a file by its content, unless its extension promises another.
+fn format_of(file: &Path) -> Result<Open, MeasureError> {
     let mut bytes = Vec::new();
-    File::open(file)
-        .and_then(|file| file.take(PROBE).read_to_end(&mut bytes))
-        .map_err(|cause| MeasureError::reading(file, cause))?;
+    let opened = File::open(file);
+    let read = opened.and_then(|file| file.take(PROBE).read_to_end(&mut bytes));
+    read.map_err(|cause| MeasureError::reading(file, cause))?;
     if bytes.is_empty() {
         return Err(MeasureError::empty(file_name(file)));
     }
-    let is = |format: &&Format| match format.magic {
+    let found = FORMATS.iter().find(|format| match format.1 {
         b"" => is_text(&bytes),
         magic => bytes.starts_with(magic),
-    };
-    let found = FORMATS.iter().find(is);
+    });
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     let extension = extension.to_ascii_lowercase();
-    let mut formats = FORMATS.iter();
-    let promised = formats.find(|format| format.extensions.contains(&&*extension));
+    let promised = FORMATS
+        .iter()
+        .find(|format| format.2.contains(&&*extension));
     let detail = match (found, promised) {
-        (Some(found), None) => return Ok(found),
-        (Some(found), Some(promised)) if found.name == promised.name => return Ok(found),
+        (Some(found), None) => return Ok(found.3),
+        (Some(found), Some(promised)) if found.0 == promised.0 => return Ok(found.3),
         (None, None) => "is none of HDF5, CSV or other text, NPY, NPZ, WAV and TDMS".to_owned(),
         (found, Some(_)) => {
-            let content = found.map_or("something else", |found| found.name);
+            let content = found.map_or("something else", |found| found.0);
             format!("is called .{extension} but holds {content}; give it its right ending")
         }
     };
     Err(MeasureError::Format(file_name(file), detail))
 }
 
-/// Text has no control characters but spaces.
 fn is_text(bytes: &[u8]) -> bool {
-    let (text, _) = Encoding::of(bytes).decoded(bytes);
-    !text
-        .iter()
-        .any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+    let text = text::decoded(bytes);
+    let mut letters = text.iter();
+    letters.all(|byte| !byte.is_ascii_control() || byte.is_ascii_whitespace())
 }

@@ -1,5 +1,6 @@
 //! One shot as a rig recorded it.
 
+use crate::signal::Bandwidth;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +32,7 @@ pub struct Record {
     /// Corner of the amplifier's high-pass in Hz, 0 for none.
     pub high_pass_hz: Option<f64>,
     /// The amplifier's low-pass.
-    pub low_pass: Option<LowPass>,
+    pub low_pass: Option<Bandwidth>,
     /// Samples before the trigger.
     pub pretrigger: Option<usize>,
     /// Whether the trigger fired.
@@ -43,15 +44,6 @@ pub struct Record {
     pub gaps: Vec<Range<usize>>,
     /// Assumptions made while the record was read.
     pub notes: Vec<String>,
-}
-
-/// An amplifier's low-pass: of one pole, or a Butterworth filter of two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LowPass {
-    /// Corner frequency in Hz.
-    pub corner_hz: f64,
-    /// 1 or 2.
-    pub order: usize,
 }
 
 impl Record {
@@ -73,11 +65,15 @@ impl Record {
     /// The part from sample `start`, at most `count` long.
     #[must_use]
     pub fn part(&self, start: usize, count: usize) -> Self {
-        let channels = self.channels.iter().map(|channel| Channel {
-            name: channel.name.clone(),
-            samples: channel.samples.part(start, count),
-        });
         let end = start.saturating_add(count);
+        let channels = self.channels.iter().map(|channel| {
+            let end = end.min(channel.volts.len());
+            Channel {
+                name: channel.name.clone(),
+                volts: channel.volts[start.min(end)..end].to_vec(),
+                range_v: channel.range_v,
+            }
+        });
         let within = |at: usize| at.clamp(start, end) - start;
         let gaps = self.gaps.iter();
         let gaps = gaps.map(|gap| within(gap.start)..within(gap.end));
@@ -113,14 +109,17 @@ impl Record {
             return;
         }
         for (channel, later) in self.channels.iter_mut().zip(part.channels) {
-            channel.samples.append(later.samples);
+            channel.volts.extend(later.volts);
+            channel.range_v = channel
+                .range_v
+                .filter(|range| Some(*range) == later.range_v);
         }
     }
 
     /// Number of samples of a channel.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.channels.first().map_or(0, |one| one.samples.len())
+        self.channels.first().map_or(0, |one| one.volts.len())
     }
 
     /// Whether there are no samples.
@@ -131,139 +130,28 @@ impl Record {
 }
 
 /// Samples of one input of the digitiser.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channel {
     /// Its name in the file, or its number from 1.
     pub name: String,
-    /// Its samples.
-    pub samples: Samples,
-}
-
-/// Samples, stored as small as they came.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Samples {
     /// Numbers in the file's unit, mostly V.
-    Volts(Vec<f64>),
-    /// Readings of a 16-bit converter: V = count · `volts_per_count` + `offset_v`.
-    Counts {
-        /// The readings.
-        counts: Vec<i16>,
-        /// Size of a step in V.
-        volts_per_count: f64,
-        /// Voltage of reading 0 in V.
-        offset_v: f64,
-    },
+    pub volts: Vec<f64>,
+    /// Lowest and highest voltage of a 16-bit converter's range: samples there are clipped.
+    pub range_v: Option<(f64, f64)>,
 }
 
-impl Samples {
-    /// Number of samples.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Volts(volts) => volts.len(),
-            Self::Counts { counts, .. } => counts.len(),
-        }
-    }
+/// Numbers in V, and the converter's range.
+pub(crate) type Samples = (Vec<f64>, Option<(f64, f64)>);
 
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// All samples in V.
-    #[must_use]
-    pub fn volts(&self) -> Vec<f64> {
-        match self {
-            Self::Volts(volts) => volts.clone(),
-            Self::Counts {
-                counts,
-                volts_per_count,
-                offset_v,
-            } => counts
-                .iter()
-                .map(|count| f64::from(*count) * volts_per_count + offset_v)
-                .collect(),
-        }
-    }
-
-    /// Lowest and highest voltage of the converter's range: samples there are clipped.
-    #[must_use]
-    pub fn range_v(&self) -> Option<(f64, f64)> {
-        match self {
-            Self::Volts(_) => None,
-            Self::Counts { .. } => Some(self.counted_extremes_v(&[i16::MIN, i16::MAX])),
-        }
-    }
-
-    /// Lowest and highest voltage of these samples, +∞ and −∞ of none.
-    pub(crate) fn extremes_v(&self) -> (f64, f64) {
-        match self {
-            Self::Volts(volts) => extremes(volts.iter().copied()),
-            Self::Counts { counts, .. } => {
-                // Whole numbers first: they are compared many at a time.
-                let ends = counts.iter().min().into_iter().chain(counts.iter().max());
-                self.counted_extremes_v(&ends.copied().collect::<Vec<_>>())
-            }
-        }
-    }
-
-    fn counted_extremes_v(&self, of: &[i16]) -> (f64, f64) {
-        let Self::Counts {
-            volts_per_count,
-            offset_v,
-            ..
-        } = self
-        else {
-            return extremes(std::iter::empty());
-        };
-        extremes(
-            of.iter()
-                .map(|count| f64::from(*count) * volts_per_count + offset_v),
-        )
-    }
-
-    /// Appends samples; those of another scale turn all of them into volts.
-    pub(crate) fn append(&mut self, later: Self) {
-        match (&mut *self, later) {
-            (Self::Volts(volts), Self::Volts(later)) => volts.extend(later),
-            (
-                Self::Counts {
-                    counts,
-                    volts_per_count,
-                    offset_v,
-                },
-                Self::Counts {
-                    counts: later,
-                    volts_per_count: scale,
-                    offset_v: offset,
-                },
-            ) if *volts_per_count == scale && *offset_v == offset => counts.extend(later),
-            (_, later) => *self = Self::Volts([self.volts(), later.volts()].concat()),
-        }
-    }
-
-    /// The part from `start`, at most `count` long.
-    pub(crate) fn part(&self, start: usize, count: usize) -> Self {
-        let end = start.saturating_add(count).min(self.len());
-        let range = start.min(end)..end;
-        match self {
-            Self::Volts(volts) => Self::Volts(volts[range].to_vec()),
-            Self::Counts {
-                counts,
-                volts_per_count,
-                offset_v,
-            } => Self::Counts {
-                counts: counts[range].to_vec(),
-                volts_per_count: *volts_per_count,
-                offset_v: *offset_v,
-            },
-        }
-    }
+/// Lowest and highest number; +∞ and −∞ of none.
+pub(crate) fn extremes(volts: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let volts = volts.into_iter();
+    volts.fold(none, |(low, high), volt| (low.min(volt), high.max(volt)))
 }
 
-fn extremes(volts: impl Iterator<Item = f64>) -> (f64, f64) {
-    volts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), volt| {
-        (low.min(volt), high.max(volt))
-    })
+/// Range of a 16-bit converter, V = count · `volts_per_count` + `offset_v`.
+pub(crate) fn converter_range_v(volts_per_count: f64, offset_v: f64) -> (f64, f64) {
+    let ends = [i16::MIN, i16::MAX];
+    extremes(ends.map(|count| f64::from(count) * volts_per_count + offset_v))
 }

@@ -3,17 +3,19 @@
 
 mod write;
 
-pub use write::{Channels, SeriesInfo, SeriesWriter, ShotRow};
+pub use write::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow};
 
 use crate::error::{MeasureError, file_name};
-use crate::records::checksum;
 use crate::records::hdf5::{attribute, column, damaged, dataset};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
-use crate::records::record::{Channel, LowPass, Record, Samples};
+use crate::records::record::{Channel, Record, converter_range_v};
+use crate::signal::Bandwidth;
+use flate2::CrcReader;
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
 use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// Attribute that marks a series, and its value.
@@ -36,7 +38,6 @@ const INTERVAL: &str = "sampling_interval_s";
 const VOLTS_PER_COUNT: &str = "volts_per_count";
 const OFFSET: &str = "offset_v";
 const PRETRIGGER: &str = "pretrigger_samples";
-/// Attributes of the file.
 const CASE: &str = "case";
 const EXPERIMENT: &str = "experiment";
 /// Standard error of the measured speed in m/s, if the rig states it.
@@ -50,12 +51,10 @@ fn malformed(file: &Path, what: impl std::fmt::Display) -> MeasureError {
     MeasureError::malformed(file, "a series", what)
 }
 
-/// Whether an open file is a series.
 pub(crate) fn is_series(open: &H5File) -> bool {
     text(open, FORMAT.0).as_deref() == Some(FORMAT.1)
 }
 
-/// Opens a series.
 pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, MeasureError> {
     let foreign = |error: Hdf5Error| malformed(file, damaged(&error));
     let channels = channels(open).map_err(foreign)?;
@@ -77,7 +76,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
     let wanted = chosen(file, &names, options)?;
     let positive =
         |name, least: f64| number_text(open, name).filter(|n| n.is_finite() && *n >= least);
-    let series = Series {
+    let series = OpenSeries {
         // What all its records share.
         head: Record {
             pretrigger: Some(number(PRETRIGGER)? as usize),
@@ -104,8 +103,7 @@ pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<
     Ok(Box::new((0..shots).map(move |row| series.record(row))))
 }
 
-/// An open series.
-struct Series {
+struct OpenSeries {
     head: Record,
     volts_per_count: f64,
     offset_v: f64,
@@ -117,20 +115,21 @@ struct Series {
     length: usize,
 }
 
-impl Series {
+impl OpenSeries {
     fn record(&self, row: usize) -> Result<Record, MeasureError> {
         let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
         let number = shot.unwrap_or(row as u64);
         let source = format!("{}, shot {number}", self.head.source);
         let channel = |(name, samples): &(&'static str, H5Dataset)| {
             let counts = samples.read_slice::<i16>(&[row, 0], &[1, self.length])?;
+            let (scale, offset) = (self.volts_per_count, self.offset_v);
+            let volts = counts
+                .into_iter()
+                .map(|count| f64::from(count) * scale + offset);
             Ok(Channel {
                 name: (*name).to_owned(),
-                samples: Samples::Counts {
-                    counts,
-                    volts_per_count: self.volts_per_count,
-                    offset_v: self.offset_v,
-                },
+                volts: volts.collect(),
+                range_v: Some(converter_range_v(scale, offset)),
             })
         };
         let channels: Result<Vec<Channel>, Hdf5Error> = self.channels.iter().map(channel).collect();
@@ -149,8 +148,8 @@ impl Series {
     }
 }
 
-/// The amplifier's low-pass, if it is one of those that [`LowPass`] has.
-fn low_pass(open: &H5File) -> Option<LowPass> {
+/// The amplifier's low-pass, if it is one of those that [`Bandwidth`] has.
+fn low_pass(open: &H5File) -> Option<Bandwidth> {
     let [corner, order, kind] = LOW_PASS;
     let order = match (&*text(open, order)?, &*text(open, kind)?) {
         ("first", _) => 1,
@@ -158,7 +157,7 @@ fn low_pass(open: &H5File) -> Option<LowPass> {
         _ => return None,
     };
     let corner_hz = number_text(open, corner).filter(|hz| hz.is_finite() && *hz > 0.0)?;
-    Some(LowPass { corner_hz, order })
+    Some(Bandwidth { corner_hz, order })
 }
 
 /// The channels of a file, with their names: one, or one a sensor.
@@ -244,15 +243,15 @@ pub fn verify(
 ) -> Result<(), MeasureError> {
     let reading = |cause| MeasureError::reading(file, cause);
     let opened = File::open(file).map_err(reading)?;
-    let difference = match checksum::agrees(&opened).map_err(reading)? {
-        Some(true) => difference(file, info, shots, programmed_speed_m_s)
-            .unwrap_or_else(|error| Some(damaged(&error))),
-        Some(false) => Some("damaged: its bytes do not have its checksum".to_owned()),
-        None => Some("cut short or damaged: its checksum is missing".to_owned()),
+    let expected = (shots, programmed_speed_m_s);
+    let difference = match has_checksum(&opened).map_err(reading)? {
+        Some(true) => difference(file, info, expected).map_err(|error| damaged(&error)),
+        Some(false) => Err("damaged: its bytes do not have its checksum".to_owned()),
+        None => Err("cut short or damaged: its checksum is missing".to_owned()),
     };
     match difference {
-        Some(what) => Err(MeasureError::malformed(file, "this series", what)),
-        None => Ok(()),
+        Ok(None) => Ok(()),
+        Ok(Some(what)) | Err(what) => Err(MeasureError::malformed(file, "this series", what)),
     }
 }
 
@@ -260,8 +259,7 @@ pub fn verify(
 fn difference(
     file: &Path,
     info: &SeriesInfo,
-    shots: usize,
-    programmed_speed_m_s: f64,
+    (shots, programmed_speed_m_s): (usize, f64),
 ) -> Result<Option<String>, Hdf5Error> {
     let open = H5File::open(file)?;
     let own = [FORMAT, (CASE, &*info.case), (EXPERIMENT, &*info.experiment)];
@@ -282,10 +280,47 @@ fn difference(
         )));
     }
     let numbers = column::<i64>(&open, SHOT, shots)?;
-    if !numbers.into_iter().eq(0..shots as i64) {
-        return Ok(Some("it has other shots".to_owned()));
-    }
     let speeds = column::<f64>(&open, PROGRAMMED, shots)?;
-    let same = speeds.iter().all(|speed| *speed == programmed_speed_m_s);
-    Ok((!same).then(|| "it has another programmed speed".to_owned()))
+    Ok(if !numbers.into_iter().eq(0..shots as i64) {
+        Some("it has other shots".to_owned())
+    } else if speeds.iter().any(|speed| *speed != programmed_speed_m_s) {
+        Some("it has another programmed speed".to_owned())
+    } else {
+        None
+    })
+}
+
+/// What stands before the eight hexadecimal digits of a CRC-32 at the end of a file, of all bytes
+/// before it. Readers of HDF5 end at the length that the file states, and do not see it.
+const CHECKSUM: &[u8] = b"\nhertzchain CRC-32 ";
+
+/// Appends the checksum of a file and flushes it to the disk.
+fn append_checksum(mut file: &File) -> io::Result<()> {
+    file.seek(SeekFrom::Start(0))?;
+    let ending = checksum(file)?;
+    file.write_all(&ending)?;
+    file.sync_all()
+}
+
+/// Whether a file ends with the checksum of what is before it; `None` where it ends with none.
+fn has_checksum(mut file: &File) -> io::Result<Option<bool>> {
+    let length = CHECKSUM.len() as u64 + 8;
+    let Some(before) = file.metadata()?.len().checked_sub(length) else {
+        return Ok(None);
+    };
+    let mut found = Vec::new();
+    file.seek(SeekFrom::Start(before))?;
+    file.read_to_end(&mut found)?;
+    if !found.starts_with(CHECKSUM) {
+        return Ok(None);
+    }
+    file.seek(SeekFrom::Start(0))?;
+    Ok(Some(found == checksum(file.take(before))?))
+}
+
+fn checksum(bytes: impl Read) -> io::Result<Vec<u8>> {
+    let mut reader = CrcReader::new(BufReader::with_capacity(1 << 18, bytes));
+    io::copy(&mut reader, &mut io::sink())?;
+    let digits = format!("{:08x}", reader.crc().sum());
+    Ok([CHECKSUM, digits.as_bytes()].concat())
 }

@@ -1,52 +1,68 @@
 //! RIFF WAVE: the header by hound, the samples as raw numbers.
 
 use crate::error::{MeasureError, file_name};
+use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen, numbered};
 use crate::records::read::Raw;
-use crate::records::stream::{Cut, Head, Kind, Number, RawNumbers};
+use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber, StoredTable};
 use hound::{SampleFormat, WavReader, WavSpec};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek};
 use std::path::Path;
 
 /// Opens a WAV file; its whole numbers are shares of the full scale.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
-    let opened = File::open(file).map_err(|cause| MeasureError::reading(file, cause))?;
+    let reading = |cause| MeasureError::reading(file, cause);
+    let opened = File::open(file).map_err(reading)?;
     let wave = WavReader::new(BufReader::new(opened)).map_err(|error| refused(file, error))?;
-    let (spec, total) = (wave.spec(), wave.duration() as usize);
+    let (spec, frames) = (wave.spec(), wave.duration() as usize);
     let number = number(file, spec)?;
-    let stored = usize::from(spec.channels);
-    let names = numbered(stored);
+    let names = numbered(usize::from(spec.channels));
     let chosen = chosen(file, &names, options)?;
-    let names = chosen.iter().map(|index| names[*index].clone()).collect();
-    let stated_s = Some(f64::from(spec.sample_rate).recip());
-    let head = Head::new(file, names, stated_s, total, options)?;
-    let stream = RawNumbers {
-        reader: wave.into_inner(),
+    let mut reader = wave.into_inner();
+    let start = reader.stream_position().map_err(reading)?;
+    if frames == 0 {
+        return Err(MeasureError::empty(file_name(file)));
+    }
+    let head = Head {
         file: file.to_owned(),
-        number,
-        stored,
-        chosen,
+        part: None,
+        names: chosen.iter().map(|index| names[*index].clone()).collect(),
+        interval_s: interval_s(file, Some(f64::from(spec.sample_rate).recip()), options)?,
+        rows: 1,
+        frames,
+        note: None,
     };
-    Ok(Box::new(Cut::new(head.divided(options.parts), stream)))
+    let wide = number.width();
+    let channel = |at: &usize| {
+        let first = start + (at * wide) as u64;
+        StoredChannel::run(number, first, frames, names.len() * wide)
+    };
+    let table = StoredTable {
+        file: file.to_owned(),
+        channels: chosen.iter().map(channel).collect(),
+        reader,
+        row_bytes: 0,
+    };
+    Ok(head.records(options.parts, table))
 }
 
-fn number(file: &Path, spec: WavSpec) -> Result<Number, MeasureError> {
+fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber, MeasureError> {
     let (kind, scale, offset) = match (spec.sample_format, spec.bits_per_sample.div_ceil(8)) {
-        (SampleFormat::Int, 1) => (Kind::U8, 1.0 / 128.0, -1.0),
-        (SampleFormat::Int, 2) => (Kind::I16, 1.0 / 32_768.0, 0.0),
-        (SampleFormat::Int, 3) => (Kind::I24, 1.0 / 8_388_608.0, 0.0),
-        (SampleFormat::Int, 4) => (Kind::I32, 1.0 / 2_147_483_648.0, 0.0),
-        (SampleFormat::Float, 4) => (Kind::F32, 1.0, 0.0),
+        (SampleFormat::Int, 1) => (NumberKind::U8, 1.0 / 128.0, -1.0),
+        (SampleFormat::Int, 2) => (NumberKind::I16, 1.0 / 32_768.0, 0.0),
+        (SampleFormat::Int, 3) => (NumberKind::I24, 1.0 / 8_388_608.0, 0.0),
+        (SampleFormat::Int, 4) => (NumberKind::I32, 1.0 / 2_147_483_648.0, 0.0),
+        (SampleFormat::Float, 4) => (NumberKind::F32, 1.0, 0.0),
         (_, bytes) => {
             let detail = format!("samples of {bytes} bytes are not read");
             return Err(MeasureError::malformed(file, "WAV", detail));
         }
     };
-    Ok(Number {
+    Ok(StoredNumber {
         scale,
         offset,
-        ..Number::plain(kind, false)
+        ..StoredNumber::plain(kind, false)
     })
 }
 
@@ -58,12 +74,11 @@ fn refused(file: &Path, error: hound::Error) -> MeasureError {
         }
         hound::Error::IoError(cause) => MeasureError::reading(file, cause),
         // The library's error for floating-point numbers alone.
-        hound::Error::FormatError("bits per sample is not 32") => MeasureError::malformed(
-            file,
-            "WAV",
-            "its samples are floating-point numbers of another width than 32 bits, which are not \
-             read; save them as float32, or as NPY",
-        ),
+        hound::Error::FormatError("bits per sample is not 32") => {
+            let detail = "floating-point samples of another width than 32 bits are not read; save \
+                          them as float32, or as NPY";
+            MeasureError::malformed(file, "WAV", detail)
+        }
         error => MeasureError::malformed(file, "WAV", error),
     }
 }

@@ -1,6 +1,6 @@
 //! Baseline and noise of a quiet stretch.
 
-use crate::signal::error::{SignalError, all_finite};
+use crate::error::{MeasureError, all_finite};
 use crate::signal::statistics::median_and_spread;
 
 /// Offset and noise of a channel at rest.
@@ -30,9 +30,9 @@ impl Baseline {
 /// deviation.
 ///
 /// # Errors
-/// [`SignalError::TooShort`] below 8 samples, [`SignalError::NotFinite`].
-pub fn baseline(quiet: &[f64]) -> Result<Baseline, SignalError> {
-    SignalError::enough(quiet.len(), 8)?;
+/// [`MeasureError::TooShort`] below 8 samples, [`MeasureError::NotFinite`].
+pub fn baseline(quiet: &[f64]) -> Result<Baseline, MeasureError> {
+    MeasureError::enough(quiet.len(), 8)?;
     all_finite(quiet)?;
     let calm = calm(quiet);
     let (centre, spread) = median_and_spread(&calm).unwrap_or_default();

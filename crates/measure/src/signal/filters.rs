@@ -1,6 +1,6 @@
 //! Filters of a record: inverse high-pass, zero-phase low-pass, running means, amplifier's low-pass.
 
-use crate::signal::error::{SignalError, all_finite};
+use crate::error::{MeasureError, all_finite};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Corrects a record for AC coupling: the exact inverse of a first-order high-pass
@@ -17,9 +17,9 @@ pub fn invert_high_pass(
     samples: &mut [f64],
     interval_s: f64,
     time_constant_s: f64,
-) -> Result<(), SignalError> {
-    SignalError::positive("sampling interval in s", interval_s)?;
-    SignalError::positive("time constant of the high-pass in s", time_constant_s)?;
+) -> Result<(), MeasureError> {
+    MeasureError::positive("sampling interval in s", interval_s)?;
+    MeasureError::positive("time constant of the high-pass in s", time_constant_s)?;
     all_finite(samples)?;
     let k = 0.5 * interval_s / time_constant_s;
     let (mut integral, mut before) = (0.0, 0.0);
@@ -57,10 +57,10 @@ impl LowPass {
     /// # Errors
     /// Order not 2 or 4; cutoff not between 0 and half the sampling rate; too few or not finite
     /// samples.
-    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>, SignalError> {
+    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>, MeasureError> {
         let sections = self.sections(interval_s)?;
         let edge = 3 * (self.order + 1);
-        SignalError::enough(samples.len(), edge + 1)?;
+        MeasureError::enough(samples.len(), edge + 1)?;
         all_finite(samples)?;
         let n = samples.len();
         let turned = |end: f64, at: usize| 2.0 * end - samples[at];
@@ -79,12 +79,12 @@ impl LowPass {
         Ok(all)
     }
 
-    fn sections(&self, interval_s: f64) -> Result<Vec<Biquad>, SignalError> {
-        SignalError::positive("sampling interval in s", interval_s)?;
+    fn sections(&self, interval_s: f64) -> Result<Vec<Biquad>, MeasureError> {
+        MeasureError::positive("sampling interval in s", interval_s)?;
         let turns = self.cutoff_hz * interval_s;
         let expected = "a number between 0 and half the sampling rate";
         let accepted = turns > 0.0 && turns < 0.5;
-        SignalError::require(
+        MeasureError::require(
             accepted,
             "cutoff of the low-pass in Hz",
             self.cutoff_hz,
@@ -92,7 +92,7 @@ impl LowPass {
         )?;
         let order = self.order as f64;
         let accepted = self.order == 2 || self.order == 4;
-        SignalError::require(accepted, "order of the low-pass", order, "2 or 4")?;
+        MeasureError::require(accepted, "order of the low-pass", order, "2 or 4")?;
         let angle = |i: usize| PI * (2 * i + 1) as f64 / (2.0 * order);
         let pairs = 0..self.order / 2;
         Ok(pairs.map(|i| Biquad::new(turns, angle(i).sin())).collect())
@@ -163,11 +163,11 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples.
-    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2], SignalError> {
-        SignalError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
+    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2], MeasureError> {
+        MeasureError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
         let name = "order of the amplifier's low-pass";
         let accepted = self.order == 1 || self.order == 2;
-        SignalError::require(accepted, name, self.order as f64, "1 or 2")?;
+        MeasureError::require(accepted, name, self.order as f64, "1 or 2")?;
         let samples = (TAU * self.corner_hz * interval_s).recip();
         Ok(match self.order {
             1 => [samples, 0.0],

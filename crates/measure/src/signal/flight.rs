@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 use crate::signal::find::conditioned_pulses;
-use crate::signal::pick::pick_corrected;
+use crate::signal::pick::pick;
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
     Picks, Polarity, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
@@ -32,7 +32,7 @@ pub struct Measured {
     /// Its pulses and quality flags.
     pub found: Found,
     /// Times of flight, or why there are none.
-    pub flight: Result<Flight, SignalError>,
+    pub flight: Result<Flight, MeasureError>,
 }
 
 /// Finds and picks the pulses of one shot.
@@ -44,8 +44,8 @@ pub fn measure(
     channels: Channels<'_>,
     interval_s: f64,
     options: &SignalOptions,
-) -> Result<Measured, SignalError> {
-    SignalError::positive("sampling interval in s", interval_s)?;
+) -> Result<Measured, MeasureError> {
+    MeasureError::positive("sampling interval in s", interval_s)?;
     let find = &options.find;
     let polarities = [find.polarity, find.wall_polarity];
     let raw = channels.both();
@@ -78,7 +78,7 @@ pub fn measure(
         find.ranges(channels)
     };
     let corrections = (ranges, options.bandwidth);
-    let picks = pick_corrected(channels, interval_s, &found, &options.method, corrections);
+    let picks = pick(channels, interval_s, &found, &options.method, corrections);
     let flight = picks.map(Picks::flight);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
@@ -93,7 +93,7 @@ impl SignalOptions {
         samples: &'a [f64],
         interval_s: f64,
         polarity: Polarity,
-    ) -> Result<Cow<'a, [f64]>, SignalError> {
+    ) -> Result<Cow<'a, [f64]>, MeasureError> {
         let mut samples = Cow::Borrowed(samples);
         if let Some(time_constant_s) = self.high_pass_s {
             let offset = normalisation(&samples, polarity)?.baseline.offset;
@@ -135,6 +135,22 @@ impl Flight {
     pub fn correlation(&self) -> Option<f64> {
         let product = self.incident_s.sigma * self.reflected_s?.sigma;
         (product > 0.0).then(|| self.covariance_s2 / product)
+    }
+
+    pub(crate) fn times_s(&self) -> [Option<Estimate>; 2] {
+        [Some(self.incident_s), self.reflected_s]
+    }
+
+    pub(crate) fn without_return(&self) -> Self {
+        let mut picks = self.picks;
+        picks.reflected = None;
+        Self {
+            reflected_s: None,
+            covariance_s2: 0.0,
+            reflected_over_incident: None,
+            picks,
+            ..*self
+        }
     }
 
     /// The part of the covariance in s² that repeated shots do not share: without systematic errors

@@ -6,7 +6,6 @@ pub(crate) const MOST: usize = 11;
 /// One number a parameter; those beyond a fit's own count are not used.
 pub(crate) type Row = [f64; MOST];
 
-/// Normal equations, gathered row by row.
 #[derive(Clone)]
 pub(crate) struct NormalEquations {
     matrix: [Row; MOST],
@@ -15,7 +14,7 @@ pub(crate) struct NormalEquations {
 }
 
 /// Parameters, and the inverse of the normal matrix: their covariance for unit noise.
-pub(crate) struct Solution {
+pub(crate) struct LinearSolution {
     pub(crate) values: Row,
     pub(crate) inverse: [Row; MOST],
     size: usize,
@@ -48,7 +47,7 @@ impl NormalEquations {
     }
 
     /// `None` if the equations do not determine every parameter.
-    pub(crate) fn solve(&self) -> Option<Solution> {
+    pub(crate) fn solve(&self) -> Option<LinearSolution> {
         let root = self.cholesky()?;
         let mut inverse = [[0.0; MOST]; MOST];
         for j in 0..self.size {
@@ -56,7 +55,7 @@ impl NormalEquations {
             unit[j] = 1.0;
             inverse[j] = self.substitute(&root, unit);
         }
-        Some(Solution {
+        Some(LinearSolution {
             values: self.substitute(&root, self.right),
             inverse,
             size: self.size,
@@ -68,7 +67,6 @@ impl NormalEquations {
         Some(2.0 * (0..self.size).map(|j| root[j][j].ln()).sum::<f64>())
     }
 
-    /// Lower triangular factor of the matrix.
     fn cholesky(&self) -> Option<[Row; MOST]> {
         let mut root = [[0.0; MOST]; MOST];
         for j in 0..self.size {
@@ -102,7 +100,7 @@ impl NormalEquations {
     }
 }
 
-impl Solution {
+impl LinearSolution {
     /// Variance of Σ row_k · parameter_k for unit noise.
     pub(crate) fn variance(&self, row: &Row) -> f64 {
         let covariances = self.covariance_with(row);
@@ -124,7 +122,6 @@ impl Solution {
 pub(crate) struct Optimum<M> {
     pub(crate) model: M,
     pub(crate) normal: NormalEquations,
-    /// Sum of squared residuals.
     pub(crate) squares: f64,
 }
 
@@ -170,13 +167,12 @@ pub(crate) fn levenberg_marquardt<M>(
 }
 
 /// A polynomial in u = (sample − centre)/half, fitted where |u| ≤ 1.
-pub(crate) struct Polynomial {
+pub(crate) struct FittedPolynomial {
     pub(crate) centre: f64,
-    /// Samples in one unit of u.
     pub(crate) half: f64,
     pub(crate) degree: usize,
     /// Coefficients and their covariance for unit noise.
-    pub(crate) solution: Solution,
+    pub(crate) solution: LinearSolution,
     /// Root mean square of the residuals, over the degrees of freedom.
     pub(crate) residual: f64,
     pub(crate) freedom: f64,
@@ -189,7 +185,7 @@ pub(crate) struct Derivatives {
     pub(crate) curvature: f64,
 }
 
-impl Polynomial {
+impl FittedPolynomial {
     /// Least squares through `values`, the first of which is sample `first`.
     ///
     /// The degree is lowered where there are too few samples for it. `None` if fewer than three
@@ -241,7 +237,6 @@ impl Polynomial {
         }
     }
 
-    /// Sample at u.
     pub(crate) fn sample(&self, u: f64) -> f64 {
         self.centre + self.half * u
     }

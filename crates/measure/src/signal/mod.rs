@@ -3,10 +3,9 @@
 //! Independent of chains and files: functions take plain slices and, where time matters, a sampling
 //! interval in s. From samples to a curve:
 //!
-//! 1. [`Cutter`] locates the shots of a recording that is fed piece by piece.
-//! 2. [`measure`] conditions a shot, finds its [`pulses`], [`pick`]s them and
+//! 1. [`measure`] conditions a shot, finds its [`pulses`], picks them and
 //!    returns a [`Flight`] with its uncertainty and [`QualityFlag`]s.
-//! 3. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
+//! 2. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
 //!    [`power_law_both_errors`], [`chi_square`] and [`coverage`] reduce shots to curves.
 //!
 //! ```
@@ -23,12 +22,10 @@
 //! let flight = shot.flight?;
 //! assert!(shot.found.flags.is_empty());
 //! assert!((flight.incident_s.value - 0.7e-3).abs() < 1e-8);
-//! # Ok::<(), hertzchain_measure::signal::SignalError>(())
+//! # Ok::<(), hertzchain_measure::MeasureError>(())
 //! ```
 
 mod baseline;
-mod cutter;
-mod error;
 mod filters;
 mod find;
 mod flight;
@@ -39,8 +36,6 @@ mod spikes;
 mod statistics;
 
 pub use baseline::{Baseline, baseline};
-pub use cutter::{Cutter, Segment, Trigger};
-pub use error::SignalError;
 pub use filters::{Bandwidth, LowPass, invert_high_pass};
 pub use find::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity, Pulse,
@@ -48,8 +43,7 @@ pub use find::{
 };
 pub use flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic};
 pub use pick::{
-    CompetingPick, Method, Picked, Picks, Shape, Systematic, Template, cramer_rao_of_samples_s,
-    cramer_rao_s, delay_by_cross_correlation, pick,
+    CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation,
 };
 pub use power_law::{
     FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,

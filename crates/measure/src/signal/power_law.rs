@@ -1,6 +1,7 @@
 //! Power laws by York's weighted least squares in the logarithms \[York2004\].
 
-use crate::signal::{ChiSquare, SignalError};
+use crate::MeasureError;
+use crate::signal::ChiSquare;
 
 /// y = `prefactor` · x^`exponent` with its errors.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +26,7 @@ pub struct PowerLaw {
 }
 
 /// Error of a fit of a power law.
-pub type FitError = SignalError;
+pub type FitError = MeasureError;
 
 /// Probability of chi-square below which points do not follow a law.
 const UNLIKELY: f64 = 0.01;
@@ -72,7 +73,7 @@ pub fn power_law(
     abscissas: &[f64],
     values: &[f64],
     sigmas: Option<&[f64]>,
-) -> Result<PowerLaw, SignalError> {
+) -> Result<PowerLaw, MeasureError> {
     let exact = vec![0.0; abscissas.len()];
     // Without sigmas relative errors of 1 give all points one weight.
     let law = power_law_both_errors(abscissas, &exact, values, sigmas.unwrap_or(values))?;
@@ -101,13 +102,13 @@ pub fn power_law(
 /// σ alone; `r_squared` and residuals are those of ln y. Errors of x may be 0.
 ///
 /// # Errors
-/// [`SignalError::Lengths`], [`SignalError::NotPositive`], [`SignalError::TooFew`].
+/// [`MeasureError::Lengths`], [`MeasureError::NotPositive`], [`MeasureError::TooFew`].
 pub fn power_law_both_errors(
     abscissas: &[f64],
     abscissa_sigmas: &[f64],
     values: &[f64],
     sigmas: &[f64],
-) -> Result<PowerLaw, SignalError> {
+) -> Result<PowerLaw, MeasureError> {
     check(abscissas, &[values, sigmas], Some(abscissa_sigmas))?;
     let variances = |of: &[f64], sigmas: &[f64]| {
         let relative = of.iter().zip(sigmas).map(|(x, s)| s / x);
@@ -119,10 +120,9 @@ pub fn power_law_both_errors(
         x_variance: variances(abscissas, abscissa_sigmas),
         y_variance: variances(values, sigmas),
     };
-    points.fit().ok_or(SignalError::TooFew)
+    points.fit().ok_or(MeasureError::TooFew)
 }
 
-/// Logarithms of points with their variances.
 struct LogPoints {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -244,11 +244,11 @@ pub struct Uncertainty {
 ///
 /// # Errors
 /// As [`power_law_both_errors`]; relative errors may be 0.
-pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, SignalError> {
+pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, MeasureError> {
     check(abscissas, &[], Some(relative))?;
     let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
     if all_equal(&x) {
-        return Err(SignalError::TooFew);
+        return Err(MeasureError::TooFew);
     }
     let n = x.len() as f64;
     let mean = x.iter().sum::<f64>() / n;
@@ -266,11 +266,11 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, S
 }
 
 /// Requires positive abscissas and values, errors of 0 or more, all of one length.
-fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result<(), SignalError> {
+fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result<(), MeasureError> {
     for slice in values.iter().copied().chain(errors) {
         let (n, found) = (abscissas.len(), slice.len());
         if found != n {
-            return Err(SignalError::Lengths(format!(
+            return Err(MeasureError::Lengths(format!(
                 "{n} abscissas and {found} values or standard deviations do not pair up"
             )));
         }
@@ -282,5 +282,5 @@ fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result
     let all = std::iter::once(abscissas).chain(values.iter().copied());
     let index = all.map(|slice| bad(slice, false)).find_map(|found| found);
     let index = index.or_else(|| bad(errors?, true));
-    index.map_or(Ok(()), |index| Err(SignalError::NotPositive { index }))
+    index.map_or(Ok(()), |index| Err(MeasureError::NotPositive(index)))
 }

@@ -10,14 +10,13 @@ const MOST_CANDIDATES: usize = 1000;
 /// Samples on either side that a sample is interpolated from: many average noise, few follow pulses
 /// of few samples.
 const REACHES: [usize; 3] = [12, 8, 5];
-/// Degree of the polynomial through them.
 const DEGREE: usize = 4;
 /// Standard errors by which a spike stands out: by chance once in 10¹⁰ samples.
 const STANDS_OUT: f64 = 6.5;
 /// The same of the screen, which selects one sample of noise in 50,000.
 const SCREEN: f64 = 4.5;
 /// Neighbours that may be spikes as well.
-const MOST_BESIDE: usize = 3;
+const MOST_NEIGHBOURS: usize = 3;
 /// Fewer degrees of freedom leave too little of narrow tops to distinguish them from spikes.
 const LEAST_FREEDOM: usize = 5;
 /// Noise, as a share of the record's range, below which a sample that stands out moves nothing.
@@ -122,8 +121,8 @@ struct Interpolated {
 fn interpolated(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<Interpolated> {
     let window = at.saturating_sub(reach)..(at + reach + 1).min(samples.len());
     let mut members: Vec<usize> = window.filter(|sample| *sample != at).collect();
-    for _ in 0..=MOST_BESIDE {
-        let (interpolated, worst) = fitted(samples, &members, (at, reach), noise)?;
+    for _ in 0..=MOST_NEIGHBOURS {
+        let (interpolated, worst) = interpolate(samples, &members, (at, reach), noise)?;
         let Some(worst) = worst else {
             // A sample whose neighbours both stand out is no spike of one or two samples.
             let beside = |member: &usize| member.abs_diff(at) == 1;
@@ -135,7 +134,7 @@ fn interpolated(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<
 }
 
 /// What a polynomial through the members says of a sample, and the member that stands out most.
-fn fitted(
+fn interpolate(
     samples: &[f64],
     members: &[usize],
     (at, reach): (usize, usize),

@@ -3,7 +3,7 @@
 use crate::common::{folder, kept};
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{
-    Channels, ReadOptions, Record, SeriesInfo, SeriesWriter, ShotRow, read,
+    ReadOptions, Record, SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, read,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -188,7 +188,7 @@ fn series() -> Vec<u8> {
 fn written() -> Vec<u8> {
     let path = folder("fuzz-series").join("series.h5");
     let info = SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: 1e-3,
         offset_v: 0.0,

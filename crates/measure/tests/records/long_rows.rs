@@ -101,13 +101,13 @@ fn channels_stored_one_after_the_other_are_read_in_pieces() {
     assert!(matches!(whole, Err(MeasureError::Samples(_, why)) if why.contains("more than")));
     let mut pieces = read(&file, &channels(Parts::Pieces(1 << 20)));
     let first = pieces.next().unwrap().unwrap();
-    let of = |channel: usize, at: usize| first.channels[channel].samples.volts()[at];
+    let of = |channel: usize, at: usize| first.channels[channel].volts[at];
     assert_eq!((of(0, 5), of(1, 3), of(1, 5)), (6.0, 7.0, 0.0));
     let second = pieces.next().unwrap().unwrap();
     assert_eq!((second.first_sample, second.shot), (1 << 20, None));
     let last = pieces.last().unwrap().unwrap();
     assert_eq!(last.first_sample + last.len() as u64, LONG as u64);
-    assert_eq!(last.channels[1].samples.volts().last(), Some(&8.0));
+    assert_eq!(last.channels[1].volts.last(), Some(&8.0));
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
@@ -129,7 +129,7 @@ fn shots_of_which_samples_alternate_are_read_in_pieces() {
     };
     let pieces = read(&file, &pieces).map(|piece| piece.unwrap());
     let told = pieces.map(|piece| {
-        let volts = piece.channels[0].samples.volts();
+        let volts = piece.channels[0].volts.clone();
         let some: Vec<f64> = volts.into_iter().filter(|volt| *volt != 0.0).collect();
         (piece.shot.unwrap(), piece.first_sample, some)
     });

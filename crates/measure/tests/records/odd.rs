@@ -3,7 +3,7 @@
 
 use crate::common::folder;
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::records::{ReadOptions, Record, Samples, read};
+use hertzchain_measure::records::{ReadOptions, Record, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +31,7 @@ fn only(path: &Path, options: &ReadOptions) -> Record {
 }
 
 fn assert_volts(record: &Record, channel: usize, count: usize) {
-    let volts = record.channels[channel].samples.volts();
+    let volts = record.channels[channel].volts.clone();
     assert_eq!(volts.len(), count);
     for (i, v) in volts.iter().enumerate() {
         assert!((v - volt(i)).abs() < 1e-12, "{i}: {v}");
@@ -91,7 +91,7 @@ fn marks_between_thousands_are_no_obstacle() {
     let rows: String = (0..500).map(german).collect();
     let path = written(&folder, "german.csv", format!("t (us);U (mV)\n{rows}"));
     let record = only(&path, &ReadOptions::default());
-    let volts = record.channels[0].samples.volts();
+    let volts = record.channels[0].volts.clone();
     for (i, v) in volts.iter().enumerate() {
         // Rounding of tenths.
         assert!((v - 1000.0 * volt(i) - 1000.0).abs() < 1e-9, "{i}: {v}");
@@ -131,7 +131,7 @@ fn single_cells_without_a_number_are_gaps_and_refuse_nothing() {
         gaps(&record),
         [(200, 201), (300, 302), (400, 401), (999, 1000)]
     );
-    let volts = record.channels[0].samples.volts();
+    let volts = record.channels[0].volts.clone();
     assert_eq!((volts[200], volts[400]), (0.22, 0.0));
     let between = volt(299) + (volt(302) - volt(299)) / 3.0;
     assert!((volts[300] - between).abs() < 1e-12);
@@ -207,7 +207,7 @@ fn times_in_an_array_are_no_channel() {
         };
         if name == "rows.npy" {
             let times = only(&path, &asked).channels.remove(0);
-            assert!(matches!(times.samples, Samples::Volts(of) if of[0] == -1e-3));
+            assert_eq!(times.volts[0], -1e-3);
         }
     }
     let three = (0..900).flat_map(|i| [time(i), volt(i), volt(i + 1)]);

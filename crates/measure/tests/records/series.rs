@@ -3,7 +3,7 @@
 use crate::common::{folder, python};
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{
-    Channels, ReadOptions, Record, Samples, SeriesInfo, SeriesWriter, ShotRow, read, truth,
+    ReadOptions, Record, SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, read, truth,
     untriggered, verify,
 };
 use std::fs;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 fn info(samples_per_shot: usize) -> SeriesInfo {
     SeriesInfo {
-        channels: Channels::Summed,
+        channels: SeriesChannels::Summed,
         interval_s: 1e-6,
         volts_per_count: 10.0 / 32_768.0,
         offset_v: 0.25,
@@ -68,12 +68,12 @@ fn a_series_reads_back_as_it_was_written() {
         assert_eq!(record.case.as_deref(), Some("dry"));
         assert_eq!(record.pretrigger, Some(100));
         assert_eq!(record.triggered, Some(shot != 1));
-        let expected = Samples::Counts {
-            counts: samples(shot as u64, 1000),
-            volts_per_count: 10.0 / 32_768.0,
-            offset_v: 0.25,
-        };
-        assert_eq!(record.channels[0].samples, expected);
+        let counts = samples(shot as u64, 1000).into_iter();
+        let expected = counts.map(|count| f64::from(count) * (10.0 / 32_768.0) + 0.25);
+        assert_eq!(record.channels[0].volts, expected.collect::<Vec<_>>());
+        let (low_v, high_v) = record.channels[0].range_v.unwrap();
+        // Rounding; one step below the end.
+        assert!((low_v + 9.75).abs() < 1e-12 && (high_v - 10.25 + 10.0 / 32_768.0).abs() < 1e-12);
     }
     assert_eq!(untriggered(&path).unwrap(), 1);
 }
@@ -95,10 +95,9 @@ fn shots_longer_than_a_chunk_read_back() {
     let count = (1 << 19) + 12_345;
     write(&path, 2, count).unwrap();
     for (shot, record) in all(&path).iter().enumerate() {
-        let Samples::Counts { counts, .. } = &record.channels[0].samples else {
-            unreachable!("counts were written")
-        };
-        assert!(*counts == samples(shot as u64, count));
+        let counts = samples(shot as u64, count).into_iter();
+        let expected = counts.map(|count| f64::from(count) * (10.0 / 32_768.0) + 0.25);
+        assert!(record.channels[0].volts.iter().copied().eq(expected));
     }
 }
 

@@ -186,7 +186,7 @@ fn what_daq_cards_logged_is_read_and_scaled() {
     let record = records[0].as_ref().unwrap();
     assert_eq!(record.interval_s, 2e-6);
     // Halves and quarters are exact.
-    let found = [0, 1].map(|at: usize| record.channels[at].samples.volts());
+    let found = [0, 1].map(|at: usize| record.channels[at].volts.clone());
     assert_eq!(found, volts_of_cards());
 }
 
@@ -244,7 +244,7 @@ fn records(test: &str, bytes: &[u8]) -> Vec<Result<Record, MeasureError>> {
 fn channels(test: &str, bytes: &[u8]) -> [Vec<f64>; 2] {
     let record = records(test, bytes).remove(0).unwrap();
     assert_eq!(record.interval_s, 1e-6);
-    [0, 1].map(|channel: usize| record.channels[channel].samples.volts())
+    [0, 1].map(|channel: usize| record.channels[channel].volts.clone())
 }
 
 const BEAD: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
@@ -283,7 +283,7 @@ fn a_file_that_was_not_closed_gives_its_whole_chunks_and_says_so() {
     // What LabVIEW leaves in place of the length until a segment is complete.
     bytes[12..20].fill(0xff);
     let results = records("open", &bytes);
-    let first = results[0].as_ref().unwrap().channels[0].samples.volts();
+    let first = results[0].as_ref().unwrap().channels[0].volts.clone();
     assert_eq!(first, BEAD[..3]);
     assert!(matches!(results[1], Err(MeasureError::Truncated(..))));
 }

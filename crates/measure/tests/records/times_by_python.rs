@@ -70,7 +70,7 @@ fn times_are_taken_for_times_in_every_format_and_with_any_header() {
             "{name}: {:e}",
             record.interval_s
         );
-        let volts = record.channels[0].samples.volts();
+        let volts = record.channels[0].volts.clone();
         assert_eq!(volts.len(), 800, "{name}");
         for (i, volt) in volts.iter().enumerate() {
             let expected = ((i * 37) % 101) as f64 / 128.0;

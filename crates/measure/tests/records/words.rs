@@ -165,7 +165,7 @@ fn many_columns_are_shots_and_few_only_if_told() {
             for (shot, record) in found.into_iter().enumerate() {
                 let record = record.unwrap();
                 let expected: Vec<f64> = (0..SAMPLES).map(|row| value(shot, row)).collect();
-                assert_eq!(record.channels[0].samples.volts(), expected);
+                assert_eq!(record.channels[0].volts, expected);
                 let noted = record.notes.iter().any(|n| n.contains("taken for a shot"));
                 assert_eq!(noted, options.rows == Rows::Auto, "{:?}", record.notes);
             }
@@ -176,7 +176,7 @@ fn many_columns_are_shots_and_few_only_if_told() {
         };
         let found = results(&path, &third);
         assert_eq!(found.len(), 1);
-        let volts = found[0].as_ref().unwrap().channels[0].samples.volts();
+        let volts = found[0].as_ref().unwrap().channels[0].volts.clone();
         assert_eq!(volts[1], value(2, 1));
         let few = npy("few", (SAMPLES, 5), fortran);
         let error = results(&few, &rate).remove(0).unwrap_err().to_string();

@@ -1,7 +1,8 @@
 //! Maxima as they were before an amplifier's low-pass.
 
 use crate::dry::Dry;
-use hertzchain_measure::signal::{Bandwidth, Channels, SignalError, SignalOptions, measure};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::signal::{Bandwidth, Channels, SignalOptions, measure};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// A computed shot behind a low-pass, by Euler's method in steps of 10 ns.
@@ -71,5 +72,5 @@ fn a_low_pass_of_another_order_is_refused() {
         ..SignalOptions::default()
     };
     let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
-    assert!(matches!(shot.flight, Err(SignalError::Option { .. })));
+    assert!(matches!(shot.flight, Err(MeasureError::Option(..))));
 }

@@ -203,7 +203,7 @@ fn other_methods_use_the_flanks_or_say_why_they_cannot() {
     );
     let told = onset(0.8).unwrap_err().to_string();
     assert!(told.contains("clipped"), "{told}");
-    let correlation = Method::CrossCorrelation(hertzchain_measure::signal::Template::Incident);
+    let correlation = Method::CrossCorrelation;
     let told = measured(&samples, &correlation)
         .flight
         .unwrap_err()

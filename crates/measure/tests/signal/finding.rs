@@ -6,9 +6,10 @@
 )]
 
 use crate::common::{Scene, channels};
+use hertzchain_measure::MeasureError;
 use hertzchain_measure::signal::{
-    Channels, DigitiserRange, FindOptions, Found, Polarity, PulseKind, QualityFlag, SignalError,
-    SignalOptions, measure, pulses,
+    Channels, DigitiserRange, FindOptions, Found, Polarity, PulseKind, QualityFlag, SignalOptions,
+    measure, pulses,
 };
 
 fn find(samples: &[f64]) -> Found {
@@ -448,7 +449,7 @@ fn a_stated_polarity_is_obeyed() {
     assert_found(&scene, &found, 0.1);
     let wrong = pulses(Channels::Summed(&samples), &finding(Polarity::Positive));
     assert!(
-        matches!(wrong, Err(SignalError::NoPulse { .. })),
+        matches!(wrong, Err(MeasureError::NoPulse { .. })),
         "{wrong:?}"
     );
 }
@@ -465,7 +466,7 @@ fn noise_alone_is_no_pulse() {
         };
         let found = pulses(Channels::Summed(&scene.summed()), &FindOptions::default());
         assert!(
-            matches!(found, Err(SignalError::NoPulse { .. })),
+            matches!(found, Err(MeasureError::NoPulse { .. })),
             "{found:?}"
         );
     }
@@ -475,20 +476,20 @@ fn noise_alone_is_no_pulse() {
 fn records_that_hold_nothing_say_why() {
     let on =
         |samples: &[f64]| pulses(Channels::Summed(samples), &FindOptions::default()).unwrap_err();
-    assert!(matches!(on(&[]), SignalError::TooShort { found: 0, .. }));
-    assert!(matches!(on(&[3.0; 500]), SignalError::Constant { .. }));
+    assert!(matches!(on(&[]), MeasureError::TooShort(0, _)));
+    assert!(matches!(on(&[3.0; 500]), MeasureError::Constant { .. }));
     let mut bad = Scene::default().summed();
     bad[77] = f64::INFINITY;
-    assert!(matches!(on(&bad), SignalError::NotFinite { index: 77, .. }));
+    assert!(matches!(on(&bad), MeasureError::NotFinite(77, _)));
     let pair = (vec![0.0; 100], vec![0.0; 99]);
     let lengths = pulses(channels(&pair), &FindOptions::default());
-    assert!(matches!(lengths, Err(SignalError::Lengths { .. })));
+    assert!(matches!(lengths, Err(MeasureError::Lengths { .. })));
     let finding = FindOptions {
         beads: Some((7, 7)),
         ..FindOptions::default()
     };
     let beads = pulses(Channels::Summed(&Scene::default().summed()), &finding);
-    assert!(matches!(beads, Err(SignalError::Option { .. })));
+    assert!(matches!(beads, Err(MeasureError::Option(..))));
 }
 
 /// A wall's pulse that falls three times as slowly as it rises.

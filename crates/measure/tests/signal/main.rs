@@ -6,7 +6,6 @@ mod clipping;
 mod common;
 mod competing;
 mod crosstalk;
-mod cutting;
 mod droop;
 #[path = "common/dry.rs"]
 mod dry;

@@ -7,9 +7,10 @@
 
 use crate::common::{Scene, channels, normal};
 use crate::dry::Dry;
+use hertzchain_measure::MeasureError;
 use hertzchain_measure::signal::{
     Channels, DigitiserRange, Estimate, Flight, LowPass, Method, PulseKind, QualityFlag, Shape,
-    SignalError, SignalOptions, Template, coverage, cramer_rao_s, measure,
+    SignalOptions, coverage, measure,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -22,13 +23,6 @@ fn matched() -> Method {
     Method::MatchedShape {
         shape: bell(),
         width: 2.0,
-    }
-}
-
-fn local() -> Method {
-    Method::LocalModel {
-        degree: 6,
-        width: 0.8,
     }
 }
 
@@ -67,12 +61,7 @@ fn scenes(interval_s: f64) -> impl Iterator<Item = Scene> {
 
 #[test]
 fn on_clean_signals_fits_are_unbiased_to_10_ns_at_1_ms_s() {
-    let methods = [
-        matched(),
-        Method::default(),
-        local(),
-        Method::CrossCorrelation(Template::Incident),
-    ];
+    let methods = [matched(), Method::default(), Method::CrossCorrelation];
     for method in methods {
         for scene in scenes(1e-6) {
             let found = flight(&scene, &method);
@@ -139,10 +128,8 @@ fn stated_errors_cover_what_they_say_at_40_db() {
     let methods = [
         matched(),
         Method::default(),
-        local(),
         Method::Onset { fraction: 0.5 },
-        Method::CrossCorrelation(Template::Incident),
-        Method::CrossCorrelation(Template::Shape(bell())),
+        Method::CrossCorrelation,
     ];
     for method in methods {
         let found = coverage(&pulls(&method, 0.01), 1.0).unwrap();
@@ -273,7 +260,15 @@ fn a_fit_of_the_true_shape_reaches_the_cramer_rao_bound() {
     };
     let found = flight(&scene, &matched());
     let (_, height, width) = scene.pulses[1];
-    let bound = cramer_rao_s(&bell(), height, width, 1e-6, 0.01);
+    // σ ≥ noise/√(Σ s'²), which holds with height, width and offset free as well, as time does not
+    // correlate with them in a symmetric shape.
+    let slope = |i: f64| {
+        0.5e6
+            * height
+            * (bell().value((i + 1.0) * 1e-6 / width) - bell().value((i - 1.0) * 1e-6 / width))
+    };
+    let squares: f64 = (-300..300).map(|i| slope(f64::from(i)).powi(2)).sum();
+    let bound = 0.01 / squares.sqrt();
     let ratio = found.picks.wall.sigma_s / bound;
     // Noise is estimated from some 700 samples, to 3 %; two widths hold all but 0.2 %.
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
@@ -334,25 +329,16 @@ fn filtered_noise_is_known_to_be_correlated() {
 fn methods_out_of_range_are_refused() {
     let samples = Scene::default().summed();
     let bad = [
-        Method::LocalModel {
-            degree: 1,
-            width: 1.0,
-        },
-        Method::LocalModel {
-            degree: 4,
-            width: f64::NAN,
-        },
+        Method::Onset { fraction: f64::NAN },
         Method::Onset { fraction: 1.0 },
         Method::MatchedShape {
             shape: bell(),
             width: 0.0,
         },
-        Method::CrossCorrelation(Template::Fixed(bell(), -1.0)),
-        Method::CrossCorrelation(Template::Fixed(bell(), 1.0)),
     ];
     for method in bad {
         let shot = measure(Channels::Summed(&samples), 1e-6, &by(&method)).unwrap();
-        let refused = matches!(shot.flight, Err(SignalError::Option { .. }));
+        let refused = matches!(shot.flight, Err(MeasureError::Option(..)));
         assert!(refused, "{method:?}");
     }
     assert!(measure(Channels::Summed(&samples), 0.0, &SignalOptions::default()).is_err());
@@ -375,16 +361,6 @@ fn off(found: &Flight) -> [f64; 2] {
         found.incident_s.value - (wall - passing),
         found.reflected_s.unwrap().value - (returning - wall),
     ]
-}
-
-#[test]
-fn the_local_model_times_maxima_of_skewed_pulses_to_60_ns() {
-    for k in 0..10 {
-        let off = off_on_a_dry_shot(&local(), 0.5e-3 + 0.1e-6 * f64::from(k));
-        // What degree 6 leaves of the skewness, and what trails the wall's pulse
-        // under the reflected one.
-        assert!(off.iter().all(|off| off.abs() < 60e-9), "{off:?}");
-    }
 }
 
 /// The aim, of both times: what dies away at the wall under the return moves the maximum of the
@@ -421,29 +397,10 @@ fn on_clean_skewed_pulses_in_two_channels_the_default_times_both_maxima_to_10_ns
 
 #[test]
 fn fits_of_symmetric_shapes_are_biased_on_skewed_pulses() {
-    let methods = [matched(), Method::CrossCorrelation(Template::Incident)];
+    let methods = [matched(), Method::CrossCorrelation];
     for method in methods {
         let [incident, _] = off_on_a_dry_shot(&method, 0.5e-3);
         // As docs/explanation/picking.md says: a two-hundredth of a width.
         assert!((-350e-9..-250e-9).contains(&incident), "{incident:e}");
     }
-}
-
-#[test]
-fn a_shape_of_ones_own_fits_its_pulses_at_any_width() {
-    // A skewed pulse: two bells that overlap.
-    let pulse = |z: f64| bell().value(z) + 0.4 * bell().value(z - 0.6);
-    let template: Vec<f64> = (0..800)
-        .map(|i| pulse((f64::from(i) - 300.0) / 90.0))
-        .collect();
-    let shape = Shape::sampled(&template).unwrap();
-    let scene = Scene {
-        shape: shape.clone(),
-        ..Scene::default()
-    };
-    let own = Method::MatchedShape { shape, width: 2.5 };
-    // Rounding: the scene is made of the same curve.
-    let off = |method| flight(&scene, &method).incident_s.value - scene.incident_s();
-    assert!(off(own).abs() < 1e-11);
-    assert!(off(matched()).abs() > 100e-9, "a symmetric one is off");
 }

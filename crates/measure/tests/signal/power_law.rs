@@ -88,7 +88,7 @@ fn what_cannot_be_fitted_is_refused() {
     );
     assert_eq!(power_law(&[1.0], &[1.0], None), Err(FitError::TooFew));
     assert_eq!(power_law(&[], &[], None), Err(FitError::TooFew));
-    let not_positive = Err(FitError::NotPositive { index: 1 });
+    let not_positive = Err(FitError::NotPositive(1));
     assert_eq!(power_law(&[1.0, 2.0], &[1.0, -1.0], None), not_positive);
     assert_eq!(power_law(&[1.0, f64::NAN], &[1.0, 1.0], None), not_positive);
     assert_eq!(
@@ -125,7 +125,7 @@ fn an_error_common_to_all_values_goes_to_the_prefactor() {
     assert_eq!(uncertainty(&[1.0, 2.0], &[0.0; 2]).unwrap().exponent, 0.0);
     assert_eq!(
         uncertainty(&[1.0, 2.0], &[1e-6, f64::INFINITY]),
-        Err(FitError::NotPositive { index: 1 })
+        Err(FitError::NotPositive(1))
     );
     assert_eq!(uncertainty(&[1.0], &[1e-6]), Err(FitError::TooFew));
 }

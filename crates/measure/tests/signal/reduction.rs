@@ -70,7 +70,7 @@ fn what_cannot_be_fitted_with_both_errors_is_refused() {
     assert_eq!(fit(&[1.0, 1.0], &one, &one, &one), Err(FitError::TooFew));
     assert_eq!(fit(&[], &[], &[], &[]), Err(FitError::TooFew));
     assert_eq!(fit(&[1.0], &[0.1], &[1.0], &[0.1]), Err(FitError::TooFew));
-    let index = FitError::NotPositive { index: 1 };
+    let index = FitError::NotPositive(1);
     assert_eq!(fit(&one, &[0.1, -0.1], &one, &one), Err(index.clone()));
     assert_eq!(fit(&one, &one, &[1.0, f64::NAN], &one), Err(index));
     assert!(matches!(

@@ -1,6 +1,7 @@
 //! The zero-phase low-pass against scipy.signal.
 
-use hertzchain_measure::signal::{LowPass, SignalError};
+use hertzchain_measure::MeasureError;
+use hertzchain_measure::signal::LowPass;
 
 fn samples() -> Vec<f64> {
     let sample = |i: f64| (-((i - 33.3) / 6.0).powi(2)).exp() + 0.3 * (0.9 * i).sin() + 0.01 * i;
@@ -71,6 +72,6 @@ fn what_cannot_be_filtered_is_refused() {
     bad[40] = f64::NAN;
     assert!(matches!(
         low_pass(1e5, 2).apply(&bad, 1e-6),
-        Err(SignalError::NotFinite { index: 40, .. })
+        Err(MeasureError::NotFinite(40, _))
     ));
 }

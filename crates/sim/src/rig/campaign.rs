@@ -7,7 +7,7 @@ use crate::rig::{Converter, MeasuredShot, Plan, RigError, Series, run_series};
 use crate::{Fingerprint, Inputs, Shard, commit};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_measure::records::{
-    Channels, SeriesInfo, SeriesWriter, ShotRow, remove_left_behind, untriggered, write_whole,
+    SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, remove_left_behind, untriggered, write_whole,
 };
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -398,8 +398,8 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
     let text = |name: &str, value: f64| (name.to_owned(), value.to_string());
     SeriesInfo {
         channels: match recorder.channels {
-            experiment::Channels::Summed => Channels::Summed,
-            experiment::Channels::Separate => Channels::Separate,
+            experiment::Channels::Summed => SeriesChannels::Summed,
+            experiment::Channels::Separate => SeriesChannels::Separate,
         },
         interval_s: recorder.sampling_hz.recip(),
         volts_per_count: Converter::new(recorder).volts_per_count(),

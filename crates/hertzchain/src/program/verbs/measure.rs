@@ -113,7 +113,7 @@ fn write(
     if let Some(figure) = pictures::signals(&measured.examples) {
         folder.figure("signals", &figure)?;
     }
-    if !(curves.cases.is_empty() && curves.lost.is_empty()) {
+    if !(curves.cases.is_empty() && curves.unmeasured.is_empty()) {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
     }
     if !curves.cases.is_empty() {

@@ -5,10 +5,10 @@ use super::{
     SEPARATE, SHOT, SUMMED, TRIGGERED, TRUTH, VOLTS_PER_COUNT,
 };
 use crate::error::{MeasureError, file_name};
-use crate::records::checksum;
 use crate::records::files::{exclusive, persist};
 use crate::records::hdf5::{describe, unit};
 use rust_hdf5::{H5Dataset, H5File, H5Group, H5Type, Hdf5Error};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -25,17 +25,16 @@ const MOST_IN_CHUNK: usize = 1 << 19;
 /// The second axis, which has no numbers of its own.
 const SAMPLE: &str = "sample";
 
-/// Channels of a recording.
+/// Channels of a series: both sensors added up in one, or one each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channels {
+pub enum SeriesChannels {
     /// Both sensors added up in one.
     Summed,
     /// The bead's sensor in one, the wall's in another.
     Separate,
 }
 
-impl Channels {
-    /// Names of the channels in a file.
+impl SeriesChannels {
     pub(super) fn names(self) -> &'static [&'static str] {
         match self {
             Self::Summed => SUMMED,
@@ -48,7 +47,7 @@ impl Channels {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesInfo {
     /// Channels of its samples.
-    pub channels: Channels,
+    pub channels: SeriesChannels,
     /// Time between samples in s.
     pub interval_s: f64,
     /// Size of the converter's step in V.
@@ -101,37 +100,17 @@ pub struct ShotRow<'a> {
 /// its part.
 pub struct SeriesWriter {
     path: PathBuf,
-    /// Removed when it is dropped.
     part: NamedTempFile,
-    open: Growing,
+    /// Dropped, the library would complete a file that goes away and, on a full disk, complain of
+    /// it to the terminal.
+    open: ManuallyDrop<Open>,
     samples_per_shot: usize,
-    columns: Columns,
+    columns: SeriesColumns,
 }
-
-/// The growing file; `None` once finished.
-struct Growing(Option<Open>);
 
 struct Open {
     file: H5File,
     channels: Vec<H5Dataset>,
-}
-
-impl Drop for Growing {
-    fn drop(&mut self) {
-        // Dropped, the library would complete a file that goes away and, on a full disk,
-        // complain of it to the terminal.
-        std::mem::forget(self.0.take());
-    }
-}
-
-impl std::fmt::Debug for SeriesWriter {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("SeriesWriter")
-            .field("path", &self.path)
-            .field("shots", &self.columns.shots.len())
-            .finish_non_exhaustive()
-    }
 }
 
 impl SeriesWriter {
@@ -149,11 +128,11 @@ impl SeriesWriter {
         Ok(Self {
             path: path.to_owned(),
             part,
-            open: Growing(Some(open)),
+            open: ManuallyDrop::new(open),
             samples_per_shot: info.samples_per_shot,
-            columns: Columns {
+            columns: SeriesColumns {
                 long_names: info.long_names,
-                ..Columns::default()
+                ..SeriesColumns::default()
             },
         })
     }
@@ -169,9 +148,8 @@ impl SeriesWriter {
             return Err(MeasureError::Samples(file_name(&self.path), detail));
         }
         let at = self.columns.shots.len();
-        let open = self.open.0.iter();
-        let channels = open.flat_map(|open| &open.channels);
-        for (channel, samples) in channels.zip(row.samples.chunks_exact(self.samples_per_shot)) {
+        let samples = row.samples.chunks_exact(self.samples_per_shot);
+        for (channel, samples) in self.open.channels.iter().zip(samples) {
             let written = append(channel, at, samples);
             written.map_err(|error| unwritable(&self.path, &error))?;
         }
@@ -183,17 +161,17 @@ impl SeriesWriter {
     ///
     /// # Errors
     /// [`MeasureError::Samples`] without shots, [`MeasureError::Unwritable`].
-    pub fn finish(mut self) -> Result<PathBuf, MeasureError> {
-        let open = self.open.0.take();
-        let Some(Open { file, channels }) = open.filter(|_| !self.columns.shots.is_empty()) else {
+    pub fn finish(self) -> Result<PathBuf, MeasureError> {
+        if self.columns.shots.is_empty() {
             return Err(MeasureError::empty(file_name(&self.path)));
-        };
+        }
+        let Open { file, channels } = ManuallyDrop::into_inner(self.open);
         let written = self.columns.write(&file, &channels).and_then(|()| {
             drop(channels);
             file.close()
         });
         written.map_err(|error| unwritable(&self.path, &error))?;
-        let sealed = checksum::append(self.part.as_file());
+        let sealed = super::append_checksum(self.part.as_file());
         let sealed = sealed.and_then(|()| persist(self.part, &self.path));
         sealed.map_err(|error| unwritable(&self.path, &error))?;
         Ok(self.path)
@@ -201,8 +179,8 @@ impl SeriesWriter {
 
     /// Why a shot does not fit the series.
     fn misfit(&self, row: &ShotRow<'_>) -> Option<String> {
-        let channels = self.open.0.as_ref().map_or(1, |open| open.channels.len());
-        let (all, found) = (channels * self.samples_per_shot, row.samples.len());
+        let all = self.open.channels.len() * self.samples_per_shot;
+        let found = row.samples.len();
         if found != all {
             return Some(format!("{found} samples in place of {all}"));
         }
@@ -226,7 +204,7 @@ impl SeriesWriter {
 
 /// What is small and written last, a column each.
 #[derive(Default)]
-struct Columns {
+struct SeriesColumns {
     shots: Vec<i64>,
     programmed: Vec<f64>,
     measured: Vec<f64>,
@@ -236,7 +214,7 @@ struct Columns {
     long_names: &'static [(&'static str, &'static str)],
 }
 
-impl Columns {
+impl SeriesColumns {
     fn push(&mut self, row: &ShotRow<'_>) {
         if self.shots.is_empty() {
             let truth = row.truth.iter().map(|value| (value.0, Vec::new()));
@@ -273,7 +251,11 @@ impl Columns {
             channel.attach_scale(1, &axis)?;
         }
         for (name, what, values) in [
-            (PROGRAMMED, "speed told to the striker", &self.programmed),
+            (
+                PROGRAMMED,
+                "programmed speed of the striker",
+                &self.programmed,
+            ),
             (MEASURED, "speed by the photogate", &self.measured),
         ] {
             column(&root, name, what, "m s-1", values)?.attach_scale(0, &shots)?;
@@ -289,7 +271,6 @@ impl Columns {
         self.write_contacts(&truth, &shots)
     }
 
-    /// Tables of shots and contacts.
     fn write_contacts(&self, truth: &H5Group, shots: &H5Dataset) -> Result<(), Hdf5Error> {
         let Some((_, first)) = self.contacts.first() else {
             return Ok(());
@@ -323,7 +304,6 @@ fn sample_axis(file: &H5File, count: usize) -> Result<H5Dataset, Hdf5Error> {
     Ok(axis)
 }
 
-/// A column of numbers with its unit.
 fn column<T: H5Type>(
     group: &H5Group,
     name: &str,
@@ -370,8 +350,8 @@ fn channel(file: &H5File, name: &str, info: &SeriesInfo) -> Result<H5Dataset, Hd
         .shuffle_deflate(DEFLATE)
         .create(name)?;
     let what = match info.channels {
-        Channels::Summed => "voltage of the summed sensors".to_owned(),
-        Channels::Separate => format!("voltage of the {name}"),
+        SeriesChannels::Summed => "voltage of the summed sensors".to_owned(),
+        SeriesChannels::Separate => format!("voltage of the {name}"),
     };
     describe(&samples, &what, "V")?;
     for (name, value) in [

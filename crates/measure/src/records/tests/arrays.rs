@@ -16,12 +16,12 @@ fn times_rise_evenly_in_either_precision_and_signals_do_not() {
 
 #[test]
 fn the_longer_axis_is_time_unless_told() {
-    let told = |shape: &[usize], rows| Axes::of(shape, rows).unwrap();
-    assert_eq!(told(&[20, 1000], Rows::Auto).shots, Some(0));
-    assert_eq!(told(&[1000, 2], Rows::Auto).channels, Some(1));
-    assert_eq!(told(&[2, 1000], Rows::Channels).channels, Some(0));
-    assert_eq!(told(&[2, 1000], Rows::Times).time, 0);
-    let columns = told(&[1000, 20], Rows::Moments);
+    let axes = |shape: &[usize], rows| Axes::new(shape, rows).unwrap();
+    assert_eq!(axes(&[20, 1000], Rows::Auto).shots, Some(0));
+    assert_eq!(axes(&[1000, 2], Rows::Auto).channels, Some(1));
+    assert_eq!(axes(&[2, 1000], Rows::Channels).channels, Some(0));
+    assert_eq!(axes(&[2, 1000], Rows::Times).time, 0);
+    let columns = axes(&[1000, 20], Rows::Moments);
     assert_eq!((columns.shots, columns.time), (Some(1), 0));
-    assert_eq!(Axes::of(&[1, 1, 1, 1], Rows::Auto), None);
+    assert_eq!(Axes::new(&[1, 1, 1, 1], Rows::Auto), None);
 }

@@ -1,6 +1,6 @@
 //! Delimiter, decimal sign and columns of a text; its fields as numbers.
 
-use super::lines::{Lines, Read, text};
+use super::{LineEnding, Lines, text};
 use std::borrow::Cow;
 use std::io;
 use std::path::Path;
@@ -8,7 +8,6 @@ use std::path::Path;
 /// Bytes of a file that show its dialect.
 const BEGINNING: usize = 1 << 18;
 
-/// Rows that are compared.
 const ROWS: usize = 60;
 
 /// Share of rows in which a column must hold a number to be one of numbers.
@@ -45,7 +44,6 @@ const MISSING: &[&str] = &[
     "#div/0!", "1.#qnan", "1.#ind", "-1.#ind", "-1.#qnan",
 ];
 
-/// How a text writes its columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Dialect {
     pub delimiter: char,
@@ -64,16 +62,13 @@ impl Dialect {
         // The end of the beginning: preambles are over by then.
         let rows = lines.len().div_ceil(2).min(ROWS);
         let rows = lines.get(lines.len() - rows..)?;
-        let mut best: Option<(f64, char, bool)> = None;
-        for decimal_comma in [false, true] {
-            for delimiter in DELIMITERS {
-                let share = share(rows, delimiter, decimal_comma);
-                if share > best.map_or(0.0, |best| best.0) {
-                    best = Some((share, delimiter, decimal_comma));
-                }
-            }
-        }
-        let (_, delimiter, decimal_comma) = best?;
+        let signs = [false, true].into_iter();
+        let dialects = signs.flat_map(|comma| DELIMITERS.map(|delimiter| (delimiter, comma)));
+        let shares =
+            dialects.map(|(delimiter, comma)| (share(rows, delimiter, comma), delimiter, comma));
+        // The first of equals.
+        let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let (_, delimiter, decimal_comma) = best.filter(|best| best.0 > 0.0)?;
         let mut dialect = Self {
             delimiter,
             decimal_comma,
@@ -109,7 +104,6 @@ impl Dialect {
     }
 }
 
-/// Share of the fields that are numbers.
 fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
     let (mut numbers, mut all) = (0.0, 0.0);
     for row in rows {
@@ -130,19 +124,17 @@ fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
 pub(super) fn beginning(file: &Path) -> io::Result<String> {
     let mut lines = Lines::open(file)?;
     let (mut all, mut line) = (String::new(), Vec::new());
-    loop {
-        match lines.next(&mut line)? {
-            Read::Nothing => return Ok(all),
-            Read::Begun if !all.is_empty() && all.len() + line.len() > BEGINNING => return Ok(all),
-            Read::Begun | Read::Whole => {}
+    while all.len() < BEGINNING {
+        let ending = lines.next(&mut line)?;
+        let goes_on = ending == LineEnding::Begun && !all.is_empty();
+        if ending == LineEnding::Nothing || goes_on && all.len() + line.len() > BEGINNING {
+            break;
         }
         line.truncate(BEGINNING);
         all += &text(&line);
         all.push('\n');
-        if all.len() >= BEGINNING {
-            return Ok(all);
-        }
     }
+    Ok(all)
 }
 
 /// The fields of a line. Spaces separate in runs; quotes keep delimiters.

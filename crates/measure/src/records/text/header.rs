@@ -3,87 +3,60 @@
 use super::dialect::{Dialect, last_digit, leading_number, number, time_of_day_s};
 use super::times::{self, Printed};
 
-/// Units of seconds.
 const SECONDS: &[&str] = &[
     "s", "sec", "secs", "second", "seconds", "sekunde", "sekunden", "seconde", "secondes",
     "segundos",
 ];
 
-/// Prefixes of units of time.
-const PREFIXES: &[(&str, f64)] = &[
-    ("", 1.0),
-    ("m", 1e-3),
-    ("milli", 1e-3),
-    ("u", 1e-6),
-    ("µ", 1e-6),
-    ("μ", 1e-6),
-    ("micro", 1e-6),
-    ("mikro", 1e-6),
-    ("n", 1e-9),
-    ("nano", 1e-9),
+const PREFIXES: &[(&[&str], f64)] = &[
+    (&[""], 1.0),
+    (&["m", "milli"], 1e-3),
+    (&["u", "µ", "μ", "micro", "mikro"], 1e-6),
+    (&["n", "nano"], 1e-9),
 ];
 
 /// Endings of units of rates, and prefixes.
 const RATES: &[&str] = &["hz", "s/s", "sa/s"];
-const RATE_PREFIXES: &[(&str, f64)] = &[("", 1.0), ("k", 1e3), ("m", 1e6), ("g", 1e9)];
+const RATE_PREFIXES: &[(&[&str], f64)] =
+    &[(&[""], 1.0), (&["k"], 1e3), (&["m"], 1e6), (&["g"], 1e9)];
 
 /// Units of channels, which show that a line has units.
 const VOLTS: &[&str] = &["v", "mv", "µv", "uv", "volt", "volts"];
 
-/// Names of columns of times.
+/// Names of columns of times, and of columns that count.
 const TIMES: &[&str] = &[
     "t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x",
 ];
-
-/// Names of columns that count.
 const COUNTS: &[&str] = &[
     "#", "n", "no", "nr", "index", "sample", "samples", "point", "sequence",
 ];
 
-/// Names of intervals that begin a header line, and stand over their value in a table.
+/// Names of intervals that begin a header line, or stand over their value, a recorder a line:
+/// Tektronix, Keysight and LeCroy, Rigol, LabVIEW, others.
+#[rustfmt::skip]
 const INTERVALS: &[&str] = &[
-    // Tektronix
-    "sample interval",
-    "sampling interval",
-    "sample period",
-    "sampling period",
-    "horizontal interval",
-    // Keysight, LeCroy
-    "x increment",
-    "xincr",
-    // Rigol
-    "increment",
-    "interval",
-    // LabVIEW
-    "delta(second)",
-    "delta_x",
-    "delta x",
-    "time resolution",
-    "dt",
-    "abtastintervall",
+    "sample interval", "sampling interval", "sample period", "sampling period", "horizontal interval",
+    "x increment", "xincr",
+    "increment", "interval",
+    "delta(second)", "delta_x", "delta x", "time resolution",
+    "dt", "abtastintervall",
 ];
 
 /// Names of rates that begin a header line.
+#[rustfmt::skip]
 const RATE_NAMES: &[&str] = &[
-    "sample rate",
-    "sampling rate",
-    "samplerate",
-    "sampling frequency",
-    "sample frequency",
-    "rate",
-    "fs",
-    "abtastrate",
+    "sample rate", "sampling rate", "samplerate", "sampling frequency", "sample frequency", "rate",
+    "fs", "abtastrate",
 ];
 
 /// What separates a name and its unit: "time_us", "t/ms".
 const APART: [char; 4] = ['_', '/', ' ', ','];
 
-/// Lines that may state the sampling beside the numbers, and rows that show what a column is.
-const BESIDE: usize = 40;
+/// Lines that may state the sampling next to numbers, and rows that show what a column is.
+const SHOWN: usize = 40;
 
-/// Meaning of the columns.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Header {
+pub(super) struct TextHeader {
     /// Columns that are channels.
     pub channels: Vec<usize>,
     pub names: Vec<String>,
@@ -96,7 +69,7 @@ pub(super) struct Header {
     pub interval_s: Option<f64>,
 }
 
-impl Header {
+impl TextHeader {
     /// Reads the lines before the first row and the first rows. A column that counts is one of
     /// times if `counts_are_times`.
     pub(super) fn of(beginning: &str, dialect: &Dialect, counts_are_times: bool) -> Self {
@@ -157,12 +130,12 @@ fn seconds(unit: &str) -> Option<f64> {
 }
 
 /// The prefix of a unit as a number.
-fn prefixed(unit: &str, units: &[&str], prefixes: &[(&str, f64)]) -> Option<f64> {
+fn prefixed(unit: &str, units: &[&str], prefixes: &[(&[&str], f64)]) -> Option<f64> {
     let unit = unit.trim().to_lowercase();
     units.iter().find_map(|known| {
         let prefix = unit.strip_suffix(known)?;
-        let mut prefixes = prefixes.iter();
-        prefixes.find(|one| one.0 == prefix).map(|one| one.1)
+        let found = prefixes.iter().find(|one| one.0.contains(&prefix));
+        found.map(|one| one.1)
     })
 }
 
@@ -185,7 +158,7 @@ fn printed(beginning: &str, dialect: &Dialect) -> Vec<Printed> {
 
 /// The step of a column of which the first rows rise evenly.
 fn even_step(column: &[Printed]) -> Option<f64> {
-    let rows = column.get(..BESIDE).unwrap_or(column);
+    let rows = column.get(..SHOWN).unwrap_or(column);
     let (first, last) = (rows.first()?.s, rows.last()?.s);
     let step = (last - first) / (rows.len().checked_sub(1)? as f64);
     let mut numbered = rows.iter().enumerate();
@@ -262,7 +235,6 @@ fn split_unit(title: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// A title without a unit in brackets.
 fn without_bracket(title: &str) -> &str {
     match title.trim().ends_with([')', ']']) {
         true => split_unit(title).0,
@@ -287,13 +259,12 @@ fn ending_s(title: &str) -> Option<f64> {
 
 /// The interval that a line before or beside the numbers states.
 fn stated_s(beginning: &str, dialect: &Dialect) -> Option<f64> {
-    let lines = beginning.lines().take(dialect.first_row.max(BESIDE));
+    let lines = beginning.lines().take(dialect.first_row.max(SHOWN));
     let mut pairs = lines.clone().zip(lines.clone().skip(1));
     let beside = lines.clone().find_map(|line| line_states_s(line, dialect));
     beside.or_else(|| pairs.find_map(|(titles, values)| below_s(titles, values, dialect)))
 }
 
-/// The interval that stands under its name.
 fn below_s(titles: &str, values: &str, dialect: &Dialect) -> Option<f64> {
     let titles = dialect.fields(titles);
     let mut names = titles.iter().map(|title| title.to_lowercase());

@@ -1,13 +1,13 @@
 //! Rows into records, line by line.
 
 use super::dialect::{Dialect, last_digit, no_number, number};
-use super::lines::{Lines, Read, text};
 use super::times::{self, Printed, Returns};
+use super::{LineEnding, Lines, text};
 use crate::error::{MeasureError, file_name};
-use crate::records::interval::{self, Interval};
+use crate::records::interval::{self, SampleInterval};
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, Samples};
-use crate::records::stream::{MOST_SAMPLES, from_sample};
+use crate::records::record::{Channel, Record};
+use crate::records::stored::{MOST_SAMPLES, from_sample};
 use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io;
@@ -17,8 +17,7 @@ use std::path::{Path, PathBuf};
 /// Longest footer in lines: more is something else.
 const LONGEST_FOOTER: usize = 8;
 
-/// What is read of every row.
-pub(super) struct Plan {
+pub(super) struct RowPlan {
     pub dialect: Dialect,
     pub names: Vec<String>,
     pub columns: Vec<usize>,
@@ -27,7 +26,7 @@ pub(super) struct Plan {
     /// Interval in s that a line beside the numbers states.
     pub stated_s: Option<f64>,
     /// The interval; of the last segment where times are written.
-    pub interval: Interval,
+    pub interval: SampleInterval,
     /// Lines that, seen again, separate segments.
     pub separators: Vec<String>,
     pub options: ReadOptions,
@@ -39,12 +38,11 @@ pub(super) struct Segments {
     file: PathBuf,
     lines: Lines,
     bytes: Vec<u8>,
-    plan: Plan,
+    plan: RowPlan,
     line: usize,
     ended: bool,
     /// Skipping to the next segment after a bad row.
     skipping: bool,
-    /// Segments so far.
     shots: u64,
     /// Samples of the segment under way that were returned before.
     passed: usize,
@@ -55,18 +53,18 @@ pub(super) struct Segments {
     footer: Option<Footer>,
     /// Whether no row came since a segment's end: lines in words would be its footer.
     trailing: bool,
-    block: Block,
+    block: TextBlock,
     ready: VecDeque<Result<Record, MeasureError>>,
 }
 
 /// Rows since the last separator.
 #[derive(Default)]
-struct Block {
+struct TextBlock {
     times: Vec<Printed>,
     columns: Vec<Vec<f64>>,
 }
 
-impl Block {
+impl TextBlock {
     fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
@@ -74,9 +72,7 @@ impl Block {
 
 /// Lines in words that follow numbers.
 struct Footer {
-    /// The first line.
     shown: String,
-    /// Why it is no row.
     detail: String,
     lines: usize,
 }
@@ -84,12 +80,12 @@ struct Footer {
 enum Line {
     Row(Option<Printed>, Vec<f64>),
     Separator,
-    Words { shown: String, detail: String },
+    Words(Footer),
     Bad(String),
     End,
 }
 
-impl Plan {
+impl RowPlan {
     /// Time and samples of a row. Cells without a number count in whole lines only.
     fn row(&self, fields: &[Cow<'_, str>], whole: bool) -> Option<(Option<Printed>, Vec<f64>)> {
         let comma = self.dialect.decimal_comma;
@@ -128,7 +124,7 @@ impl Plan {
 }
 
 impl Segments {
-    pub(super) fn open(file: &Path, plan: Plan) -> io::Result<Self> {
+    pub(super) fn open(file: &Path, plan: RowPlan) -> io::Result<Self> {
         let mut lines = Lines::open(file)?;
         let mut bytes = Vec::new();
         for _ in 0..plan.dialect.first_row {
@@ -148,14 +144,14 @@ impl Segments {
             returns: Returns::default(),
             footer: None,
             trailing: false,
-            block: Block::default(),
+            block: TextBlock::default(),
             ready: VecDeque::new(),
         })
     }
 
     fn line(&mut self) -> Line {
         let read = match self.lines.next(&mut self.bytes) {
-            Ok(Read::Nothing) => return Line::End,
+            Ok(LineEnding::Nothing) => return Line::End,
             Ok(read) => read,
             Err(cause) => {
                 let error = MeasureError::reading(&self.file, cause);
@@ -164,7 +160,7 @@ impl Segments {
             }
         };
         self.line += 1;
-        let whole = read == Read::Whole;
+        let whole = read == LineEnding::Whole;
         let line = text(&self.bytes);
         let fields = self.plan.dialect.fields(&line);
         let blank = fields.iter().all(|field| field.is_empty());
@@ -177,16 +173,19 @@ impl Segments {
         let shown: String = line.chars().take(60).collect();
         let detail = format!("line {} is no row of numbers: {shown:?}", self.line);
         match (is_worded(&line), whole) {
-            (true, _) => Line::Words { shown, detail },
+            (true, _) => Line::Words(Footer {
+                shown,
+                detail,
+                lines: 0,
+            }),
             (false, true) => Line::Bad(detail),
             (false, false) => Line::Bad(format!("line {} stops in the middle", self.line)),
         }
     }
 
-    /// Reads a line.
     fn advance(&mut self) {
         match self.line() {
-            Line::Row(..) | Line::Words { .. } | Line::Bad(_) if self.skipping => {}
+            Line::Row(..) | Line::Words(_) | Line::Bad(_) if self.skipping => {}
             Line::Row(time, values) => match self.footer.take() {
                 Some(footer) => self.reject(footer.detail),
                 None => {
@@ -201,12 +200,8 @@ impl Segments {
                 self.skipping = false;
                 self.trailing = true;
             }
-            Line::Words { shown, detail } => {
-                let footer = self.footer.get_or_insert(Footer {
-                    shown,
-                    detail,
-                    lines: 0,
-                });
+            Line::Words(first) => {
+                let footer = self.footer.get_or_insert(first);
                 footer.lines += 1;
                 if footer.lines > LONGEST_FOOTER {
                     let detail = std::mem::take(&mut footer.detail);
@@ -228,7 +223,7 @@ impl Segments {
     fn reject(&mut self, detail: String) {
         self.footer = None;
         self.trailing = false;
-        self.block = Block::default();
+        self.block = TextBlock::default();
         self.skipping = true;
         self.shots += 1;
         let error = MeasureError::malformed(&self.file, "text", detail);
@@ -270,7 +265,7 @@ impl Segments {
         if Some(length) == self.plan.options.parts.most() {
             self.close(false);
         } else if length > MOST_SAMPLES {
-            self.block = Block::default();
+            self.block = TextBlock::default();
             self.skipping = true;
             let error = MeasureError::too_long(file_name(&self.file), MOST_SAMPLES);
             self.ready.push_back(Err(error));
@@ -310,7 +305,7 @@ impl Segments {
         }
     }
 
-    fn record(&mut self, block: &Block, range: Range<usize>) -> Result<Record, MeasureError> {
+    fn record(&mut self, block: &TextBlock, range: Range<usize>) -> Result<Record, MeasureError> {
         // The number of the only record would say nothing, but when it is made it is not known
         // whether more will follow.
         let segment = match self.shots {
@@ -323,7 +318,8 @@ impl Segments {
         let channels = self.plan.names.iter().zip(&block.columns);
         let channels = channels.map(|(name, column)| Channel {
             name: name.clone(),
-            samples: Samples::Volts(column[range.clone()].to_vec()),
+            volts: column[range.clone()].to_vec(),
+            range_v: None,
         });
         let channels = channels.collect();
         let notes = self.plan.note.iter().cloned();
@@ -337,10 +333,14 @@ impl Segments {
     }
 
     /// The interval of a segment; a piece that goes on has that of the piece before it.
-    fn interval(&mut self, source: &str, times: &[Printed]) -> Result<Interval, MeasureError> {
+    fn interval(
+        &mut self,
+        source: &str,
+        times: &[Printed],
+    ) -> Result<SampleInterval, MeasureError> {
         let options = &self.plan.options;
         if let Some(rate_hz) = options.trusted_rate_hz() {
-            return Ok(Interval::exact(rate_hz.recip()));
+            return Ok(SampleInterval::exact(rate_hz.recip()));
         }
         if self.plan.time.is_some() && self.passed == 0 {
             let range = times::interval(source, times)?;

@@ -47,7 +47,6 @@ impl Printed {
     }
 }
 
-/// The largest unit of the last digit.
 fn unit_s(times: &[Printed]) -> f64 {
     times.iter().fold(0.0, |unit, time| time.unit_s.max(unit))
 }

@@ -1,8 +1,8 @@
 //! One channel: polarity, baseline, its first pulse, and smoothed stretches with their maxima.
 
 use super::{Normalisation, Polarity, Pulse, PulseKind};
+use crate::error::{MeasureError, all_finite};
 use crate::signal::baseline::{Baseline, baseline};
-use crate::signal::error::{SignalError, all_finite};
 use crate::signal::filters::triangular_mean;
 use crate::signal::statistics::{NORMAL_MAD, median, median_and_spread};
 use std::ops::Range;
@@ -36,12 +36,12 @@ pub(super) struct ChannelSignal<'a> {
 }
 
 impl<'a> ChannelSignal<'a> {
-    pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, SignalError> {
-        SignalError::enough(samples.len(), 16 * BLOCK)?;
+    pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, MeasureError> {
+        MeasureError::enough(samples.len(), 16 * BLOCK)?;
         let (low, high) = extremes(samples);
         let blocks = blocks(samples, (low, high))?;
         if low == high {
-            return Err(SignalError::Constant(low));
+            return Err(MeasureError::Constant(low));
         }
         let stride = blocks.len().div_ceil(2048);
         let some: Vec<f64> = blocks.iter().copied().step_by(stride).collect();
@@ -57,7 +57,7 @@ impl<'a> ChannelSignal<'a> {
         let broad = baseline.broad_noise() / (BLOCK as f64).sqrt();
         let swing_to_noise = swing / broad.min(baseline.noise);
         if !(swing > 0.0 && (swing_to_noise >= LEAST_SWING || baseline.noise == 0.0)) {
-            return Err(SignalError::NoPulse(swing_to_noise));
+            return Err(MeasureError::NoPulse(swing_to_noise));
         }
         Ok(Self {
             samples,
@@ -72,7 +72,6 @@ impl<'a> ChannelSignal<'a> {
         })
     }
 
-    /// Height of a block above the baseline.
     fn block_height(&self, block: usize) -> f64 {
         let value = self.blocks.get(block).copied();
         value.map_or(0.0, |value| self.normalisation.height(value))
@@ -88,7 +87,7 @@ impl<'a> ChannelSignal<'a> {
 }
 
 /// Means of `BLOCK` samples each; what is left over at the end is not used.
-fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, SignalError> {
+fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, MeasureError> {
     let (whole, rest) = samples.as_chunks::<BLOCK>();
     let scale = (BLOCK as f64).recip();
     let means = whole.iter().map(|[a, b, c, d]| ((a + b) + (c + d)) * scale);
@@ -139,7 +138,7 @@ fn rough_width(blocks: &[f64], cross: usize, height: impl Fn(f64) -> f64) -> f64
 }
 
 /// Baseline before the first pulse; a rough one of the whole record if there is no such part.
-fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline, SignalError> {
+fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline, MeasureError> {
     let quiet = &quiet[quiet.len().saturating_sub(ENOUGH)..];
     if quiet.len() >= QUIET {
         return baseline(quiet);
@@ -172,9 +171,8 @@ pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
     (low, high)
 }
 
-/// A maximum of a smoothed stretch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Maximum {
+pub(super) struct SmoothedMaximum {
     pub(super) at: usize,
     pub(super) height: f64,
 }
@@ -182,15 +180,13 @@ pub(super) struct Maximum {
 /// Heights above the baseline of a stretch, smoothed without delay, and their maxima.
 pub(super) struct Smoothed<'a> {
     pub(super) channel: &'a ChannelSignal<'a>,
-    /// Sample of the first value.
     first: usize,
     values: Vec<f64>,
-    /// Standard deviation of the remaining noise.
     pub(super) noise: f64,
     /// Samples in each of the two averages.
     length: usize,
     /// Maxima that stand out of noise and of the highest pulse's hundredths.
-    pub(super) maxima: Vec<Maximum>,
+    pub(super) maxima: Vec<SmoothedMaximum>,
 }
 
 impl<'a> Smoothed<'a> {
@@ -236,7 +232,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Maxima from which the signal falls by `drop` on both sides, in order.
-    fn maxima(&self, drop: f64) -> Vec<Maximum> {
+    fn maxima(&self, drop: f64) -> Vec<SmoothedMaximum> {
         let mut maxima = Vec::new();
         let (mut top, mut valley, mut rising) = (0, f64::INFINITY, true);
         for (i, value) in self.values.iter().enumerate() {
@@ -253,7 +249,7 @@ impl<'a> Smoothed<'a> {
         }
         // What only falls from the start on was cut off, not found.
         maxima.retain(|top| *top > 0);
-        let maximum = |top: usize| Maximum {
+        let maximum = |top: usize| SmoothedMaximum {
             at: self.first + top,
             height: self.values[top],
         };
@@ -267,7 +263,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Both sides of the full width at half maximum about a maximum, corrected for the smoothing.
-    pub(super) fn sides(&self, of: &Maximum) -> (f64, f64) {
+    pub(super) fn sides(&self, of: &SmoothedMaximum) -> (f64, f64) {
         let (left, right) = self.reach(of, 0.5 * of.height);
         let seen = right - left;
         let n = self.length as f64;
@@ -279,7 +275,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Where the signal last falls to `height` on either side of a maximum, between samples.
-    fn reach(&self, of: &Maximum, height: f64) -> (f64, f64) {
+    fn reach(&self, of: &SmoothedMaximum, height: f64) -> (f64, f64) {
         let top = of.at.saturating_sub(self.first);
         let below = |i: &usize| self.values[*i] < height;
         let left = (0..top).rev().find(below);
@@ -295,8 +291,7 @@ impl<'a> Smoothed<'a> {
         (self.first as f64 + left, self.first as f64 + right)
     }
 
-    /// The pulse about a maximum.
-    pub(super) fn pulse(&self, kind: PulseKind, maximum: &Maximum) -> Pulse {
+    pub(super) fn pulse(&self, kind: PulseKind, maximum: &SmoothedMaximum) -> Pulse {
         let (from, to) = self.reach(maximum, 0.1 * maximum.height);
         let sides_samples = self.sides(maximum);
         let last = self.channel.samples.len().saturating_sub(1);

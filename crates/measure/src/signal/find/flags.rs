@@ -1,11 +1,11 @@
 //! Clipped tops, digitiser steps, and competing maxima of the pulses found.
 
-use super::channel::{Maximum, Smoothed, extremes};
+use super::channel::{Smoothed, SmoothedMaximum, extremes};
 use super::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Pulse, PulseKind, QualityFlag,
 };
 use crate::signal::Estimate;
-use crate::signal::pick::{ChannelView, clipped_top, fitted_maximum};
+use crate::signal::pick::{ChannelView, clipped_top, maximum_by_fit};
 
 /// Share of a whole pulse's height below which no other pulse of its channel is clipped.
 const AS_HIGH: f64 = 0.9;
@@ -117,17 +117,18 @@ const SIGNIFICANT: f64 = 3.0;
 pub(super) fn other_maxima(
     smoothed: &Smoothed<'_>,
     (from, to): (f64, f64),
-    chosen: &Maximum,
-) -> Vec<Maximum> {
+    chosen: &SmoothedMaximum,
+) -> Vec<SmoothedMaximum> {
     let least = chosen.height - CLOSE * smoothed.noise;
     let (rise, fall) = smoothed.sides(chosen);
     let apart = (APART * (rise + fall)) as usize;
-    let near = |m: &&Maximum| (m.at as f64) > from && (m.at as f64) < to && m.height > least;
-    let mut near: Vec<Maximum> = smoothed.maxima.iter().filter(near).copied().collect();
+    let near =
+        |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to && m.height > least;
+    let mut near: Vec<SmoothedMaximum> = smoothed.maxima.iter().filter(near).copied().collect();
     near.sort_by(|a, b| b.height.total_cmp(&a.height));
     let mut tops = vec![*chosen];
     for maximum in near {
-        let is_other = |top: &Maximum| top.at.abs_diff(maximum.at) > apart;
+        let is_other = |top: &SmoothedMaximum| top.at.abs_diff(maximum.at) > apart;
         if tops.len() <= MOST && tops.iter().all(is_other) {
             tops.push(maximum);
         }
@@ -151,7 +152,7 @@ pub(super) fn compare_maxima(found: &mut Found, others: &[Pulse], channels: Chan
         }
         let mut tops: Vec<(Pulse, f64, Estimate)> = Vec::new();
         for pulse in pulses {
-            let (time, height) = fitted(found, &pulse, channels);
+            let (time, height) = top_by_fit(found, &pulse, channels);
             let apart = APART * pulse.width_samples;
             if !tops.iter().any(|other| (other.1 - time).abs() < apart) {
                 tops.push((pulse, time, height));
@@ -177,10 +178,10 @@ pub(super) fn compare_maxima(found: &mut Found, others: &[Pulse], channels: Chan
 
 /// Sample and height of a maximum by a fit to the samples about it; those of the smoothed signal
 /// where none succeeds.
-fn fitted(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> (f64, Estimate) {
+fn top_by_fit(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> (f64, Estimate) {
     let normalisation = *found.normalisation(pulse.kind);
     let view = ChannelView::new(channels, pulse.kind, normalisation);
-    let (at, value, sigma) = fitted_maximum(&view, pulse).map_or(
+    let (at, value, sigma) = maximum_by_fit(&view, pulse).map_or(
         (pulse.at as f64, pulse.height, normalisation.baseline.noise),
         |picked| (picked.time_s, picked.height, picked.height_sigma),
     );

@@ -9,9 +9,9 @@ mod select;
 pub use found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, QualityFlag};
 pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 use channel::{ChannelSignal, Smoothed};
-use select::Selection;
+use select::PulseSelection;
 
 /// Finds the incident, the wall's and the reflected pulse of one shot.
 ///
@@ -29,7 +29,7 @@ use select::Selection;
 /// # Errors
 /// Too few, not finite or constant samples; no pulse at all; channels of different lengths; options
 /// out of range. A missing wall or reflected pulse is no error but a [`QualityFlag`].
-pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found, SignalError> {
+pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found, MeasureError> {
     conditioned_pulses(channels, channels, options)
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn conditioned_pulses(
     channels: Channels<'_>,
     recorded: Channels<'_>,
     options: &FindOptions,
-) -> Result<Found, SignalError> {
+) -> Result<Found, MeasureError> {
     options.check()?;
     let (mut found, others) = match channels {
         Channels::Summed(samples) => summed(samples, options),
@@ -62,14 +62,14 @@ pub(crate) fn conditioned_pulses(
 ///
 /// # Errors
 /// As [`pulses`].
-pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, SignalError> {
+pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, MeasureError> {
     ChannelSignal::new(samples, polarity).map(|channel| channel.normalisation)
 }
 
 /// What was found, and other maxima that could be the largest of their pulses.
 type Gathered = (Found, Vec<Pulse>);
 
-fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, SignalError> {
+fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
     let channel = ChannelSignal::new(samples, options.polarity)?;
     let end = select::end_of_interest(&channel, options);
     let mut smoothed = Smoothed::of_all(&channel, end);
@@ -88,9 +88,9 @@ fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, SignalErro
     Ok(gather(&selection, [&smoothed, &smoothed, back]))
 }
 
-fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered, SignalError> {
+fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
     if sensor.len() != wall.len() {
-        return Err(SignalError::Lengths(format!(
+        return Err(MeasureError::Lengths(format!(
             "the sensor's channel has {} samples and the wall's {}: they must be recorded together",
             sensor.len(),
             wall.len()
@@ -119,7 +119,7 @@ fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathe
 /// signal-to-noise ratio: with less, single samples would choose among its fragments.
 fn smooth_reflected<'a>(
     channel: &'a ChannelSignal<'a>,
-    selection: &mut Selection,
+    selection: &mut PulseSelection,
     end: usize,
 ) -> Option<Smoothed<'a>> {
     let (from, to) = selection.windows[2];
@@ -132,7 +132,7 @@ fn smooth_reflected<'a>(
 }
 
 /// Pulses with their quality flags, each from the stretch smoothed for it.
-fn gather(selection: &Selection, views: [&Smoothed<'_>; 3]) -> Gathered {
+fn gather(selection: &PulseSelection, views: [&Smoothed<'_>; 3]) -> Gathered {
     let pulse = |i: usize| {
         let maximum = selection.maxima[i].as_ref();
         maximum.map(|maximum| views[i].pulse(PulseKind::ALL[i], maximum))
@@ -181,7 +181,6 @@ const LOW: f64 = 10.0;
 /// Samples across the half maximum below which means of four hide a pulse.
 const FEW: f64 = 5.0;
 
-/// Flags of each pulse and of neighbours.
 fn pulse_flags(pulses: &[Option<Pulse>; 3], views: [&Smoothed<'_>; 3]) -> Vec<QualityFlag> {
     let seen: Vec<(&Pulse, &Smoothed<'_>)> = pulses
         .iter()

@@ -1,6 +1,6 @@
 //! What is known of a record before its pulses are searched for.
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 
 /// Samples of a shot: how sensor bead and wall were recorded.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,6 @@ impl<'a> Channels<'a> {
         }
     }
 
-    /// The samples that hold a pulse.
     pub(crate) fn of(&self, kind: super::PulseKind) -> &'a [f64] {
         self.both()[usize::from(kind == super::PulseKind::Wall)]
     }
@@ -151,12 +150,12 @@ impl FindOptions {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), SignalError> {
-        SignalError::positive("width of a pulse in beads", self.limits.width_beads)?;
+    pub(super) fn check(&self) -> Result<(), MeasureError> {
+        MeasureError::positive("width of a pulse in beads", self.limits.width_beads)?;
         let Some((beads, sensor)) = self.beads else {
             return Ok(());
         };
-        SignalError::require(
+        MeasureError::require(
             (1..beads).contains(&sensor),
             "number of the sensor bead",
             sensor as f64,

@@ -1,6 +1,6 @@
 //! Which maximum is which pulse.
 
-use super::channel::{ChannelSignal, Maximum, Smoothed};
+use super::channel::{ChannelSignal, Smoothed, SmoothedMaximum};
 use super::{FindOptions, PulseLimits};
 use crate::signal::linear::{MOST, NormalEquations};
 use std::f64::consts::LN_2;
@@ -18,11 +18,10 @@ const TO_AND_FRO: f64 = 1.5;
 /// alone reaches as many in less than 0.2 % of shots.
 const LEAST_SIGNIFICANCE: f64 = 4.3;
 
-/// The chosen maxima.
 #[derive(Clone, Default)]
-pub(super) struct Selection {
+pub(super) struct PulseSelection {
     /// Incident, wall, reflected.
-    pub(super) maxima: [Option<Maximum>; 3],
+    pub(super) maxima: [Option<SmoothedMaximum>; 3],
     pub(super) order_doubtful: bool,
     /// One of the three is missing, and it is open which.
     pub(super) unidentified: bool,
@@ -46,7 +45,6 @@ impl Timing {
         }
     }
 
-    /// Expected incident time.
     fn expected(&self) -> Option<f64> {
         let (beads, sensor) = self.beads?;
         Some((beads as f64 - sensor as f64 + 0.5) / self.limits.width_beads * self.width)
@@ -85,14 +83,14 @@ impl Timing {
     }
 
     /// Whether a pulse is too low beside the incident one to be the wall's.
-    fn is_too_low_for_wall(&self, pulse: &Maximum, incident: &Maximum) -> bool {
+    fn is_too_low_for_wall(&self, pulse: &SmoothedMaximum, incident: &SmoothedMaximum) -> bool {
         pulse.height < self.limits.wall_over_incident_min * incident.height
     }
 }
 
 /// Largest of the maxima between two samples; the first of equals.
-pub(super) fn largest(maxima: &[Maximum], from: f64, to: f64) -> Option<Maximum> {
-    let inside = |m: &&Maximum| (m.at as f64) > from && (m.at as f64) < to;
+pub(super) fn largest(maxima: &[SmoothedMaximum], from: f64, to: f64) -> Option<SmoothedMaximum> {
+    let inside = |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to;
     let inside = maxima.iter().filter(inside).copied();
     inside.reduce(|best, next| {
         if next.height > best.height {
@@ -118,21 +116,21 @@ pub(super) fn end_of_interest(channel: &ChannelSignal<'_>, options: &FindOptions
 }
 
 /// Incident, wall, reflected in one channel, in this order.
-pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> Selection {
+pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> PulseSelection {
     let (channel, maxima) = (smoothed.channel, &smoothed.maxima);
     let timing = Timing::new(channel, options);
     let width = channel.width;
     let start = channel.first as f64 - width;
     let first = largest(maxima, start, channel.first as f64 + 1.5 * width);
     let Some(first) = first.or_else(|| largest(maxima, start, f64::INFINITY)) else {
-        return Selection::default();
+        return PulseSelection::default();
     };
     let (from, to) = timing.wall_window();
     let began = first.at as f64;
     let Some(wall) = largest(maxima, began + from, began + to) else {
-        return Selection {
+        return PulseSelection {
             maxima: [Some(first), None, None],
-            ..Selection::default()
+            ..PulseSelection::default()
         };
     };
     let wall = half_way(maxima, first, wall, &timing);
@@ -142,7 +140,7 @@ pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> Selectio
     let latest = reached + timing.latest_reflected() * time;
     let back = reached + (EARLIEST * time).max(width);
     let reflected = largest(maxima, back, latest);
-    let selection = Selection {
+    let selection = PulseSelection {
         order_doubtful: is_doubtful(maxima, [first, incident, wall], reflected, &timing),
         maxima: [Some(incident), Some(wall), reflected],
         unidentified: false,
@@ -162,11 +160,11 @@ pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> Selectio
 /// that is open; then a second pulse that is high enough is no proof either if the record is long
 /// enough to show a third one.
 fn identify_two(
-    selection: Selection,
-    [first, second]: [Maximum; 2],
+    selection: PulseSelection,
+    [first, second]: [SmoothedMaximum; 2],
     channel: &ChannelSignal<'_>,
     timing: &Timing,
-) -> Selection {
+) -> PulseSelection {
     let limits = &timing.limits;
     let time = (second.at - first.at) as f64;
     let may_be_reflected = second.height < limits.reflected_over_incident_max * first.height;
@@ -179,7 +177,7 @@ fn identify_two(
             }
             false => return selection,
         };
-        return Selection {
+        return PulseSelection {
             maxima,
             windows: [(0.0, 0.0); 3],
             ..selection
@@ -190,7 +188,7 @@ fn identify_two(
     let least = 2.0 * LEAST_SIGNIFICANCE * noise * (1.6 / timing.width.sqrt());
     let seen = limits.reflected_over_wall_min * second.height > least;
     let shows_all = seen && !ends_early(first.at, second.at, channel.samples.len());
-    Selection {
+    PulseSelection {
         unidentified: may_be_reflected || shows_all,
         ..selection
     }
@@ -205,7 +203,12 @@ pub(super) fn ends_early(incident: usize, wall: usize, samples: usize) -> bool {
 /// The wall's pulse, if what was taken for it is the reflected one: another pulse stands half way,
 /// where a sensor bead at rest shows none. One of half the height will do; less if the incident
 /// pulse's width makes half way likelier.
-fn half_way(maxima: &[Maximum], first: Maximum, wall: Maximum, timing: &Timing) -> Maximum {
+fn half_way(
+    maxima: &[SmoothedMaximum],
+    first: SmoothedMaximum,
+    wall: SmoothedMaximum,
+    timing: &Timing,
+) -> SmoothedMaximum {
     let (began, whole) = (first.at as f64, (wall.at - first.at) as f64);
     let least = timing.expected().map_or(0.5, |expected| {
         let nearer = (0.5 * whole / expected).ln().abs() < (whole / expected).ln().abs();
@@ -218,14 +221,14 @@ fn half_way(maxima: &[Maximum], first: Maximum, wall: Maximum, timing: &Timing) 
 
 /// Whether something else could be the wall's or the reflected pulse.
 fn is_doubtful(
-    maxima: &[Maximum],
-    [first, incident, wall]: [Maximum; 3],
-    reflected: Option<Maximum>,
+    maxima: &[SmoothedMaximum],
+    [first, incident, wall]: [SmoothedMaximum; 3],
+    reflected: Option<SmoothedMaximum>,
     timing: &Timing,
 ) -> bool {
     let (began, time) = (incident.at as f64, (wall.at - incident.at) as f64);
     let between = largest(maxima, began + 0.25 * time, began + 0.75 * time);
-    let unusual = |back: Maximum| {
+    let unusual = |back: SmoothedMaximum| {
         let ratio = (back.at - wall.at) as f64 / time;
         back.height > 0.9 * wall.height || !timing.reflected_over_incident().contains(&ratio)
     };
@@ -244,22 +247,22 @@ pub(super) fn separate(
     sensor: &Smoothed<'_>,
     wall: &Smoothed<'_>,
     options: &FindOptions,
-) -> Selection {
+) -> PulseSelection {
     let (channel, sensor) = (sensor.channel, &sensor.maxima);
     let timing = Timing::new(channel, options);
     let Some(wall) = largest(&wall.maxima, 0.0, f64::INFINITY) else {
-        return Selection {
+        return PulseSelection {
             maxima: [largest(sensor, 0.0, f64::INFINITY), None, None],
-            ..Selection::default()
+            ..PulseSelection::default()
         };
     };
     let (width, reached) = (channel.width, wall.at as f64);
     let before = reached - 0.5 * width;
     let Some(incident) = largest(sensor, 0.0, before) else {
-        return Selection {
+        return PulseSelection {
             maxima: [None, Some(wall), None],
             order_doubtful: true,
-            ..Selection::default()
+            ..PulseSelection::default()
         };
     };
     let at = incident.at as f64;
@@ -268,11 +271,11 @@ pub(super) fn separate(
     let latest = reached + 3.0 * time;
     let reflected = largest(sensor, back, latest);
     let first = channel.first as f64;
-    let unusual = |found: Maximum| {
+    let unusual = |found: SmoothedMaximum| {
         let ratio = (found.at as f64 - reached) / time;
         found.height > incident.height || !timing.reflected_over_incident().contains(&ratio)
     };
-    Selection {
+    PulseSelection {
         order_doubtful: at < first - width
             || at > first + 2.0 * width
             || reflected.is_some_and(unusual)
@@ -309,7 +312,7 @@ impl Smoothed<'_> {
     /// that falls ever more slowly lies below its chord and only makes the Gaussian lower. What is
     /// so wide that it may be the background's own hump must hold a pulse as wide as the first one
     /// beside a parabola.
-    fn is_significant(&self, maximum: &Maximum) -> bool {
+    fn is_significant(&self, maximum: &SmoothedMaximum) -> bool {
         let width = self.channel.width;
         let (rise, fall) = self.sides(maximum);
         if 2.0 * rise.min(fall) > HUMP * width {
@@ -322,7 +325,7 @@ impl Smoothed<'_> {
     }
 
     /// Height of a Gaussian of this width beside a polynomial, in its standard errors.
-    fn significance(&self, maximum: &Maximum, width: f64, terms: usize) -> f64 {
+    fn significance(&self, maximum: &SmoothedMaximum, width: f64, terms: usize) -> f64 {
         let ChannelSignal {
             samples,
             normalisation,

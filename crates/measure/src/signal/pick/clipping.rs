@@ -1,7 +1,7 @@
 //! Clipped tops: whether a pulse has one, and the whole pulse by its flanks.
 
 use super::ChannelView;
-use super::log_polynomial::{BellData, CUT_OFF, DEGREE, LEVEL, Prior, WIDTH};
+use super::log_polynomial::{BellData, CUT_OFF, DEGREE, LEVEL, ShapePrior, WIDTH};
 use crate::signal::Pulse;
 use crate::signal::linear::{MOST, NormalEquations, Optimum, Row};
 use std::f64::consts::{LN_2, TAU};
@@ -116,7 +116,7 @@ fn samples(view: &ChannelView<'_>, centre: f64, half: f64, noise: f64) -> Option
             true => noise / (together as f64).sqrt(),
             false => noise.max(0.5 * step),
         },
-        prior: Prior::of_flanks(1.0, 1.0),
+        prior: ShapePrior::of_flanks(1.0, 1.0),
         capped: false,
     };
     (data.points.len() > MOST).then_some(data)
@@ -147,14 +147,12 @@ fn curvature_evidence(whole: &Optimum<Row>, noise: f64, gaussian: f64) -> Option
 /// Share of the height at which a pulse is clipped down to which its flanks are fitted.
 const FOOT: f64 = 0.25;
 /// Fewest samples of the longer flank.
-const FEWEST_BESIDE: usize = 4;
+const FEWEST_NEXT: usize = 4;
 
 /// A Gaussian through the flanks of a clipped pulse; in samples.
 pub(super) struct Flanks {
-    /// Its maximum.
     pub(super) at: f64,
     height: f64,
-    /// Full width at half maximum.
     width: f64,
 }
 
@@ -166,7 +164,7 @@ impl Flanks {
         let middle = 0.5 * (first as f64 + last as f64);
         let half = pulse.width_samples.max(4.0);
         let mut normal = NormalEquations::new(3);
-        for (sample, height) in beside(view, pulse, (first, last)) {
+        for (sample, height) in flank_samples(view, pulse, (first, last)) {
             let u = (sample - middle) / half;
             let mut row = [0.0; MOST];
             row[..3].copy_from_slice(&[height, height * u, height * u * u]);
@@ -183,7 +181,6 @@ impl Flanks {
         (curvature < 0.0 && inside).then_some(found)
     }
 
-    /// The whole pulse.
     pub(super) fn pulse(&self, clipped: &Pulse) -> Pulse {
         Pulse {
             height: self.height,
@@ -203,14 +200,18 @@ impl Flanks {
 
 /// Samples and heights from the clipped ones to the foot on the steeper side, and as far on the
 /// other: the tail of an asymmetric pulse, or what it stands on, is no flank.
-fn beside(view: &ChannelView<'_>, pulse: &Pulse, (first, last): (usize, usize)) -> Vec<(f64, f64)> {
+fn flank_samples(
+    view: &ChannelView<'_>,
+    pulse: &Pulse,
+    (first, last): (usize, usize),
+) -> Vec<(f64, f64)> {
     let foot = FOOT * pulse.height;
     let tall = |at: usize| Some((at as f64, view.height(at).filter(|height| *height > foot)?));
     let whole = |at: &usize| !pulse.is_clipped(*at);
     let before = (0..first).rev().filter(whole).map_while(tall);
     let after = (last..view.samples.len()).filter(whole).map_while(tall);
     let (before, after): (Vec<_>, Vec<_>) = (before.collect(), after.collect());
-    let shorter = before.len().min(after.len()).max(FEWEST_BESIDE);
+    let shorter = before.len().min(after.len()).max(FEWEST_NEXT);
     let both = before.into_iter().take(shorter);
     both.chain(after.into_iter().take(shorter)).collect()
 }

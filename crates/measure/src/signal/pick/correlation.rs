@@ -1,9 +1,9 @@
 //! Where a template correlates best with the signal, and the delay between two sampled pulses.
 
 use super::polynomial::pick_roughly;
-use super::{ChannelView, Picked, Shape, Systematic, Template};
+use super::{ChannelView, Picked};
+use crate::error::MeasureError;
 use crate::signal::Pulse;
-use crate::signal::error::SignalError;
 use crate::signal::filters::triangular_mean;
 
 /// Half the length of a template, in full widths at half maximum: a bell is
@@ -20,7 +20,7 @@ const APART: f64 = 0.3 / (2.0 * REACH);
 /// Least share of a template's slopes squared that is taken for the pulse's, not noise's.
 const LEAST: f64 = 0.25;
 
-/// A template. An offset of the signal adds the same to its correlation at all
+/// The incident pulse as template. An offset of the signal adds the same to its correlation at all
 /// lags, and so does not matter.
 pub(super) struct Correlator {
     template: Vec<f64>,
@@ -28,76 +28,35 @@ pub(super) struct Correlator {
     top: f64,
     /// Σ t'² over its samples.
     slopes: f64,
-    /// Sample and pick of the record's own pulse, and so as noisy: its time is its maximum's.
-    own: Option<(usize, Picked)>,
+    /// Sample and pick of the pulse itself, which is as noisy: its time is its maximum's.
+    own: (usize, Picked),
 }
 
 impl Correlator {
-    pub(super) fn new(
-        template: &Template,
-        sensor: &ChannelView<'_>,
-        incident: &Pulse,
-        interval_s: f64,
-    ) -> Result<Self, SignalError> {
-        match template {
-            Template::Incident => Self::from_incident(sensor, incident),
-            Template::Shape(shape) => Ok(Self::from_shape(shape, incident.width_samples)),
-            Template::Fixed(shape, width_s) => {
-                let width = width_s / interval_s;
-                SignalError::require(
-                    (2.0..sensor.samples.len() as f64).contains(&width),
-                    "width of the template in samples",
-                    width,
-                    "from 2 to the length of the record",
-                )?;
-                Ok(Self::from_shape(shape, width))
-            }
-        }
-    }
-
-    fn from_shape(shape: &Shape, width: f64) -> Self {
-        let half = (REACH * width).ceil();
-        let count = 2 * half as usize + 1;
-        let samples = (0..count).map(|i| shape.value((i as f64 - half) / width));
-        Self::from_samples(samples.collect(), half)
-    }
-
-    fn from_incident(sensor: &ChannelView<'_>, pulse: &Pulse) -> Result<Self, SignalError> {
+    pub(super) fn new(sensor: &ChannelView<'_>, pulse: &Pulse) -> Result<Self, MeasureError> {
         if pulse.clipped.is_some() {
             let what = "top to be a template, clipped as it is,";
-            return Err(SignalError::NoPick(pulse.kind, what));
+            return Err(MeasureError::NoPick(pulse.kind, what));
         }
         let picked = pick_roughly(sensor, pulse)?;
         let reach = REACH * pulse.width_samples;
         let at = picked.time_s;
         let (first, heights) = sensor.window(at - reach, at + reach);
         let length = (SMOOTHING * pulse.width_samples) as usize | 1;
-        let smooth = triangular_mean(&heights, length);
-        let correlator = Self::from_samples(smooth, at - first as f64);
+        let template = triangular_mean(&heights, length);
+        let slopes = template.windows(3).map(|three| 0.5 * (three[2] - three[0]));
+        let slopes = slopes.map(|s| s * s).sum::<f64>();
         let noise = sensor.broad_noise(pulse);
         // Slopes of the smoothed noise have 2/length³ of its variance a sample.
         let of_noise = 2.0 * heights.len() as f64 * noise * noise / (length as f64).powi(3);
-        let of_pulse = (correlator.slopes - of_noise).max(LEAST * correlator.slopes);
-        let picked = Picked {
-            sigma_s: noise / of_pulse.sqrt(),
-            systematic: Systematic::default(),
-            misfit: None,
-            ..picked
-        };
+        let of_pulse = (slopes - of_noise).max(LEAST * slopes);
+        let sigma_s = noise / of_pulse.sqrt();
         Ok(Self {
-            own: Some((pulse.at, picked)),
-            ..correlator
-        })
-    }
-
-    fn from_samples(template: Vec<f64>, top: f64) -> Self {
-        let slopes = template.windows(3).map(|three| 0.5 * (three[2] - three[0]));
-        Self {
-            slopes: slopes.map(|s| s * s).sum(),
             template,
-            top,
-            own: None,
-        }
+            top: at - first as f64,
+            slopes,
+            own: (pulse.at, picked.by_fit(at, sigma_s, None)),
+        })
     }
 
     /// Time in samples. Variance: noise² Σ t'²/(Σ t' s')², with t the template, its own noise
@@ -108,21 +67,16 @@ impl Correlator {
         &self,
         view: &ChannelView<'_>,
         pulse: &Pulse,
-    ) -> Result<Picked, SignalError> {
-        if let Some((_, picked)) = self.own.filter(|(at, _)| *at == pulse.at) {
-            return Ok(picked);
+    ) -> Result<Picked, MeasureError> {
+        if self.own.0 == pulse.at {
+            return Ok(self.own.1);
         }
         let at_top = pick_roughly(view, pulse)?;
         let best = self.best_lag(view, pulse);
-        let none = SignalError::NoPick(pulse.kind, "largest correlation");
+        let none = MeasureError::NoPick(pulse.kind, "largest correlation");
         let (time_s, curvature) = best.ok_or(none)?;
-        Ok(Picked {
-            time_s,
-            sigma_s: view.broad_noise(pulse) * self.slopes.sqrt() / curvature,
-            systematic: Systematic::default(),
-            misfit: None,
-            ..at_top
-        })
+        let sigma_s = view.broad_noise(pulse) * self.slopes.sqrt() / curvature;
+        Ok(at_top.by_fit(time_s, sigma_s, None))
     }
 
     /// Where the template's maximum lies when the correlation is largest, and its curvature there,

@@ -4,7 +4,7 @@ use super::clipping::Flanks;
 use super::polynomial::Top;
 use super::{ChannelView, Picked};
 use crate::signal::linear::{
-    MOST, NormalEquations, Optimum, Polynomial, Row, levenberg_marquardt, powers,
+    FittedPolynomial, MOST, NormalEquations, Optimum, Row, levenberg_marquardt, powers,
 };
 use crate::signal::{Pulse, PulseKind};
 use std::array::from_fn;
@@ -57,9 +57,9 @@ const SOFT: f64 = 0.3;
 pub(super) fn pick(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
     let half = 0.5 * WHOLE_WIDTH * pulse.steep_width_samples();
     let tries = NARROWER.iter().map(|share| {
-        let window = Window {
+        let window = BellWindow {
             half: (share * half).max(4.0),
-            prior: Prior::of_whole(pulse, *share),
+            prior: ShapePrior::of_whole(pulse, *share),
         };
         Some((fit_about(view, pulse, pulse.at as f64, &window)?, *share))
     });
@@ -79,8 +79,8 @@ pub(super) fn pick_from_flanks(view: &ChannelView<'_>, pulse: &Pulse) -> Option<
             let whole = flanks.pulse(&pulse);
             let half = (share * flanks.half(&pulse)).max(4.0);
             let widths = half / whole.width_samples / (0.5 * WIDTH);
-            let prior = Prior::of_flanks(widths, even);
-            let window = Window { half, prior };
+            let prior = ShapePrior::of_flanks(widths, even);
+            let window = BellWindow { half, prior };
             Some((fit_about(view, &whole, flanks.at, &window)?, *share))
         })
     });
@@ -103,22 +103,22 @@ fn first_adequate(tries: impl Iterator<Item = Option<((Picked, bool), f64)>>) ->
 }
 
 /// Where a bell is fitted, and its prior.
-struct Window {
+struct BellWindow {
     /// Samples from the middle to either end.
     half: f64,
-    prior: Prior,
+    prior: ShapePrior,
 }
 
 /// Mean and standard deviation of each coefficient beyond a Gaussian's, independent of the samples.
 #[derive(Clone, Copy)]
-pub(super) struct Prior {
+pub(super) struct ShapePrior {
     mean: Row,
     deviation: Row,
     /// One deviation, more, of all of them together.
     together: Row,
 }
 
-impl Prior {
+impl ShapePrior {
     /// Of a whole pulse over a share of the usual width. An asymmetric one is of no usual shape, and
     /// its coefficients may be as large as those of any.
     fn of_whole(pulse: &Pulse, share: f64) -> Self {
@@ -178,7 +178,7 @@ fn fit_about(
     view: &ChannelView<'_>,
     pulse: &Pulse,
     begun: f64,
-    window: &Window,
+    window: &BellWindow,
 ) -> Option<(Picked, bool)> {
     let noise = view.broad_noise(pulse).hypot(inexact(pulse));
     let mut centre = begun;
@@ -207,9 +207,9 @@ fn inexact(pulse: &Pulse) -> f64 {
 fn pick_at(
     view: &ChannelView<'_>,
     pulse: &Pulse,
-    fit: &Polynomial,
+    fit: &FittedPolynomial,
     u: f64,
-    prior: &Prior,
+    prior: &ShapePrior,
 ) -> Option<(Picked, bool)> {
     let height = fit.at(u).value.exp();
     let before = Slope::zero(fit, view.inverse, u)?;
@@ -240,8 +240,8 @@ fn pick_at(
     Some((top.pick(view, pulse, fit, before), !beyond))
 }
 
-/// From u to the place farthest off at which noise may have made the logarithm the lower.
-fn reach(fit: &Polynomial, u: f64, noise: f64) -> f64 {
+/// From u to the place furthest at which noise may have made the logarithm the lower.
+fn reach(fit: &FittedPolynomial, u: f64, noise: f64) -> f64 {
     const STEPS: i32 = 24;
     let (top, row) = (fit.at(u).value, powers(u));
     let may_be_top = |v: &f64| {
@@ -260,9 +260,9 @@ fn fit(
     view: &ChannelView<'_>,
     pulse: &Pulse,
     centre: f64,
-    window: &Window,
+    window: &BellWindow,
     noise: f64,
-) -> Option<(Polynomial, f64)> {
+) -> Option<(FittedPolynomial, f64)> {
     let half = window.half;
     let (first, heights) = view.window(centre - half, centre + half);
     let point = |(i, height): (usize, f64)| {
@@ -291,13 +291,12 @@ pub(super) struct BellData {
     pub(super) points: Vec<(f64, f64)>,
     pub(super) degree: usize,
     pub(super) noise: f64,
-    pub(super) prior: Prior,
+    pub(super) prior: ShapePrior,
     /// Whether the bell ends at a level, which is then the last parameter.
     pub(super) capped: bool,
 }
 
 impl BellData {
-    /// Number of the logarithm's coefficients.
     fn terms(&self) -> usize {
         if self.capped { LEVEL } else { MOST }
     }
@@ -329,7 +328,6 @@ impl BellData {
         )
     }
 
-    /// Logarithm of the bell at u.
     fn logarithm(&self, bell: &Row, u: f64) -> f64 {
         let terms = powers(u).into_iter().zip(bell).take(self.terms());
         terms.map(|(r, c)| r * c).sum()
@@ -369,7 +367,12 @@ impl BellData {
         squares.is_finite().then_some((normal, squares))
     }
 
-    fn polynomial(&self, optimum: &Optimum<Row>, centre: f64, half: f64) -> Option<Polynomial> {
+    fn polynomial(
+        &self,
+        optimum: &Optimum<Row>,
+        centre: f64,
+        half: f64,
+    ) -> Option<FittedPolynomial> {
         let mut solution = optimum.normal.solve()?;
         solution.values = optimum.model;
         // What the samples, not the prior, determine.
@@ -379,7 +382,7 @@ impl BellData {
         let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
         let residuals = self.residuals(&optimum.model);
         let squares: f64 = residuals.map(|(residual, _)| residual * residual).sum();
-        Some(Polynomial {
+        Some(FittedPolynomial {
             centre,
             half,
             degree: self.degree,
@@ -401,7 +404,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(bell: &Polynomial, [a, b]: [f64; 2], u: f64) -> Self {
+    fn new(bell: &FittedPolynomial, [a, b]: [f64; 2], u: f64) -> Self {
         let (a, b) = (a / bell.half, b / bell.half.powi(2));
         let rows = derivative_rows(u);
         let of = |row: &Row| -> f64 {
@@ -423,7 +426,7 @@ impl Slope {
     }
 
     /// Where it falls through 0, from the bell's own maximum on.
-    fn zero(bell: &Polynomial, inverse: [f64; 2], from: f64) -> Option<f64> {
+    fn zero(bell: &FittedPolynomial, inverse: [f64; 2], from: f64) -> Option<f64> {
         let mut u = from;
         for _ in 0..40 {
             let at = Self::new(bell, inverse, u);

@@ -9,9 +9,9 @@ mod superposition;
 
 pub(crate) use clipping::clipped_top;
 pub use correlation::delay_by_cross_correlation;
-pub use shape::{Shape, cramer_rao_of_samples_s, cramer_rao_s};
+pub use shape::Shape;
 
-use crate::signal::error::SignalError;
+use crate::error::MeasureError;
 use crate::signal::{
     Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
 };
@@ -24,20 +24,10 @@ pub enum Method {
     /// ± 0.2, as prior, so noise does not bend it.
     ///
     /// *Bias:* none for symmetric pulses; of skewed ones, less than the stated error, which holds
-    /// what the shape leaves open. Where noise hides the maximum, as [`Method::LocalModel`].
+    /// what the shape leaves open. Where noise hides the maximum, a quartic over 1.2 widths is tried,
+    /// then a parabola over 0.8.
     #[default]
     Maximum,
-    /// Time of the maximum of a polynomial fitted about the largest sample.
-    ///
-    /// *Bias:* none for symmetric pulses; of a skewed one, what the polynomial leaves over: less
-    /// with higher degree or smaller width. Where noise leaves this fit no maximum, degree 4 over
-    /// 1.2 widths is tried, then a parabola over 0.8.
-    LocalModel {
-        /// Degree of the polynomial, 2 to 8.
-        degree: usize,
-        /// Full width of the fit, in full widths at half maximum of the pulse.
-        width: f64,
-    },
     /// Time at which the rising flank passes a share of the maximum.
     ///
     /// *Bias:* against maxima, the difference of the two pulses' rise times from that share: first
@@ -46,11 +36,11 @@ pub enum Method {
         /// Share of the maximum, between 0 and 1.
         fraction: f64,
     },
-    /// Time at which a template fits best, by its correlation with the signal.
+    /// Time at which the incident pulse fits best, by its correlation with the signal.
     ///
     /// *Bias:* none for pulses that differ in height alone, nor for symmetric ones of different
     /// widths; for pulses of different skewness a share of the width.
-    CrossCorrelation(Template),
+    CrossCorrelation,
     /// Time of a shape fitted with its height, width and offset free.
     ///
     /// *Bias:* none if both pulses have the shape, whatever their widths; for skewed pulses a share
@@ -61,17 +51,6 @@ pub enum Method {
         /// Full width of the fit, in full widths at half maximum of the pulse.
         width: f64,
     },
-}
-
-/// Template of a cross-correlation.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Template {
-    /// The incident pulse itself.
-    Incident,
-    /// A shape, as wide at half maximum as the incident pulse is.
-    Shape(Shape),
-    /// A shape of a given full width at half maximum in s.
-    Fixed(Shape, f64),
 }
 
 /// A picked pulse.
@@ -217,32 +196,18 @@ impl<'a> ChannelView<'a> {
 }
 
 /// Picks the pulses that were found, given the digitiser's range, where it is known, in the
-/// channels that hold the sensor's and the wall's pulses.
-///
-/// # Errors
-/// No incident or no wall's pulse; no maximum or crossing where one of these is; options out of
-/// range. A reflected pulse that cannot be picked is left out.
-pub fn pick(
-    channels: Channels<'_>,
-    interval_s: f64,
-    found: &Found,
-    method: &Method,
-    ranges: [Option<DigitiserRange>; 2],
-) -> Result<Picks, SignalError> {
-    pick_corrected(channels, interval_s, found, method, (ranges, None))
-}
-
-/// As [`pick`], with maxima corrected for an amplifier's low-pass; times of other methods are not.
-pub(crate) fn pick_corrected(
+/// channels that hold the sensor's and the wall's pulses. Maxima are corrected for an amplifier's
+/// low-pass; times of other methods are not. A reflected pulse that cannot be picked is left out.
+pub(crate) fn pick(
     channels: Channels<'_>,
     interval_s: f64,
     found: &Found,
     method: &Method,
     (ranges, amplifier): ([Option<DigitiserRange>; 2], Option<Bandwidth>),
-) -> Result<Picks, SignalError> {
-    SignalError::positive("sampling interval in s", interval_s)?;
+) -> Result<Picks, MeasureError> {
+    MeasureError::positive("sampling interval in s", interval_s)?;
     method.check()?;
-    let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(SignalError::Missing(kind));
+    let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
     let incident = need(&found.incident, PulseKind::Incident)?;
     let wall = need(&found.wall, PulseKind::Wall)?;
     let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s));
@@ -254,10 +219,10 @@ pub(crate) fn pick_corrected(
         ..ChannelView::new(channels, kind, *found.normalisation(kind))
     };
     let views = PulseKind::ALL.map(view);
-    let picker = Picker::new(method, &views[0], &incident, interval_s)?;
+    let picker = Picker::new(method, &views[0], &incident)?;
     let pick = |pulse: &Pulse| {
         let picked = picker.pick(&views[pulse.kind as usize], pulse)?;
-        Ok::<Picked, SignalError>(picked.in_seconds(interval_s))
+        Ok::<Picked, MeasureError>(picked.in_seconds(interval_s))
     };
     let reflected = found.reflected.and_then(|pulse| pick(&pulse).ok());
     let competing = |kind| {
@@ -279,12 +244,22 @@ pub(crate) fn pick_corrected(
 }
 
 /// A pulse's maximum by a fit to the samples about it, in samples.
-pub(crate) fn fitted_maximum(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
+pub(crate) fn maximum_by_fit(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
     Picker::Maximum.pick(view, pulse).ok()
 }
 
 impl Picked {
-    /// From samples to s.
+    /// The same with a time of another method, of no systematic error.
+    fn by_fit(self, time_s: f64, sigma_s: f64, misfit: Option<f64>) -> Self {
+        Self {
+            time_s,
+            sigma_s,
+            systematic: Systematic::default(),
+            misfit,
+            ..self
+        }
+    }
+
     fn in_seconds(self, interval_s: f64) -> Self {
         Self {
             time_s: self.time_s * interval_s,
@@ -300,26 +275,23 @@ impl Picked {
 }
 
 impl Method {
-    fn check(&self) -> Result<(), SignalError> {
+    fn check(&self) -> Result<(), MeasureError> {
         let within = |name, value: f64, low: f64, high: f64, expected| {
-            SignalError::require(value >= low && value <= high, name, value, expected)
+            MeasureError::require(value >= low && value <= high, name, value, expected)
         };
-        let wide = "a number from 0.2 to 4";
         match self {
-            Self::LocalModel { degree, width } => {
-                let degree = *degree as f64;
-                within("degree of the local model", degree, 2.0, 8.0, "2 to 8")?;
-                within("width of the local model", *width, 0.2, 4.0, wide)
-            }
             Self::Onset { fraction } => {
                 let expected = "a share of the maximum from 0.02 to 0.95";
                 within("threshold", *fraction, 0.02, 0.95, expected)
             }
-            Self::CrossCorrelation(Template::Fixed(_, width_s)) => {
-                SignalError::positive("width of the template in s", *width_s)
-            }
-            Self::Maximum | Self::CrossCorrelation(_) => Ok(()),
-            Self::MatchedShape { width, .. } => within("width of the fit", *width, 0.2, 4.0, wide),
+            Self::MatchedShape { width, .. } => within(
+                "width of the fit",
+                *width,
+                0.2,
+                4.0,
+                "a number from 0.2 to 4",
+            ),
+            Self::Maximum | Self::CrossCorrelation => Ok(()),
         }
     }
 }
@@ -327,7 +299,6 @@ impl Method {
 /// A method prepared for one shot; times in samples.
 enum Picker<'a> {
     Maximum,
-    Local(usize, f64),
     Onset(f64),
     Correlation(correlation::Correlator),
     Matched(&'a Shape, f64),
@@ -338,41 +309,37 @@ impl<'a> Picker<'a> {
         method: &'a Method,
         sensor: &ChannelView<'_>,
         incident: &Pulse,
-        interval_s: f64,
-    ) -> Result<Self, SignalError> {
+    ) -> Result<Self, MeasureError> {
         Ok(match method {
             Method::Maximum => Self::Maximum,
-            Method::LocalModel { degree, width } => Self::Local(*degree, *width),
             Method::Onset { fraction } => Self::Onset(*fraction),
             Method::MatchedShape { shape, width } => Self::Matched(shape, *width),
-            Method::CrossCorrelation(template) => Self::Correlation(correlation::Correlator::new(
-                template, sensor, incident, interval_s,
-            )?),
+            Method::CrossCorrelation => {
+                Self::Correlation(correlation::Correlator::new(sensor, incident)?)
+            }
         })
     }
 
-    fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+    fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
         if pulse.clipped.is_some() {
             return self.pick_clipped(view, pulse);
         }
         match self {
             Self::Maximum => log_polynomial::pick(view, pulse)
                 .map_or_else(|| polynomial::pick_in_noise(view, pulse), Ok),
-            Self::Local(degree, width) => polynomial::pick_maximum(view, pulse, *degree, *width),
             Self::Onset(fraction) => polynomial::pick_onset(view, pulse, *fraction),
             Self::Correlation(correlator) => correlator.pick(view, pulse),
             Self::Matched(shape, width) => shape::pick(view, pulse, shape, *width),
         }
     }
 
-    /// Of a clipped pulse, from its flanks.
-    fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
-        let none = |what| SignalError::NoPick(pulse.kind, what);
+    fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+        let none = |what| MeasureError::NoPick(pulse.kind, what);
         let top = log_polynomial::pick_from_flanks(view, pulse);
         let top =
             top.ok_or_else(|| none("maximum that follows from its flanks, clipped as it is,"))?;
         match self {
-            Self::Maximum | Self::Local(..) => Ok(top),
+            Self::Maximum => Ok(top),
             Self::Onset(fraction) => polynomial::pick_onset_of_clipped(view, pulse, *fraction, top),
             Self::Matched(shape, width) => {
                 let whole = Pulse {

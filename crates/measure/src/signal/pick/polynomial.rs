@@ -1,9 +1,9 @@
 //! Maximum and onset of a pulse by polynomials fitted to a part of it.
 
 use super::{ChannelView, Picked, Systematic};
+use crate::error::MeasureError;
 use crate::signal::Pulse;
-use crate::signal::error::SignalError;
-use crate::signal::linear::Polynomial;
+use crate::signal::linear::FittedPolynomial;
 use std::f64::consts::LN_2;
 
 /// Degree and width tried, in this order, where noise leaves what was asked for
@@ -51,7 +51,7 @@ impl Top {
         &self,
         view: &ChannelView<'_>,
         pulse: &Pulse,
-        fit: &Polynomial,
+        fit: &FittedPolynomial,
         u: f64,
     ) -> Picked {
         let noise = self.noise;
@@ -79,29 +79,19 @@ impl Top {
     }
 }
 
-/// Maximum for a height and a time that need not be free of bias.
-pub(super) fn pick_roughly(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
-    pick_maximum(view, pulse, 4, 1.0)
-}
-
-/// Time in samples of the maximum of a polynomial over so many widths.
-pub(super) fn pick_maximum(
-    view: &ChannelView<'_>,
-    pulse: &Pulse,
-    degree: usize,
-    width: f64,
-) -> Result<Picked, SignalError> {
-    let fit = fit_maximum(view, pulse, degree, width * pulse.width_samples);
+/// Maximum for a height and a time that need not be free of bias, by a quartic over one width.
+pub(super) fn pick_roughly(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+    let fit = fit_maximum(view, pulse, 4, pulse.width_samples);
     let picked = fit.map(|(fit, u)| pick_at(view, pulse, &fit, u));
     picked.map_or_else(|| pick_in_noise(view, pulse), Ok)
 }
 
 /// Time in samples where noise hides the shape.
-pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, SignalError> {
+pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
     let mut tries = IN_NOISE.into_iter();
     let (fit, u) = tries
         .find_map(|(degree, width)| fit_maximum(view, pulse, degree, width * pulse.width_samples))
-        .ok_or(SignalError::NoPick(pulse.kind, "maximum"))?;
+        .ok_or(MeasureError::NoPick(pulse.kind, "maximum"))?;
     let picked = pick_at(view, pulse, &fit, u);
     // Of all that a low-pass does, the delay of a slow signal.
     let [delay, _] = view.inverse;
@@ -109,7 +99,7 @@ pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Pic
     Ok(Picked { time_s, ..picked })
 }
 
-fn pick_at(view: &ChannelView<'_>, pulse: &Pulse, fit: &Polynomial, u: f64) -> Picked {
+fn pick_at(view: &ChannelView<'_>, pulse: &Pulse, fit: &FittedPolynomial, u: f64) -> Picked {
     let (at, variances) = (fit.at(u), fit.variances(u));
     let top = Top {
         noise: view.broad_noise(pulse),
@@ -131,14 +121,14 @@ fn fit_maximum(
     pulse: &Pulse,
     degree: usize,
     length: f64,
-) -> Option<(Polynomial, f64)> {
+) -> Option<(FittedPolynomial, f64)> {
     let half = (0.5 * length).max(2.0);
     let reach = 2.0 * half + 2.0;
     let begun = pulse.at as f64;
     let (first, heights) = view.window(begun - reach, begun + reach);
     let mut centre = begun;
     for _ in 0..6 {
-        let fit = Polynomial::through(&heights, first as f64, centre, half, degree)?;
+        let fit = FittedPolynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.maximum()?;
         let next = fit.sample(u).round();
         if next == centre {
@@ -150,7 +140,7 @@ fn fit_maximum(
         centre = next;
     }
     // Two neighbouring centres that point at each other: either will do.
-    let fit = Polynomial::through(&heights, first as f64, centre, half, degree)?;
+    let fit = FittedPolynomial::through(&heights, first as f64, centre, half, degree)?;
     let u = fit.maximum()?;
     Some((fit, u))
 }
@@ -170,7 +160,7 @@ pub(super) fn pick_onset(
     view: &ChannelView<'_>,
     pulse: &Pulse,
     fraction: f64,
-) -> Result<Picked, SignalError> {
+) -> Result<Picked, MeasureError> {
     let top = pick_roughly(view, pulse)?;
     onset_before(view, pulse, fraction, top)
 }
@@ -181,12 +171,12 @@ pub(super) fn pick_onset_of_clipped(
     pulse: &Pulse,
     fraction: f64,
     top: Picked,
-) -> Result<Picked, SignalError> {
+) -> Result<Picked, MeasureError> {
     if fraction * top.height < FREE * pulse.height {
         return onset_before(view, pulse, fraction, top);
     }
     let what = "rising flank up to that share, clipped as it is,";
-    Err(SignalError::NoPick(pulse.kind, what))
+    Err(MeasureError::NoPick(pulse.kind, what))
 }
 
 fn onset_before(
@@ -194,12 +184,12 @@ fn onset_before(
     pulse: &Pulse,
     fraction: f64,
     top: Picked,
-) -> Result<Picked, SignalError> {
+) -> Result<Picked, MeasureError> {
     let threshold = fraction * top.height;
     let crossing = rough_crossing(view, pulse, top.time_s, threshold);
     let (fit, u) = crossing
         .and_then(|rough| fit_crossing(view, pulse, rough, threshold))
-        .ok_or(SignalError::NoPick(pulse.kind, "rising flank"))?;
+        .ok_or(MeasureError::NoPick(pulse.kind, "rising flank"))?;
     let noise = view.broad_noise(pulse);
     let variances = fit.variances(u);
     // y = h 2^(−z²), with z from the maximum in half widths of the rise.
@@ -211,13 +201,8 @@ fn onset_before(
     let slope = slope.min(gaussian.max(least)) / fit.half;
     let of_value = noise * noise * variances.value;
     let of_height = (fraction * top.height_sigma).powi(2);
-    Ok(Picked {
-        time_s: fit.sample(u),
-        sigma_s: (of_value + of_height).sqrt() / slope,
-        systematic: Systematic::default(),
-        misfit: view.misfit(pulse, fit.residual),
-        ..top
-    })
+    let sigma_s = (of_value + of_height).sqrt() / slope;
+    Ok(top.by_fit(fit.sample(u), sigma_s, view.misfit(pulse, fit.residual)))
 }
 
 /// Middle between the last sample below the threshold before the top and the
@@ -238,16 +223,16 @@ fn fit_crossing(
     pulse: &Pulse,
     rough: f64,
     threshold: f64,
-) -> Option<(Polynomial, f64)> {
+) -> Option<(FittedPolynomial, f64)> {
     let half = (FLANK * pulse.width_samples).max(2.0);
     let (first, heights) = view.window(rough - 3.0 * half, rough + 3.0 * half);
     let through = |centre, half, degree| {
-        let fit = Polynomial::through(&heights, first as f64, centre, half, degree)?;
+        let fit = FittedPolynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.rise_through(threshold)?;
         Some((fit, u))
     };
     // A second time about the place just found, for a window that noise did not choose.
-    let again = |(fit, u): (Polynomial, f64), half, degree| {
+    let again = |(fit, u): (FittedPolynomial, f64), half, degree| {
         let centre = fit.sample(u);
         through(centre, half, degree).unwrap_or((fit, u))
     };

@@ -43,12 +43,9 @@ fn a_constant_has_no_noise() {
 fn too_little_or_nonsense_is_refused() {
     assert!(matches!(
         baseline(&[1.0; 7]),
-        Err(SignalError::TooShort { .. })
+        Err(MeasureError::TooShort(..))
     ));
     let mut bad = [1.0; 20];
     bad[3] = f64::NAN;
-    assert!(matches!(
-        baseline(&bad),
-        Err(SignalError::NotFinite { index: 3, .. })
-    ));
+    assert!(matches!(baseline(&bad), Err(MeasureError::NotFinite(3, _))));
 }

@@ -33,7 +33,7 @@ def wave(shot, count=200):
 ";
 
 pub fn assert_wave(record: &Record, channel: usize, shot: usize, scale: f64) {
-    let volts = record.channels[channel].samples.volts();
+    let volts = record.channels[channel].volts.clone();
     assert_eq!(volts.len(), 200, "{}", record.source);
     for (i, volt) in volts.iter().enumerate() {
         // All values are multiples of 1/128: exact in every format.

@@ -87,7 +87,7 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
         let whole: Vec<f64> = records
             .iter()
             .take(3)
-            .flat_map(|record| record.channels[0].samples.volts())
+            .flat_map(|record| record.channels[0].volts.clone())
             .collect();
         let expected: Vec<f64> = (0..600).map(|i| wave(i / 200, i % 200)).collect();
         assert_eq!(whole, expected, "{name}");
@@ -109,7 +109,7 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
         let records = all(&folder.join(name), &pieces);
         assert_eq!(records.len(), 6, "{name}");
         for (at, record) in records.iter().enumerate() {
-            let volt = |channel: usize| record.channels[channel].samples.volts()[0];
+            let volt = |channel: usize| record.channels[channel].volts[0];
             let sign = if at < 3 { 1.0 } else { -1.0 };
             let own = (record.first_sample, volt(0) * sign);
             let start = 250 * (at % 3);

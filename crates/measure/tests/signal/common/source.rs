@@ -2,7 +2,7 @@
 
 use crate::common::{Scene, normal};
 use crate::dry::Dry;
-use hertzchain_measure::signal::{Method, Shape, Template};
+use hertzchain_measure::signal::{Method, Shape};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
@@ -52,7 +52,7 @@ pub fn methods() -> [(&'static str, Method); 4] {
     [
         ("local", Method::default()),
         ("onset", Method::Onset { fraction: 0.5 }),
-        ("correlation", Method::CrossCorrelation(Template::Incident)),
+        ("correlation", Method::CrossCorrelation),
         (
             "shape",
             Method::MatchedShape {

@@ -22,7 +22,7 @@ pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> 
     for case in &curves.cases {
         text += &curve(case);
     }
-    for lost in &curves.lost {
+    for lost in &curves.unmeasured {
         text += &format!(
             "{} at {} m/s: none of {} shot{} has a time of flight that counts\n",
             named(&lost.case),
@@ -44,7 +44,7 @@ pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> 
             }
         }
     }
-    if !measured.shots.is_empty() && curves.cases.is_empty() && curves.lost.is_empty() {
+    if !measured.shots.is_empty() && curves.cases.is_empty() && curves.unmeasured.is_empty() {
         text += "No speeds are known: give --shots for curves.\n";
     }
     text

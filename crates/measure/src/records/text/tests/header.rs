@@ -1,7 +1,7 @@
 use super::*;
 
-fn header(text: &str) -> Header {
-    Header::of(text, &Dialect::of(text).unwrap(), false)
+fn header(text: &str) -> TextHeader {
+    TextHeader::of(text, &Dialect::of(text).unwrap(), false)
 }
 
 #[test]
@@ -58,8 +58,8 @@ fn a_unit_that_nobody_knows_is_named() {
 fn counts_are_times_where_somebody_says_what_one_is() {
     for text in ["0,5.5\n1,7.5\n2,1.5\n3,3.5\n", "n,a\n0,5\n1,7\n2,1\n3,3\n"] {
         let dialect = Dialect::of(text).unwrap();
-        assert_eq!(Header::of(text, &dialect, false).time, None);
-        let times = Header::of(text, &dialect, true);
+        assert_eq!(TextHeader::of(text, &dialect, false).time, None);
+        let times = TextHeader::of(text, &dialect, true);
         assert_eq!((times.time, times.channels), (Some((0, None)), vec![1]));
     }
 }

@@ -13,9 +13,16 @@ fn recording(shots: &[(usize, f64)], samples: usize) -> Vec<f64> {
     (0..samples).map(sample).collect()
 }
 
+fn channels<const N: usize>(volts: [Vec<f64>; N]) -> [Channel; N] {
+    volts.map(|volts| Channel {
+        volts,
+        ..Channel::default()
+    })
+}
+
 /// One channel.
 fn one(shots: &[(usize, f64)]) -> Content {
-    content(&[recording(shots, 60_000)])
+    content(&channels([recording(shots, 60_000)]))
 }
 
 #[test]
@@ -38,7 +45,7 @@ fn one_shot_is_one_whatever_follows_it() {
     // A second, weak one long after.
     assert_eq!(one(&[(1000, 1.0), (40_000, 0.3)]), Content::One);
     assert_eq!(one(&[]), Content::One);
-    assert_eq!(content(&[vec![1.0; 5]]), Content::One);
+    assert_eq!(content(&channels([vec![1.0; 5]])), Content::One);
     assert_eq!(content(&[]), Content::One);
 }
 
@@ -49,7 +56,7 @@ fn the_walls_channel_counts_too() {
         let at = |i| bell(first, i) + bell(first + 30_000, i);
         (0..60_000).map(at).collect()
     };
-    let both = [channel(1000), channel(1700)];
+    let both = channels([channel(1000), channel(1700)]);
     assert!(matches!(content(&both), Content::Plain(ranges) if ranges.len() == 2));
     // One sensor alone: its pulses may be those of one shot.
     assert_eq!(content(&both[..1]), Content::One);

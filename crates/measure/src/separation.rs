@@ -1,30 +1,24 @@
-//! Several shots in one record: told apart where that is plain.
+//! Several shots in one record: where quiet separates them.
 
+use crate::records::Channel;
 use crate::signal::median;
 
-/// Samples that are looked at together.
+/// Samples of a block, of which one in a few is compared: pulses are some ten samples wide.
 const BLOCK: usize = 32;
-
-/// One sample of so many is looked at: pulses are some ten samples wide.
 const EVERY: usize = 4;
-
-/// Share of a channel's largest swing from which on something is a pulse.
+/// Share of a channel's largest swing from which on something is a pulse; and that the largest
+/// pulse of every shot has.
 const PULSE: f64 = 0.2;
-
-/// Share of it that the largest pulse of every shot has.
-const ALIKE: f64 = 0.4;
-
-/// Quiet between two shots over quiet between the pulses of one: waves run to
-/// and fro in about equal times.
+const SIMILAR: f64 = 0.4;
+/// Quiet between two shots over quiet between the pulses of one: waves run to and fro in about
+/// equal times.
 const QUIET: usize = 4;
-
 /// Swing of quiet blocks over which a pulse stands.
 const ABOVE_NOISE: f64 = 4.0;
 
-/// What a record holds.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Content {
-    /// One shot, as far as can be told.
+    /// One shot.
     One,
     /// Several, that quiet keeps apart: first sample and end of each.
     Plain(Vec<(usize, usize)>),
@@ -43,11 +37,11 @@ struct Burst {
 }
 
 /// How many shots a record of these channels holds.
-pub(crate) fn content(channels: &[Vec<f64>]) -> Content {
-    let samples = channels.first().map_or(0, Vec::len);
+pub(crate) fn content(channels: &[Channel]) -> Content {
+    let samples = channels.first().map_or(0, |one| one.volts.len());
     let mut shares = vec![0.0_f64; samples.div_ceil(BLOCK)];
-    for volts in channels {
-        for (share, own) in shares.iter_mut().zip(shares_of(volts)) {
+    for channel in channels {
+        for (share, own) in shares.iter_mut().zip(shares_of(&channel.volts)) {
             *share = share.max(own);
         }
     }
@@ -64,7 +58,7 @@ pub(crate) fn content(channels: &[Vec<f64>]) -> Content {
     };
     let bursts = joined(pulses.into_iter(), quiet, |burst| burst.pulses);
     // The first and the wall's pulse at least make a shot.
-    let whole = |burst: &&Burst| burst.pulses > 1 && burst.swing >= ALIKE;
+    let whole = |burst: &&Burst| burst.pulses > 1 && burst.swing >= SIMILAR;
     match bursts.iter().filter(whole).count() {
         0 | 1 => Content::One,
         count if count == bursts.len() => Content::Plain(ranges(&bursts, quiet, samples)),
@@ -139,5 +133,5 @@ fn ranges(bursts: &[Burst], quiet: usize, samples: usize) -> Vec<(usize, usize)>
 }
 
 #[cfg(test)]
-#[path = "tests/several.rs"]
+#[path = "tests/separation.rs"]
 mod tests;
