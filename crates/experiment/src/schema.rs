@@ -1,10 +1,10 @@
 //! JSON Schema of the experiment file, from the declared keys and the
 //! registry of contact laws, for editors.
 
+use crate::contacts::{CONTACT, is_derived};
 use crate::keys::{Fields, Key, Kind, Limits, Need, ROOT, Variants};
-use crate::laws;
 use crate::units;
-use crate::value::Units;
+use crate::values::Units;
 use hertzchain_chain::laws::{LAWS, Parameter, Row, Source};
 use serde_json::{Map, Value, json};
 
@@ -177,11 +177,11 @@ fn law_table(row: &Row, units: Units) -> Value {
         });
         properties.insert(parameter.name.to_owned(), schema);
     }
-    if row.info.parameters.iter().any(laws::is_own) {
+    if row.info.parameters.iter().any(is_derived) {
         let about = "contact that K or A belongs to; the section's others keep their ratios to it, as materials and \
                      radii give them. All have the same without it";
         let schema = json!({ "type": "integer", "minimum": 0, "description": about });
-        properties.insert(laws::CONTACT.to_owned(), schema);
+        properties.insert(CONTACT.to_owned(), schema);
     }
     let needed = row.info.parameters.iter().filter(|p| is_required(p));
     let required: Vec<&str> = std::iter::once("law")

@@ -1,5 +1,4 @@
-//! What there is to say about a file: mistakes and warnings that point at
-//! their place in it.
+//! What is wrong with a file: errors and warnings that point at their place in it.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode};
 use std::fmt;
@@ -7,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The text of an experiment file with its name.
-pub type Source = Arc<NamedSource<String>>;
+pub(crate) type Source = Arc<NamedSource<String>>;
 
 /// One thing to say about an experiment file: what, where, what to do.
 ///
@@ -22,14 +21,14 @@ pub struct Finding {
 /// A finding of severity [`Severity::Warning`].
 pub type Warning = Finding;
 
-/// A finding before it is known in which file.
+/// A finding whose file is not determined yet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Problem {
-    message: String,
+    pub(crate) message: String,
     label: String,
     help: Option<String>,
-    span: Range<usize>,
-    /// Another place that has to do with it, and what stands there.
+    pub(crate) span: Range<usize>,
+    /// A related place, and what stands there.
     other: Option<Box<(Range<usize>, String)>>,
 }
 
@@ -49,28 +48,10 @@ impl Problem {
         }
     }
 
-    /// Points at another place too, with what stands there.
-    pub(crate) fn beside(mut self, span: &Range<usize>, label: impl Into<String>) -> Self {
+    /// Points at a related place too, with what stands there.
+    pub(crate) fn also(mut self, span: &Range<usize>, label: impl Into<String>) -> Self {
         self.other = Some(Box::new((span.clone(), label.into())));
         self
-    }
-
-    /// Whether its message ends so.
-    pub(crate) fn says(&self, end: &str) -> bool {
-        self.message.ends_with(end)
-    }
-
-    pub(crate) fn same_message(&self, other: &Self) -> bool {
-        self.message == other.message
-    }
-
-    /// Where it stands.
-    pub(crate) const fn place(&self) -> &Range<usize> {
-        &self.span
-    }
-
-    pub(crate) const fn start(&self) -> usize {
-        self.span.start
     }
 
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
@@ -92,19 +73,14 @@ impl Problem {
         }
     }
 
-    pub(crate) fn mistake(self, source: &Source) -> Finding {
-        self.at(Severity::Error, source)
-    }
-
     pub(crate) fn warning(self, source: &Source) -> Finding {
         self.at(Severity::Warning, source)
     }
 }
 
-/// Longest message: a text of a million letters is not repeated in full.
-const LONGEST: usize = 600;
-
+/// A text of a million letters is not repeated in full.
 fn shortened(text: String) -> String {
+    const LONGEST: usize = 600;
     match text.char_indices().nth(LONGEST) {
         None => text,
         Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
@@ -127,7 +103,7 @@ impl Finding {
         1 + before.unwrap_or_default().matches('\n').count()
     }
 
-    /// Line of the other place that has to do with it, if there is one.
+    /// Line of the related place, if there is one.
     pub fn other_line(&self) -> Option<usize> {
         let (span, _) = self.problem.other.as_deref()?;
         Some(self.line_of(span))
@@ -146,17 +122,21 @@ impl Finding {
 
     /// File, line, message, expectation and advice in one line, for logs.
     pub fn one_line(&self) -> String {
-        let other = self.problem.other.as_deref().into_iter();
-        let other = other.map(|(span, label)| format!("; line {}: {label}", self.line_of(span)));
-        let help = self.problem.help.iter().map(|help| format!(" ({help})"));
-        format!(
-            "{}:{}: {}: {}{}",
-            self.file(),
-            self.line(),
-            self.problem.message,
-            self.problem.label,
-            other.chain(help).collect::<String>()
-        )
+        let Problem {
+            message,
+            label,
+            help,
+            other,
+            ..
+        } = &self.problem;
+        let mut text = format!("{}:{}: {message}: {label}", self.file(), self.line());
+        if let Some((span, label)) = other.as_deref() {
+            text += &format!("; line {}: {label}", self.line_of(span));
+        }
+        if let Some(help) = help {
+            text += &format!(" ({help})");
+        }
+        text
     }
 }
 
@@ -183,9 +163,11 @@ impl Diagnostic for Finding {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = Some(self.problem.label.clone());
-        let here = LabeledSpan::new_primary_with_span(label, self.problem.span.clone());
-        let other = self.problem.other.as_deref().into_iter();
+        let Problem {
+            label, span, other, ..
+        } = &self.problem;
+        let here = LabeledSpan::new_primary_with_span(Some(label.clone()), span.clone());
+        let other = other.as_deref().into_iter();
         let other = other
             .map(|(span, label)| LabeledSpan::new_with_span(Some(label.clone()), span.clone()));
         Some(Box::new(std::iter::once(here).chain(other)))
@@ -198,12 +180,8 @@ pub struct Mistakes(Vec<Finding>);
 
 impl Mistakes {
     pub(crate) fn new(problems: Vec<Problem>, source: &Source) -> Self {
-        let findings = problems.into_iter().map(|p| p.mistake(source));
+        let findings = problems.into_iter().map(|p| p.at(Severity::Error, source));
         Self(findings.collect())
-    }
-
-    pub(crate) fn one(problem: Problem, source: &Source) -> Self {
-        Self::new(vec![problem], source)
     }
 
     /// Each mistake, in the order of discovery.
@@ -220,3 +198,39 @@ impl fmt::Display for Mistakes {
 }
 
 impl std::error::Error for Mistakes {}
+
+/// The word nearest to `text`, if near enough to be a slip: one in three letters, begun ones
+/// counted; case makes no distance.
+pub(crate) fn nearest_word<'a>(
+    text: &str,
+    words: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let length = text.chars().count();
+    let text = text.to_lowercase();
+    let distance = |word: &str| strsim::damerau_levenshtein(&text, &word.to_lowercase());
+    // Longer texts are no slip of any key.
+    let words = words.into_iter().filter(|_| length <= 64);
+    let near = words.map(|word| (distance(word), word));
+    let near = near.filter(|(distance, _)| *distance <= length.div_ceil(3).max(1));
+    near.min_by_key(|(distance, _)| *distance)
+        .map(|(_, word)| word)
+}
+
+/// A computed number for messages, to this many digits.
+pub(crate) fn to_digits(value: f64, digits: usize) -> String {
+    let rounded = format!("{value:.*e}", digits - 1).parse();
+    short(rounded.unwrap_or(value))
+}
+
+/// An estimate for messages, to two digits.
+pub(crate) fn brief(value: f64) -> String {
+    to_digits(value, 2)
+}
+
+/// A number for messages: as short as it can be read back.
+pub(crate) fn short(value: f64) -> String {
+    match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        true => format!("{value}"),
+        false => format!("{value:e}"),
+    }
+}

@@ -10,25 +10,28 @@ fn row(name: &str, text: &str) -> Experiment {
 
 #[test]
 fn comments_blanks_and_places_do_not_matter() {
-    let plain = row("row.toml", ROW).understood();
+    let plain = row("row.toml", ROW).canonical_text();
     let commented = ROW.replace("count = 20", "# twenty of them\n\n  count   =  20");
-    assert_eq!(row("/elsewhere/other.toml", &commented).understood(), plain);
+    assert_eq!(
+        row("/elsewhere/other.toml", &commented).canonical_text(),
+        plain
+    );
 }
 
 #[test]
 fn numbers_readings_and_cases_do() {
     let plain = row("row.toml", ROW);
     let other = row("row.toml", &ROW.replace("0.3", "0.31"));
-    assert_ne!(other.understood(), plain.understood());
+    assert_ne!(other.canonical_text(), plain.canonical_text());
     let set = plain.set(&[("poisson_ratio", 0.31)]).unwrap();
-    assert_eq!(set.understood(), other.understood());
+    assert_eq!(set.canonical_text(), other.canonical_text());
     let dry = crate::preset("dry").unwrap();
     let clipped = dry.with_reading(&crate::Reading {
         tension: crate::reading::TensionReading::Clipped,
         ..dry.reading()
     });
-    assert_ne!(clipped.unwrap().understood(), dry.understood());
+    assert_ne!(clipped.unwrap().canonical_text(), dry.canonical_text());
     let paper = crate::preset("paper").unwrap();
-    let of = |case: &str| paper.case(case).unwrap().unwrap().understood();
+    let of = |case: &str| paper.case(case).unwrap().unwrap().canonical_text();
     assert_ne!(of("dry"), of("pump"));
 }
