@@ -420,7 +420,8 @@ macro_rules! parts {
             /// Every kind, from the launcher to the far end.
             pub const ALL: [Self; [$($about),+].len()] = [$(Self::$Kind),+];
 
-            const fn key(self) -> &'static str {
+            /// Its key in `[rig]`.
+            pub const fn key(self) -> &'static str {
                 match self {
                     $(Self::$Kind => stringify!($key),)+
                 }

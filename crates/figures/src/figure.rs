@@ -1,13 +1,9 @@
-//! A figure: panels in a grid, as SVG or PNG.
+//! A figure: panels in a grid, as SVG, PNG or PDF.
 
-mod grid;
-mod share;
-
-use grid::Grid;
-
-use crate::FigureError;
-use crate::chart::Chart;
-use crate::draw::{Colour, PT_PER_MM, Point, Rect, Svg};
+use crate::axis::Scale;
+use crate::chart::{Axis, Chart, Prepared, Style, x_scale, y_scale};
+use crate::draw::{Colour, PT_PER_MM, Point, Rect, Side, Svg};
+use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
 use crate::text::{Anchor, TextLine};
@@ -17,7 +13,7 @@ pub const SINGLE_COLUMN_MM: f64 = 85.0;
 /// Width of a journal page of two columns in millimetres.
 pub const DOUBLE_COLUMN_MM: f64 = 175.0;
 
-/// What can be put into a figure.
+/// Part of a figure.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Panel {
@@ -207,7 +203,7 @@ impl Figure {
             self.heading(&mut svg, panel, i, &frame, &grid);
             match panel {
                 Panel::Chart(chart) => {
-                    grid.prepared(i, chart).draw(&mut svg, chart, &frame);
+                    grid.prepared(chart).draw(&mut svg, &frame);
                 }
                 Panel::Matrix(matrix) => matrix.draw(&mut svg, &frame),
                 Panel::Rig(rig) => rig.draw(&mut svg, &frame),
@@ -222,7 +218,7 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Size`] if the size in pixels is zero or too large.
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
-        crate::render::png(&self.svg_outlined(), self.width_mm, self.height_mm, dpi)
+        files::png(&self.svg_outlined(), self.width_mm, self.height_mm, dpi)
     }
 
     /// The picture as PDF, text as outlines.
@@ -231,17 +227,33 @@ impl Figure {
     /// [`FigureError::Render`] if the renderer refuses the picture: a fault of this crate.
     pub fn pdf(&self) -> Result<Vec<u8>, FigureError> {
         let size = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
-        crate::pdf::pdf(&self.svg_outlined(), size)
+        files::pdf(&self.svg_outlined(), size)
     }
 
     /// The panels, shared axes given one range and one set of labels.
     fn shared(&self) -> Vec<Panel> {
         let mut panels = self.panels.clone();
-        if self.share_x {
-            share::x_axes(&mut panels, self.columns);
+        let (count, style) = (panels.len(), &Style::JOURNAL);
+        for column in (0..self.columns.min(count)).filter(|_| self.share_x) {
+            let members: Vec<usize> = (column..count).step_by(self.columns).collect();
+            let last = members.last().copied().unwrap_or(column);
+            share(
+                &mut panels,
+                &members,
+                last,
+                |c| x_scale(c, style),
+                |c| &mut c.x,
+            );
         }
-        if self.share_y {
-            share::y_axes(&mut panels, self.columns);
+        for first in (0..count).step_by(self.columns).filter(|_| self.share_y) {
+            let members: Vec<usize> = (first..count.min(first + self.columns)).collect();
+            share(
+                &mut panels,
+                &members,
+                first,
+                |c| y_scale(c, style),
+                |c| &mut c.y,
+            );
         }
         panels
     }
@@ -264,5 +276,119 @@ fn panel_letter(index: usize) -> String {
     match u8::try_from(index) {
         Ok(i) if i < 26 => format!("({})", char::from(b'a' + i)),
         _ => format!("({})", index + 1),
+    }
+}
+
+/// Gives charts one range along an axis and labels one of them.
+fn share(
+    panels: &mut [Panel],
+    members: &[usize],
+    labelled: usize,
+    range: impl Fn(&Chart) -> Scale,
+    axis: impl Fn(&mut Chart) -> &mut Axis,
+) {
+    let ranges = members.iter().filter_map(|i| match &panels[*i] {
+        Panel::Chart(chart) => Some(range(chart)),
+        _ => None,
+    });
+    let ranges = ranges.map(|scale| (scale.lo, scale.hi));
+    let shared = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    for i in members {
+        if let Panel::Chart(chart) = &mut panels[*i] {
+            let axis = axis(chart);
+            axis.range = shared;
+            axis.unlabelled = *i != labelled;
+        }
+    }
+}
+
+/// Space around and between panels, in points.
+const MARGIN: f64 = 3.0;
+const GUTTER: f64 = 7.0;
+/// Height of the line with panel letter and title, in points.
+const HEADING: f64 = 11.5;
+
+/// Places of the frames: equal in size, aligned along rows and columns.
+struct Grid {
+    columns: usize,
+    frame: (f64, f64),
+    /// Margins of each column (left, right) and row (top, bottom).
+    across: Vec<Side>,
+    down: Vec<Side>,
+}
+
+impl Grid {
+    fn new(page: (f64, f64), columns: usize, letters: bool, panels: &[Panel]) -> Self {
+        let columns = columns.min(panels.len()).max(1);
+        let rows = panels.len().div_ceil(columns).max(1);
+        let mut grid = Self {
+            columns,
+            frame: (0.75 * page.0 / columns as f64, 0.75 * page.1 / rows as f64),
+            across: vec![Side::default(); columns],
+            down: vec![Side::default(); rows],
+        };
+        // Ticks depend on the frame and the frame on the tick labels. The first
+        // guess is dropped; after it margins only grow, so this settles.
+        for round in 0..4 {
+            if round == 1 {
+                grid.across.fill(Side::default());
+                grid.down.fill(Side::default());
+            }
+            grid.measure(panels, letters);
+            grid.fit(page);
+        }
+        grid
+    }
+
+    fn measure(&mut self, panels: &[Panel], letters: bool) {
+        for (i, panel) in panels.iter().enumerate() {
+            let mut side = match panel {
+                Panel::Chart(chart) => self.prepared(chart).margins(),
+                _ => Side::default(),
+            };
+            if letters || !panel.title().is_empty() {
+                side.top += HEADING;
+            }
+            let (column, row) = (i % self.columns, i / self.columns);
+            self.across[column] = self.across[column].union(side);
+            self.down[row] = self.down[row].union(side);
+        }
+    }
+
+    /// A chart for a frame of this size.
+    fn prepared<'a>(&self, chart: &'a Chart) -> Prepared<'a> {
+        Prepared::new(chart, Style::JOURNAL, self.frame)
+    }
+
+    fn fit(&mut self, page: (f64, f64)) {
+        let gaps = |count: usize| 2.0 * MARGIN + GUTTER * (count - 1) as f64;
+        let across: f64 = self.across.iter().map(|s| s.left + s.right).sum();
+        let down: f64 = self.down.iter().map(|s| s.top + s.bottom).sum();
+        let (columns, rows) = (self.across.len(), self.down.len());
+        self.frame = (
+            ((page.0 - across - gaps(columns)) / columns as f64).max(4.0),
+            ((page.1 - down - gaps(rows)) / rows as f64).max(4.0),
+        );
+    }
+
+    fn frame(&self, index: usize) -> Rect {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let before = self.across.iter().take(column);
+        let left: f64 = before
+            .map(|s| s.left + s.right + self.frame.0 + GUTTER)
+            .sum();
+        let before = self.down.iter().take(row);
+        let top: f64 = before
+            .map(|s| s.top + s.bottom + self.frame.1 + GUTTER)
+            .sum();
+        let x = MARGIN + left + self.across[column].left;
+        let y = MARGIN + top + self.down[row].top;
+        Rect::sized(x, y, self.frame.0, self.frame.1)
+    }
+
+    /// Room between the heading and the frame.
+    fn above(&self, index: usize) -> f64 {
+        let top = self.down[index / self.columns].top;
+        (top - HEADING - 0.55 * Style::JOURNAL.small).max(0.0)
     }
 }

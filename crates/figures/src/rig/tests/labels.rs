@@ -12,7 +12,7 @@ fn labels_with_room_lie_centred_side_by_side() {
 
 impl Stack {
     fn lefts(&self) -> Vec<f64> {
-        self.places.iter().map(|place| place.left).collect()
+        self.places.iter().map(|(left, _)| *left).collect()
     }
 }
 
@@ -24,13 +24,13 @@ proptest! {
         labels in prop::collection::vec((0.0..PAGE, 5.0..122.0, 8.0..25.0), 0..7),
     ) {
         let found = stacked(&labels, PAGE);
-        for (i, (a, size)) in found.places.iter().zip(&labels).enumerate() {
-            prop_assert!(a.left >= 0.0 && a.left + size.1 <= PAGE);
-            prop_assert!(a.offset + size.2 <= found.height);
-            for (b, other) in found.places.iter().zip(&labels).take(i) {
-                let beside = a.left >= b.left + other.1 || b.left >= a.left + size.1;
-                let beyond = a.offset >= b.offset + other.2 || b.offset >= a.offset + size.2;
-                prop_assert!(beside || beyond, "{found:?}");
+        for (i, ((left, offset), size)) in found.places.iter().zip(&labels).enumerate() {
+            prop_assert!(*left >= 0.0 && left + size.1 <= PAGE);
+            prop_assert!(offset + size.2 <= found.height);
+            for ((other_left, other_offset), other) in found.places.iter().zip(&labels).take(i) {
+                let aside = *left >= other_left + other.1 || *other_left >= left + size.1;
+                let beyond = *offset >= other_offset + other.2 || *other_offset >= offset + size.2;
+                prop_assert!(aside || beyond, "{found:?}");
             }
         }
     }

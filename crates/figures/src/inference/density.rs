@@ -1,6 +1,59 @@
-//! Lines of equal density.
+//! Densities from samples, and their lines of equal density.
 
 use std::collections::BTreeMap;
+
+/// Weights of one pass of smoothing, nearly a bell.
+const BELL: [f64; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
+
+/// Cell of each value between two ends; none outside.
+fn cell(value: f64, (from, to): (f64, f64), cells: usize) -> Option<usize> {
+    let place = ((value - from) / (to - from) * cells as f64).floor();
+    (place >= 0.0 && place < cells as f64).then_some(place as usize)
+}
+
+/// Smoothed counts in equal cells.
+pub(super) fn histogram(samples: &[f64], range: (f64, f64), cells: usize) -> Vec<f64> {
+    let mut counts = vec![0.0; cells];
+    let found = samples.iter().filter_map(|x| cell(*x, range, cells));
+    found.for_each(|i| counts[i] += 1.0);
+    smoothed(&counts)
+}
+
+fn smoothed(counts: &[f64]) -> Vec<f64> {
+    let at = |i: usize| {
+        let weigh = |(k, weight): (usize, &f64)| {
+            // Mirrored at the ends, where bounds may be.
+            let place = (i + k).abs_diff(2).min(2 * counts.len() + 1 - i - k);
+            weight * counts.get(place).copied().unwrap_or(0.0)
+        };
+        BELL.iter().enumerate().map(weigh).sum()
+    };
+    (0..counts.len()).map(at).collect()
+}
+
+/// Smoothed counts of pairs over equal cells.
+pub(super) fn joint(
+    pairs: impl Iterator<Item = (f64, f64)>,
+    (x, y): ((f64, f64), (f64, f64)),
+    cells: usize,
+) -> Field {
+    let mut rows = vec![vec![0.0; cells]; cells];
+    for (a, b) in pairs {
+        if let (Some(i), Some(j)) = (cell(a, x, cells), cell(b, y, cells)) {
+            rows[j][i] += 1.0;
+        }
+    }
+    for _ in 0..2 {
+        rows = rows.iter().map(|row| smoothed(row)).collect();
+        let columns: Vec<Vec<f64>> = (0..cells)
+            .map(|i| smoothed(&rows.iter().map(|row| row[i]).collect::<Vec<f64>>()))
+            .collect();
+        rows = (0..cells)
+            .map(|j| columns.iter().map(|column| column[j]).collect())
+            .collect();
+    }
+    Field { rows, x, y }
+}
 
 /// Values at the middles of equal cells, row by row upward.
 pub(super) struct Field {

@@ -1,16 +1,128 @@
-//! From SVG to a PDF of one page: paths, shaded balls and images. Text must be outlines.
+//! Files of pictures: PNG, and PDF of one page with paths, shaded balls and images, whose text
+//! must be outlines.
 //!
 //! svg2pdf needs an older resvg and codecs of images that take minutes to build; what this
 //! crate draws is little enough to be written down directly.
 
 use std::fmt::Write as _;
 
-use resvg::tiny_skia::{self, PathSegment, Point, Transform};
+use resvg::tiny_skia::{self, PathSegment, Pixmap, Point, Transform};
 use resvg::usvg::{
     Color, Group, Image, ImageKind, Node, Options, Paint, Path, RadialGradient, Tree,
 };
+use thiserror::Error;
 
-use crate::FigureError;
+/// A picture could not be rendered as PNG.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// The size in pixels is zero or beyond 30,000 along a side.
+    #[error(
+        "a picture of {width_mm} mm by {height_mm} mm at {dpi} dpi has an impossible size in pixels"
+    )]
+    Size {
+        /// Width asked for, in millimetres.
+        width_mm: f64,
+        /// Height asked for, in millimetres.
+        height_mm: f64,
+        /// Dots per inch asked for.
+        dpi: f64,
+    },
+    /// The renderer did not accept our SVG: a fault of this crate.
+    #[error("the picture could not be rendered: {0}")]
+    Render(String),
+    /// The PNG could not be encoded.
+    #[error("the picture could not be encoded as PNG")]
+    Encode,
+}
+
+/// Longest side of a picture in pixels.
+const LARGEST: f64 = 30_000.0;
+
+/// Renders an SVG of the given size on white paper.
+pub(crate) fn png(
+    svg: &str,
+    width_mm: f64,
+    height_mm: f64,
+    dpi: f64,
+) -> Result<Vec<u8>, FigureError> {
+    let size = FigureError::Size {
+        width_mm,
+        height_mm,
+        dpi,
+    };
+    let (Some(width), Some(height)) = (pixels(width_mm, dpi), pixels(height_mm, dpi)) else {
+        return Err(size);
+    };
+    let tree =
+        Tree::from_str(svg, &Options::default()).map_err(|e| FigureError::Render(e.to_string()))?;
+    let mut page = Pixmap::new(width, height).ok_or(size)?;
+    page.fill(tiny_skia::Color::WHITE);
+    let drawn = tree.size();
+    let (sx, sy) = (width as f32 / drawn.width(), height as f32 / drawn.height());
+    resvg::render(&tree, Transform::from_scale(sx, sy), &mut page.as_mut());
+    // The page is opaque white below everything, so alpha can be dropped.
+    let rgb: Vec<u8> = page
+        .data()
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
+    rgb_png(width as usize, height as usize, &rgb, Some(dpi)).ok_or(FigureError::Encode)
+}
+
+fn pixels(mm: f64, dpi: f64) -> Option<u32> {
+    let count = (mm / 25.4 * dpi).round();
+    (1.0..=LARGEST).contains(&count).then_some(count as u32)
+}
+
+/// An RGB picture; `dpi` is noted inside if given. Nothing if the data do not
+/// fill the size.
+pub(crate) fn rgb_png(
+    width: usize,
+    height: usize,
+    data: &[u8],
+    dpi: Option<f64>,
+) -> Option<Vec<u8>> {
+    let mut out = Vec::new();
+    let mut encoder = encoder(&mut out, width, height)?;
+    encoder.set_color(png::ColorType::Rgb);
+    if let Some(dpi) = dpi {
+        let per_metre = (dpi / 0.0254).round() as u32;
+        encoder.set_pixel_dims(Some(png::PixelDimensions {
+            xppu: per_metre,
+            yppu: per_metre,
+            unit: png::Unit::Meter,
+        }));
+    }
+    encoder.write_header().ok()?.write_image_data(data).ok()?;
+    Some(out)
+}
+
+/// A picture of up to 256 colours given as RGB triples.
+pub(crate) fn indexed_png(
+    width: usize,
+    height: usize,
+    palette: &[u8],
+    data: &[u8],
+) -> Option<Vec<u8>> {
+    let mut out = Vec::new();
+    let mut encoder = encoder(&mut out, width, height)?;
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(palette);
+    encoder.write_header().ok()?.write_image_data(data).ok()?;
+    Some(out)
+}
+
+fn encoder(
+    out: &mut Vec<u8>,
+    width: usize,
+    height: usize,
+) -> Option<png::Encoder<'_, &mut Vec<u8>>> {
+    let (width, height) = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    Some(encoder)
+}
 
 /// Discs that stand for a radial gradient.
 const SHADES: u16 = 32;

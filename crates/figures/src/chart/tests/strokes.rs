@@ -9,7 +9,7 @@ fn wave(n: u32) -> Vec<Point> {
 
 #[test]
 fn a_million_points_become_a_few_per_pixel_column() {
-    let thin = line(wave(1_000_000));
+    let thin = thinned(wave(1_000_000));
     assert!(
         thin.len() < 4 * (200.0 / COLUMN) as usize + 8,
         "{}",
@@ -22,17 +22,17 @@ fn extremes_survive_thinning() {
     let mut points = wave(100_000);
     points[54_321].y = 7.5;
     points[65_432].y = -9.5;
-    let thin = line(points);
+    let thin = thinned(points);
     assert!(thin.iter().any(|p| p.y == 7.5) && thin.iter().any(|p| p.y == -9.5));
 }
 
 #[test]
 fn short_lines_are_untouched() {
-    assert_eq!(line(wave(500)), wave(500));
+    assert_eq!(thinned(wave(500)), wave(500));
 }
 
 #[test]
 fn coinciding_markers_are_drawn_once() {
     let points = vec![Point::new(1.0, 2.0); 50_000];
-    assert_eq!(scatter(points).len(), 1);
+    assert_eq!(distinct(points).len(), 1);
 }
