@@ -209,6 +209,13 @@ pub struct Ratio {
     pub accuracy_reached: f64,
 }
 
+impl Ratio {
+    /// Absolute accuracy of the incident ratio.
+    pub(crate) fn accuracy(&self) -> f64 {
+        self.accuracy_reached * self.incident
+    }
+}
+
 /// One liquid as printed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oil {

@@ -1,12 +1,158 @@
-//! Figures of the claims about the rig.
+//! Figures of verdicts: which claims hold in which reading and on which rig, and what the rigs show.
 
 use crate::claims::{Branch, EvaluatedClaim, Verdict as Found};
+use crate::readings::{FLIPPED, Row, Scan};
 use crate::rig_claims::{
     AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
 };
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
 
-/// All of them by name.
+/// Claims against readings: the default, one switch at a time, the closest.
+///
+/// What never moves needs no cells: claims with one verdict in all readings
+/// are listed by it, and so are switches that move no verdict. Claims that
+/// rounding flips are marked: a verdict is that of the constants as printed.
+pub(super) fn readings(scan: &Scan) -> Figure {
+    let columns = columns(scan);
+    let moved: Vec<&Column> = columns.iter().filter(|c| c.is_shown(scan)).collect();
+    let names: Vec<&str> = moved.iter().map(|column| column.name.as_str()).collect();
+    let mut matrix = VerdictMatrix::new(&names);
+    let mut fixed: [Vec<String>; 4] = Default::default();
+    for (i, claim) in scan.claims.iter().enumerate() {
+        let name = name(scan, i, &claim.id);
+        let verdicts: Vec<Verdict> = moved.iter().filter_map(|c| c.verdict(i)).collect();
+        match verdicts.split_first() {
+            Some((first, others)) if others.iter().all(|other| other == first) => {
+                if let Some(list) = fixed.get_mut(place(*first)) {
+                    list.push(name);
+                }
+            }
+            _ => matrix = matrix.row(&name, &verdicts),
+        }
+    }
+    for (verdict, claims) in LISTED.into_iter().zip(&fixed) {
+        if !claims.is_empty() {
+            matrix = matrix.throughout(verdict, &format!("in all: {}", claims.join(", ")));
+        }
+    }
+    let unmoved = columns.iter().filter(|column| !column.is_shown(scan));
+    let unmoved: Vec<&str> = unmoved.map(|column| column.name.as_str()).collect();
+    if !unmoved.is_empty() {
+        matrix = matrix.note(&format!("As the default: {}.", unmoved.join("; ")));
+    }
+    if !scan.flipped_by_rounding.is_empty() {
+        matrix = matrix.note(&format!("{FLIPPED} {ROUNDING}"));
+    }
+    matrix
+        .figure()
+        .title("Claims of the paper in different readings of it")
+        .caption(&readings_caption(scan))
+}
+
+/// What the mark means.
+const ROUNDING: &str = "Not decidable in the default reading: there rounding of the printed constants \
+    alone flips the verdict that they give as printed, which is shown.";
+
+fn readings_caption(scan: &Scan) -> String {
+    let mut caption = String::from(
+        "Which claims of the paper hold in which reading of its model: the default, one switch \
+         changed at a time, and the reading that comes closest to the paper. Claims with the same \
+         verdict in all of them, and switches that move no verdict, are listed below the table.",
+    );
+    if !scan.flipped_by_rounding.is_empty() {
+        caption += &format!(" {FLIPPED} {ROUNDING}");
+    }
+    caption
+}
+
+/// A claim's name in words, marked if rounding flips it.
+fn name(scan: &Scan, claim: usize, id: &str) -> String {
+    match scan.flipped_by_rounding.contains(&claim) {
+        true => words(id) + FLIPPED,
+        false => words(id),
+    }
+}
+
+/// Verdicts in the order of the lists below the table.
+const LISTED: [Verdict; 4] = [
+    Verdict::Holds,
+    Verdict::InPart,
+    Verdict::Fails,
+    Verdict::NotDecidable,
+];
+
+fn place(verdict: Verdict) -> usize {
+    LISTED
+        .iter()
+        .take_while(|listed| **listed != verdict)
+        .count()
+}
+
+/// One reading, or options of one switch with the same verdicts.
+struct Column<'a> {
+    name: String,
+    /// The switch that is changed; empty for the default and the closest.
+    switch: &'static str,
+    row: &'a Row,
+}
+
+impl Column<'_> {
+    /// The default and the closest are always shown.
+    fn is_shown(&self, scan: &Scan) -> bool {
+        self.switch.is_empty() || self.row.verdicts != scan.default.verdicts
+    }
+
+    fn verdict(&self, claim: usize) -> Option<Verdict> {
+        self.row.verdicts.get(claim).copied().map(symbol)
+    }
+}
+
+fn columns(scan: &Scan) -> Vec<Column<'_>> {
+    let always = |name: &str, row| Column {
+        name: name.to_owned(),
+        switch: "",
+        row,
+    };
+    let mut columns = vec![always("default", &scan.default)];
+    for row in &scan.single {
+        let Some((switch, option)) = row.reading.changes().first().copied() else {
+            continue;
+        };
+        match columns.last_mut() {
+            Some(last) if last.switch == switch && last.row.verdicts == row.verdicts => {
+                last.name += &format!(", {option}");
+            }
+            _ => columns.push(Column {
+                name: format!("{switch} = {option}"),
+                switch,
+                row,
+            }),
+        }
+    }
+    columns.push(always("closest to the paper", scan.closest()));
+    columns
+}
+
+/// A claim's name in words.
+fn words(id: &str) -> String {
+    let word = |word: &str| match word {
+        "tof" => "ToF".to_owned(),
+        "hertz" => "Hertz".to_owned(),
+        word => word.to_owned(),
+    };
+    id.split('-').map(word).collect::<Vec<_>>().join(" ")
+}
+
+fn symbol(verdict: Found) -> Verdict {
+    match verdict {
+        Found::Holds => Verdict::Holds,
+        Found::InPart => Verdict::InPart,
+        Found::Fails => Verdict::Fails,
+        Found::NotDecidable => Verdict::NotDecidable,
+    }
+}
+
+/// All figures of the rig's claims by name.
 #[must_use]
 pub fn rig_figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
     vec![
@@ -21,7 +167,10 @@ pub fn rig_figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str
 fn verdicts(claims: &RigClaims) -> Figure {
     let names: Vec<&str> = claims.rigs.iter().map(|(rig, _)| &*rig.name).collect();
     let cell = |claim: usize| {
-        move |(_, evaluated): &(Rig, Vec<EvaluatedClaim>)| symbol(evaluated.get(claim))
+        let verdict = move |all: &[EvaluatedClaim]| all.get(claim).map(|own| own.verdict);
+        move |(_, all): &(Rig, Vec<EvaluatedClaim>)| {
+            verdict(all).map_or(Verdict::NotDecidable, symbol)
+        }
     };
     let rows = claims.evaluated.iter().enumerate();
     let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, evaluated)| {
@@ -31,15 +180,6 @@ fn verdicts(claims: &RigClaims) -> Figure {
     matrix
         .figure()
         .title("What the paper says of its rig, on virtual ones")
-}
-
-fn symbol(evaluated: Option<&EvaluatedClaim>) -> Verdict {
-    match evaluated.map(|evaluated| evaluated.verdict) {
-        Some(Found::Holds) => Verdict::Holds,
-        Some(Found::InPart) => Verdict::InPart,
-        Some(Found::Fails) => Verdict::Fails,
-        Some(Found::NotDecidable) | None => Verdict::NotDecidable,
-    }
 }
 
 /// Spreads of times of flight against each factor, the others as usual; beside
