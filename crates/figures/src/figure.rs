@@ -1,7 +1,6 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
-use crate::axis::Scale;
-use crate::chart::{Axis, Chart, Prepared, Style, x_scale, y_scale};
+use crate::chart::{Chart, Prepared, Style, x_scale};
 use crate::draw::{Colour, PT_PER_MM, Point, Rect, Side, Svg};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
@@ -74,7 +73,6 @@ pub struct Figure {
     panels: Vec<Panel>,
     letters: bool,
     share_x: bool,
-    share_y: bool,
     title: String,
     caption: String,
 }
@@ -83,12 +81,9 @@ impl Figure {
     /// A figure of any size; sizes are held between 10 mm and 5 m.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64) -> Self {
-        let held = |mm: f64| {
-            if mm.is_finite() {
-                mm.clamp(10.0, 5000.0)
-            } else {
-                SINGLE_COLUMN_MM
-            }
+        let held = |mm: f64| match mm.is_finite() {
+            true => mm.clamp(10.0, 5000.0),
+            false => SINGLE_COLUMN_MM,
         };
         Self {
             width_mm: held(width_mm),
@@ -97,7 +92,6 @@ impl Figure {
             panels: Vec::new(),
             letters: false,
             share_x: false,
-            share_y: false,
             title: String::new(),
             caption: String::new(),
         }
@@ -143,13 +137,6 @@ impl Figure {
         self
     }
 
-    /// Charts of a row share their y axis; only the leftmost is labelled.
-    #[must_use]
-    pub fn share_y(mut self) -> Self {
-        self.share_y = true;
-        self
-    }
-
     /// Title inside the file, for readers of the SVG; not drawn.
     #[must_use]
     pub fn title(mut self, title: &str) -> Self {
@@ -172,12 +159,6 @@ impl Figure {
         let parts: Vec<&str> = parts.map(|text| text.trim_end_matches('.')).collect();
         let written: Vec<&str> = parts.into_iter().filter(|text| !text.is_empty()).collect();
         written.join(". ") + if written.is_empty() { "" } else { "." }
-    }
-
-    /// Width and height in millimetres.
-    #[must_use]
-    pub fn size_mm(&self) -> (f64, f64) {
-        (self.width_mm, self.height_mm)
     }
 
     /// The picture as SVG with text as text, measured with Noto Sans.
@@ -233,27 +214,9 @@ impl Figure {
     /// The panels, shared axes given one range and one set of labels.
     fn shared(&self) -> Vec<Panel> {
         let mut panels = self.panels.clone();
-        let (count, style) = (panels.len(), &Style::JOURNAL);
-        for column in (0..self.columns.min(count)).filter(|_| self.share_x) {
-            let members: Vec<usize> = (column..count).step_by(self.columns).collect();
-            let last = members.last().copied().unwrap_or(column);
-            share(
-                &mut panels,
-                &members,
-                last,
-                |c| x_scale(c, style),
-                |c| &mut c.x,
-            );
-        }
-        for first in (0..count).step_by(self.columns).filter(|_| self.share_y) {
-            let members: Vec<usize> = (first..count.min(first + self.columns)).collect();
-            share(
-                &mut panels,
-                &members,
-                first,
-                |c| y_scale(c, style),
-                |c| &mut c.y,
-            );
+        for column in (0..self.columns.min(panels.len())).filter(|_| self.share_x) {
+            let members: Vec<usize> = (column..panels.len()).step_by(self.columns).collect();
+            share_x(&mut panels, &members);
         }
         panels
     }
@@ -279,25 +242,18 @@ fn panel_letter(index: usize) -> String {
     }
 }
 
-/// Gives charts one range along an axis and labels one of them.
-fn share(
-    panels: &mut [Panel],
-    members: &[usize],
-    labelled: usize,
-    range: impl Fn(&Chart) -> Scale,
-    axis: impl Fn(&mut Chart) -> &mut Axis,
-) {
+/// Gives charts one x range and labels the last of them.
+fn share_x(panels: &mut [Panel], members: &[usize]) {
     let ranges = members.iter().filter_map(|i| match &panels[*i] {
-        Panel::Chart(chart) => Some(range(chart)),
+        Panel::Chart(chart) => Some(x_scale(chart, &Style::JOURNAL)),
         _ => None,
     });
     let ranges = ranges.map(|scale| (scale.lo, scale.hi));
     let shared = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     for i in members {
         if let Panel::Chart(chart) = &mut panels[*i] {
-            let axis = axis(chart);
-            axis.range = shared;
-            axis.unlabelled = *i != labelled;
+            chart.x.range = shared;
+            chart.x.unlabelled = Some(i) != members.last();
         }
     }
 }

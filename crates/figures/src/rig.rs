@@ -20,8 +20,8 @@ pub enum FarEnd {
 /// The parts of an apparatus. Parts that are `None`, `false` or without a label
 /// are left out.
 ///
-/// The default is a bare row of ten beads.
-#[derive(Debug, Clone, PartialEq)]
+/// The default is an empty track.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigDrawing {
     /// Beads in the row, the striker not counted.
     pub beads: usize,
@@ -62,32 +62,6 @@ pub struct RigDrawing {
     pub end_structure: String,
     /// A mass that stands apart.
     pub bar: String,
-}
-
-impl Default for RigDrawing {
-    fn default() -> Self {
-        Self {
-            beads: 10,
-            bead_label: String::new(),
-            striker_ratio: None,
-            striker_label: String::new(),
-            sensor_bead: None,
-            sensor_label: String::new(),
-            wet_contacts: None,
-            liquid: String::new(),
-            incline_deg: 0.0,
-            far_end: FarEnd::default(),
-            wall_sensor: false,
-            actuator: String::new(),
-            repositioner: String::new(),
-            photogate: String::new(),
-            springs: String::new(),
-            recorder: String::new(),
-            stop: String::new(),
-            end_structure: String::new(),
-            bar: String::new(),
-        }
-    }
 }
 
 /// Width of the drawing in points; the beads' centres are at height 0.

@@ -27,7 +27,6 @@ pub struct Animation {
     radii_m: Vec<f64>,
     marks: Vec<(usize, String)>,
     wet_contacts: Option<(usize, usize)>,
-    exaggeration: Option<f64>,
     time_unit: (f64, String),
     force_unit: String,
     first_contact: usize,
@@ -52,7 +51,6 @@ impl Animation {
             radii_m: radii_m.to_vec(),
             marks: Vec::new(),
             wet_contacts: None,
-            exaggeration: None,
             time_unit: (1e6, "µs".into()),
             force_unit: "N".into(),
             first_contact: 0,
@@ -77,13 +75,6 @@ impl Animation {
     #[must_use]
     pub fn wet(mut self, first: usize, last: usize) -> Self {
         self.wet_contacts = Some((first, last));
-        self
-    }
-
-    /// Factor on displacements; by default a round one that makes them visible.
-    #[must_use]
-    pub fn exaggeration(mut self, factor: f64) -> Self {
-        self.exaggeration = Some(factor).filter(|f| f.is_finite() && *f > 0.0);
         self
     }
 
@@ -121,9 +112,7 @@ impl Animation {
         let grid = self.frame_times(beads.len());
         let moved = self.displacements(&beads, &grid);
         let forces = self.sampled_forces(stride, &grid);
-        let factor = self
-            .exaggeration
-            .unwrap_or_else(|| self.fitting_factor(&moved));
+        let factor = self.fitting_factor(&moved);
         let radii: Vec<f64> = beads.iter().map(|b| self.radius(*b)).collect();
         let places: Vec<f64> = beads.iter().map(|b| self.start(*b)).collect();
         let (u, u_range) = quantised(&moved);

@@ -161,7 +161,7 @@ fn add_x(extent: &mut Extent, series: &Series) {
 }
 
 /// The y scale of a chart: as asked for, or around the data.
-pub(crate) fn y_scale(chart: &Chart, style: &Style) -> Scale {
+fn y_scale(chart: &Chart, style: &Style) -> Scale {
     let mut extent = Extent::new(chart.y.log);
     let x = x_scale(chart, style);
     for series in &chart.series {

@@ -5,7 +5,7 @@ mod free;
 mod layout;
 mod strokes;
 
-pub(crate) use layout::{Plot, Prepared, x_scale, y_scale};
+pub(crate) use layout::{Plot, Prepared, x_scale};
 
 use crate::draw::Colour;
 use crate::heat::HeatMap;
