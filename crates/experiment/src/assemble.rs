@@ -9,15 +9,18 @@ use crate::bodies::sphere_mass_kg;
 use crate::contacts::{self, CONTACT, LawSpec, SectionSpec};
 use crate::experiment::Experiment;
 use crate::keys::SPEED;
-use crate::report::{Problem, short};
-use crate::settings::{Far, Near, Shape};
+use crate::report::{FileProblem, short};
+use crate::settings::{BodyShape, Far, Near};
 use crate::spec::Spec;
 use crate::validity;
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
 use std::ops::RangeInclusive;
 
 /// The chain of an experiment, hit at this speed, and warnings about it.
-pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<(Chain, Vec<Problem>), Problem> {
+pub(crate) fn chain(
+    spec: &Spec,
+    speed_m_s: Option<f64>,
+) -> Result<(Chain, Vec<FileProblem>), FileProblem> {
     let speed_m_s = striker_speed(spec, speed_m_s)?;
     let (materials, mut warnings) = materials(spec, speed_m_s)?;
     let mut beads = Vec::new();
@@ -26,7 +29,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<(Chain, Vec<P
         .for_each(|group| group.append(&materials, &mut beads));
     beads.truncate(spec.bead_count());
     let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
-        return Err(Problem::new(
+        return Err(FileProblem::new(
             &(0..0),
             "the chain has no beads",
             "expected at least one",
@@ -53,7 +56,7 @@ pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<(Chain, Vec<P
 }
 
 /// The speed of the shot: the one asked for, else the file's.
-fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Problem> {
+fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, FileProblem> {
     let limits = SPEED.within(spec.units, "m/s");
     let asked = |speed| {
         let speed = spec.units.with_unit(&short(speed), "m/s");
@@ -63,7 +66,7 @@ fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Pro
         (Some(_), Some(speed)) if limits.hold(speed) => Ok(Some(speed)),
         (Some(_), Some(speed)) => {
             let label = format!("expected a positive, finite speed, {}", limits.words);
-            Err(Problem::new(&spec.near.span(), asked(speed), label))
+            Err(FileProblem::new(&spec.near.span(), asked(speed), label))
         }
         (None, Some(speed)) => Err(no_striker(
             spec,
@@ -74,13 +77,16 @@ fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Pro
 }
 
 /// A problem where a striker is needed and something else sets the chain in motion.
-pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> Problem {
-    Problem::new(&spec.near.span(), message, "this sets the chain in motion")
+pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> FileProblem {
+    FileProblem::new(&spec.near.span(), message, "this sets the chain in motion")
         .help("put a [striker] with a `speed` in its place")
 }
 
 /// Every material at this speed; those without use only cost a warning.
-fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Problem>), Problem> {
+fn materials(
+    spec: &Spec,
+    speed: Option<f64>,
+) -> Result<(Vec<Material>, Vec<FileProblem>), FileProblem> {
     let used = spec.used_materials();
     let sections = spec.cases.iter().filter_map(|case| case.sections.as_ref());
     let of_cases: Vec<usize> = sections
@@ -99,7 +105,7 @@ fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Prob
         materials.push(Material::RIGID);
         if !of_cases.contains(&index) {
             let message = format!("nothing is made of `{}`", material.name);
-            warnings.push(Problem::new(
+            warnings.push(FileProblem::new(
                 &material.span,
                 message,
                 "this material is not used",
@@ -114,7 +120,7 @@ fn start(
     speed_m_s: Option<f64>,
     first: &Bead,
     materials: &[Material],
-) -> Result<Start, Problem> {
+) -> Result<Start, FileProblem> {
     match (&spec.near, speed_m_s) {
         (Near::Striker { shape, .. }, Some(speed_m_s)) => Ok(Start::Striker {
             bead: striker(spec, shape, first, materials)?,
@@ -132,7 +138,7 @@ fn start(
     }
 }
 
-fn material_of(shape: &Shape, materials: &[Material]) -> Option<Material> {
+fn material_of(shape: &BodyShape, materials: &[Material]) -> Option<Material> {
     materials.get(shape.material?).copied()
 }
 
@@ -140,10 +146,10 @@ fn material_of(shape: &Shape, materials: &[Material]) -> Option<Material> {
 /// material has another mass, which then needs a density.
 fn striker(
     spec: &Spec,
-    shape: &Shape,
+    shape: &BodyShape,
     first: &Bead,
     materials: &[Material],
-) -> Result<Bead, Problem> {
+) -> Result<Bead, FileProblem> {
     let radius_m = shape.radius_m.unwrap_or(first.radius_m);
     let like_bead_1 = radius_m == first.radius_m && shape.material.is_none();
     let of_bead_1 = || spec.groups.first()?.cell.first()?.material;
@@ -154,7 +160,7 @@ fn striker(
     let full = density.map(|density| sphere_mass_kg(radius_m, density));
     let label =
         "it differs from bead 1: expected `mass = \"8.54 g\"`, or a density in its material";
-    let missing = || Problem::new(&shape.span, "the striker has no mass", label);
+    let missing = || FileProblem::new(&shape.span, "the striker has no mass", label);
     Ok(Bead {
         radius_m,
         mass_kg: shape.mass_kg.or(own).or(full).ok_or_else(missing)?,
@@ -187,7 +193,11 @@ fn far(far: &Far, last: &Bead, materials: &[Material]) -> FarEnd {
     }
 }
 
-fn sections(spec: &Spec, materials: &[Material], beads: usize) -> Result<Vec<Section>, Problem> {
+fn sections(
+    spec: &Spec,
+    materials: &[Material],
+    beads: usize,
+) -> Result<Vec<Section>, FileProblem> {
     let section = |section: &SectionSpec| {
         let laws = section.laws.iter().map(|law| law.build(&law.given));
         Ok(Section {
@@ -200,17 +210,17 @@ fn sections(spec: &Spec, materials: &[Material], beads: usize) -> Result<Vec<Sec
 }
 
 /// A warning for sections that nothing pushes apart.
-fn inelastic(spec: &Spec) -> impl Iterator<Item = Problem> {
+fn inelastic(spec: &Spec) -> impl Iterator<Item = FileProblem> {
     let inelastic = spec.sections.iter().filter(|section| !section.is_elastic());
     inelastic.map(|section| {
         let message = "no law of these contacts pushes the beads apart";
-        Problem::new(&section.laws_span, message, "an elastic law is missing")
+        FileProblem::new(&section.laws_span, message, "an elastic law is missing")
             .help("add \"elastic_hertz\" to `laws`")
     })
 }
 
 /// A warning for gaps in contacts that are pressed together at rest.
-fn closed_gaps(spec: &Spec) -> impl Iterator<Item = Problem> {
+fn closed_gaps(spec: &Spec) -> impl Iterator<Item = FileProblem> {
     let ring = matches!(spec.far, Far::Periodic { force_n } if force_n > 0.0);
     let weighs = spec.incline_rad > 0.0 && spec.gravity_m_s2 > 0.0;
     let pressed = ring || weighs || spec.push.force_n() > 0.0;
@@ -218,7 +228,7 @@ fn closed_gaps(spec: &Spec) -> impl Iterator<Item = Problem> {
     let closed = gaps.filter(|(gap, _)| gap.contact > 0 && gap.gap_m > 0.0);
     closed.map(|(gap, span)| {
         let message = format!("contact {} is pressed together at rest", gap.contact);
-        Problem::new(span, message, "this gap closes and has no effect")
+        FileProblem::new(span, message, "this gap closes and has no effect")
     })
 }
 
@@ -313,7 +323,7 @@ fn of_one_material(chain: &Chain, material: Option<Material>) -> Chain {
 
 /// Sections in which each contact has its own values of what belongs to a reference
 /// contact: those of a chain, divided where values change.
-fn scaled_sections(spec: &Spec, chain: &Chain) -> Result<Vec<Section>, Problem> {
+fn scaled_sections(spec: &Spec, chain: &Chain) -> Result<Vec<Section>, FileProblem> {
     let mut all = Vec::new();
     for (of, section) in spec.sections.iter().zip(&chain.sections) {
         if of.laws.iter().all(|law| law.references.is_empty()) {
@@ -352,7 +362,7 @@ fn scaled_sections(spec: &Spec, chain: &Chain) -> Result<Vec<Section>, Problem> 
 type Given = Vec<(&'static str, f64)>;
 
 /// Values of a law at a contact, by the ratios of the bodies' own values.
-fn scaled(law: &LawSpec, bodies: &Chain, contact: usize) -> Result<Given, Problem> {
+fn scaled(law: &LawSpec, bodies: &Chain, contact: usize) -> Result<Given, FileProblem> {
     let value = |(name, value): &(&'static str, f64)| {
         let Some(reference) = law.reference(name) else {
             return Ok((*name, *value));
@@ -370,7 +380,7 @@ fn scaled(law: &LawSpec, bodies: &Chain, contact: usize) -> Result<Given, Proble
                 let label = format!(
                     "leave `{CONTACT}` out to give all contacts of the section one `{name}`"
                 );
-                Err(Problem::new(&law.span, message, label))
+                Err(FileProblem::new(&law.span, message, label))
             }
         }
     };

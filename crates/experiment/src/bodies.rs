@@ -2,7 +2,7 @@
 
 use crate::document::as_key;
 use crate::keys::{LENGTH, MASS, MOST_BEADS};
-use crate::report::{Problem, nearest_word, short, to_digits};
+use crate::report::{FileProblem, nearest_word, short, to_digits};
 use crate::values::{SpeedLaw, Units, View};
 use hertzchain_chain::{Bead, Material};
 use std::f64::consts::PI;
@@ -29,14 +29,14 @@ pub(crate) struct MaterialSpec {
 pub(crate) struct Materials(pub(crate) Vec<MaterialSpec>);
 
 impl Materials {
-    pub(crate) fn read(root: &View<'_>) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>) -> Result<Self, FileProblem> {
         let named = root.named("materials").into_iter();
         let specs = named.map(|(name, span, table)| MaterialSpec::read(name, span, &table));
         Ok(Self(specs.collect::<Result<_, _>>()?))
     }
 
     /// The material that a table names.
-    pub(crate) fn find(&self, table: &View<'_>) -> Result<Option<usize>, Problem> {
+    pub(crate) fn find(&self, table: &View<'_>) -> Result<Option<usize>, FileProblem> {
         let Some(name) = table.text("material") else {
             return Ok(None);
         };
@@ -44,7 +44,7 @@ impl Materials {
         at.map(Some).ok_or_else(|| self.unknown(table, name))
     }
 
-    fn unknown(&self, table: &View<'_>, name: &str) -> Problem {
+    fn unknown(&self, table: &View<'_>, name: &str) -> FileProblem {
         let names: Vec<&str> = self.0.iter().map(|m| m.name.as_str()).collect();
         let message = format!("there is no material `{name}`");
         let problem = table.problem("material", message, expected_material(&names));
@@ -79,10 +79,10 @@ pub(crate) fn expected_material(names: &[&str]) -> String {
 }
 
 impl MaterialSpec {
-    fn read(name: &str, span: Range<usize>, table: &View<'_>) -> Result<Self, Problem> {
+    fn read(name: &str, span: Range<usize>, table: &View<'_>) -> Result<Self, FileProblem> {
         let needed = |key: &str| {
             let message = || format!("material `{name}` has no `{key}`");
-            let missing = || Problem::new(&span, message(), "expected it in this table");
+            let missing = || FileProblem::new(&span, message(), "expected it in this table");
             table.speed_law(key)?.ok_or_else(missing)
         };
         Ok(Self {
@@ -110,7 +110,7 @@ impl MaterialSpec {
     pub(crate) fn at(
         &self,
         speed_m_s: Option<f64>,
-    ) -> Result<(Material, Option<Problem>), Problem> {
+    ) -> Result<(Material, Option<FileProblem>), FileProblem> {
         let any = f64::INFINITY;
         let viscosity = |given: &Option<SpeedLaw>| {
             let value = |law: &SpeedLaw| law.at(speed_m_s, "viscosity", any);
@@ -135,12 +135,12 @@ impl MaterialSpec {
     }
 
     /// A warning when ν exceeds 1/2.
-    fn beyond_half(&self, poisson_ratio: f64, speed_m_s: Option<f64>) -> Option<Problem> {
+    fn beyond_half(&self, poisson_ratio: f64, speed_m_s: Option<f64>) -> Option<FileProblem> {
         let speed_m_s = speed_m_s.filter(|_| self.poisson_ratio.exponent != 0.0);
         let (name, value, at) = (&self.name, to_digits(poisson_ratio, 6), at(speed_m_s));
         let message = format!("the Poisson ratio of `{name}` is {value}{at}");
         (poisson_ratio > 0.5).then(|| {
-            Problem::new(&self.poisson_ratio.span, message, "no solid is above 1/2")
+            FileProblem::new(&self.poisson_ratio.span, message, "no solid is above 1/2")
                 .help("taken as an effective number; it must stay below 1")
         })
     }
@@ -153,20 +153,21 @@ fn at(speed_m_s: Option<f64>) -> String {
 
 impl SpeedLaw {
     /// The value at a speed, at most so much.
-    fn at(&self, speed_m_s: Option<f64>, name: &str, most: f64) -> Result<f64, Problem> {
+    fn at(&self, speed_m_s: Option<f64>, name: &str, most: f64) -> Result<f64, FileProblem> {
         let value = match (speed_m_s, self.exponent == 0.0) {
             (_, true) => self.prefactor,
             (Some(speed), false) => self.prefactor * speed.powf(self.exponent),
             (None, false) => {
                 let label = "expected a number, or a [striker] with a speed";
                 let message = format!("{name} depends on a striker's speed and there is none");
-                return Err(Problem::new(&self.span, message, label));
+                return Err(FileProblem::new(&self.span, message, label));
             }
         };
         let bounded = value.min(most);
         let (words, at) = (self.limits.words, at(speed_m_s));
         let message = || format!("{name} is {}{at}", to_digits(value, 6));
-        let problem = || Problem::new(&self.span, message(), format!("expected a value {words}"));
+        let problem =
+            || FileProblem::new(&self.span, message(), format!("expected a value {words}"));
         self.limits
             .hold(bounded)
             .then_some(bounded)
@@ -176,8 +177,8 @@ impl SpeedLaw {
 
 /// A unit cell and how often it stands in a row.
 #[derive(Clone, Debug)]
-pub(crate) struct Group {
-    pub(crate) cell: Vec<Part>,
+pub(crate) struct BeadGroup {
+    pub(crate) cell: Vec<CellPart>,
     repeat: usize,
     /// Radii of a repetition over those of the one before.
     radius_ratio: f64,
@@ -186,7 +187,7 @@ pub(crate) struct Group {
 
 /// Identical beads in a unit cell.
 #[derive(Clone, Debug)]
-pub(crate) struct Part {
+pub(crate) struct CellPart {
     count: usize,
     radius_m: f64,
     mass_kg: f64,
@@ -194,7 +195,7 @@ pub(crate) struct Part {
     pub(crate) material: Option<usize>,
 }
 
-impl Group {
+impl BeadGroup {
     pub(crate) fn count(&self) -> usize {
         let cell: usize = self.cell.iter().map(|part| part.count).sum();
         cell.saturating_mul(self.repeat)
@@ -228,18 +229,21 @@ pub(crate) fn sphere_mass_kg(radius_m: f64, density_kg_m3: f64) -> f64 {
 }
 
 /// All groups of a file.
-pub(crate) fn groups(root: &View<'_>, materials: &Materials) -> Result<Vec<Group>, Problem> {
+pub(crate) fn groups(
+    root: &View<'_>,
+    materials: &Materials,
+) -> Result<Vec<BeadGroup>, FileProblem> {
     let tables = root.tables("beads");
     let groups = tables.iter().map(|table| group(table, materials));
-    let groups: Vec<Group> = groups.collect::<Result<_, _>>()?;
+    let groups: Vec<BeadGroup> = groups.collect::<Result<_, _>>()?;
     // A dimensionless chain may do without materials, but not in part.
-    let bare = |group: &&Group| group.cell.iter().any(|part| part.material.is_none());
+    let bare = |group: &&BeadGroup| group.cell.iter().any(|part| part.material.is_none());
     let mut parts = groups.iter().flat_map(|group| &group.cell);
     if let Some(group) = groups.iter().find(bare)
         && parts.any(|part| part.material.is_some())
     {
         let message = "these beads have no material, but others do";
-        return Err(Problem::new(
+        return Err(FileProblem::new(
             &group.span,
             message,
             "expected `material = \"name\"`",
@@ -250,13 +254,17 @@ pub(crate) fn groups(root: &View<'_>, materials: &Materials) -> Result<Vec<Group
         total = total.saturating_add(group.count());
         if total as u64 > MOST_BEADS as u64 {
             let message = format!("the chain has more than {MOST_BEADS} beads");
-            return Err(Problem::new(&group.span, message, "expected fewer here"));
+            return Err(FileProblem::new(
+                &group.span,
+                message,
+                "expected fewer here",
+            ));
         }
     }
     Ok(groups)
 }
 
-fn group(table: &View<'_>, materials: &Materials) -> Result<Group, Problem> {
+fn group(table: &View<'_>, materials: &Materials) -> Result<BeadGroup, FileProblem> {
     let has_cell = table.has("cell");
     let (foreign, why): (&[&str], _) = match has_cell {
         true => (
@@ -274,7 +282,7 @@ fn group(table: &View<'_>, materials: &Materials) -> Result<Group, Problem> {
     let cells = tables
         .iter()
         .map(|cell| part(cell, materials, cell.count("count")?));
-    let group = Group {
+    let group = BeadGroup {
         cell: match has_cell {
             true => cells.collect::<Result<_, _>>()?,
             false => vec![part(table, materials, None)?],
@@ -285,7 +293,7 @@ fn group(table: &View<'_>, materials: &Materials) -> Result<Group, Problem> {
     };
     // A tapered group must keep radii and masses that a number can hold.
     let scale = group.scale(group.repeat.saturating_sub(1));
-    let fits = |part: &Part| {
+    let fits = |part: &CellPart| {
         let (radius_m, mass_kg) = (part.radius_m * scale, part.mass_kg * scale * scale * scale);
         LENGTH.within(table.units, "m").hold(radius_m)
             && MASS.within(table.units, "kg").hold(mass_kg)
@@ -298,11 +306,15 @@ fn group(table: &View<'_>, materials: &Materials) -> Result<Group, Problem> {
     Err(table.problem("radius_ratio", message, label))
 }
 
-fn part(table: &View<'_>, materials: &Materials, count: Option<usize>) -> Result<Part, Problem> {
+fn part(
+    table: &View<'_>,
+    materials: &Materials,
+    count: Option<usize>,
+) -> Result<CellPart, FileProblem> {
     let material = materials.find(table)?;
     let lacks = |key: &str, label: &str| {
         let message = format!("these beads have no `{key}`");
-        Problem::new(&table.span(), message, label)
+        FileProblem::new(&table.span(), message, label)
     };
     // K = m = R = 1 unless written.
     let one = (table.units == Units::Dimensionless).then_some(1.0);
@@ -316,7 +328,7 @@ fn part(table: &View<'_>, materials: &Materials, count: Option<usize>) -> Result
     let full = density.map(|density| sphere_mass_kg(radius_m, density));
     let label = "expected `mass = \"8.54 g\"`, or a `density` in the material";
     let mass_kg = table.quantity("mass")?.or(full).or(one);
-    Ok(Part {
+    Ok(CellPart {
         count: count.unwrap_or(1),
         radius_m,
         mass_kg: mass_kg.ok_or_else(|| lacks("mass", label))?,

@@ -2,16 +2,16 @@
 
 use crate::bodies::expected_material;
 use crate::contacts;
-use crate::document::{Entry, Node, Value};
-use crate::keys::{self, Fields, Key, Kind, Limits, Need, ROOT, Variants};
-use crate::report::{Problem, nearest_word};
+use crate::document::{Node, TableEntry, Value};
+use crate::keys::{self, Fields, Key, Kind, Need, ROOT, ValueLimits, Variants};
+use crate::report::{FileProblem, nearest_word};
 use crate::spec::BEADS;
 use crate::units;
-use crate::values::{Expected, HAS_NONE, HAS_ONE, POWER_LAW, Units, whole};
+use crate::values::{ExpectedQuantity, HAS_NONE, HAS_ONE, POWER_LAW, Units, whole};
 
 /// Checks a whole document.
-pub(crate) fn check(tree: &Node, units: Units) -> Result<(), Vec<Problem>> {
-    let mut check = Check {
+pub(crate) fn check(tree: &Node, units: Units) -> Result<(), Vec<FileProblem>> {
+    let mut check = FormCheck {
         tree,
         units,
         problems: Vec::new(),
@@ -25,15 +25,15 @@ pub(crate) fn check(tree: &Node, units: Units) -> Result<(), Vec<Problem>> {
 }
 
 /// A check of tables that collects what is wrong.
-struct Check<'a> {
+struct FormCheck<'a> {
     tree: &'a Node,
     units: Units,
-    problems: Vec<Problem>,
+    problems: Vec<FileProblem>,
     /// Quantities with a dimension that suit the unit system.
     fitting: usize,
 }
 
-impl Check<'_> {
+impl FormCheck<'_> {
     /// Checks a table against its keys; `tag` is a deciding key already read.
     fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
         if !node.is_table() {
@@ -68,10 +68,10 @@ impl Check<'_> {
     }
 
     fn add(&mut self, span: &std::ops::Range<usize>, message: String, label: impl Into<String>) {
-        self.problems.push(Problem::new(span, message, label));
+        self.problems.push(FileProblem::new(span, message, label));
     }
 
-    fn unknown(&mut self, entry: &Entry, fields: &Fields, tag: Option<&str>) {
+    fn unknown(&mut self, entry: &TableEntry, fields: &Fields, tag: Option<&str>) {
         let key = &entry.key;
         let names: Vec<&str> = fields.names().into_iter().chain(tag).collect();
         let label = match names.is_empty() {
@@ -79,7 +79,7 @@ impl Check<'_> {
             false => format!("expected one of: {}", names.join(", ")),
         };
         let message = format!("{} has no key `{key}`", fields.title);
-        let mut problem = Problem::new(&entry.key_span, message, label);
+        let mut problem = FileProblem::new(&entry.key_span, message, label);
         if let Some(place) = keys::home(key) {
             problem = problem.help(format!("`{key}` belongs {place}"));
         }
@@ -100,7 +100,7 @@ impl Check<'_> {
             Kind::Quantities(unit) => {
                 let before = self.problems.len();
                 self.each(key, node, |check, member| {
-                    check.quantity(key.name, unit, Limits::ANY, member);
+                    check.quantity(key.name, unit, ValueLimits::ANY, member);
                 });
                 // A slip that all members share is one mistake.
                 let mut own = self.problems.split_off(before);
@@ -147,7 +147,7 @@ impl Check<'_> {
         let message = format!("`material` is {}, not a name in quotes", node.kind());
         let materials = self.tree.get("materials").map_or(&[][..], Node::entries);
         let names: Vec<&str> = materials.iter().map(|entry| entry.key.as_str()).collect();
-        let problem = Problem::new(&node.span, message, expected_material(&names));
+        let problem = FileProblem::new(&node.span, message, expected_material(&names));
         self.problems.push(match node.is_table() {
             true => problem.help("write it as a table of its own, [materials.NAME]"),
             false => problem,
@@ -170,9 +170,9 @@ impl Check<'_> {
         }
     }
 
-    fn quantity(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
+    fn quantity(&mut self, name: &str, unit: &str, limits: ValueLimits, node: &Node) {
         let units = self.units;
-        match (Expected {
+        match (ExpectedQuantity {
             name,
             unit,
             limits,
@@ -185,7 +185,7 @@ impl Check<'_> {
         }
     }
 
-    fn scaled(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
+    fn scaled(&mut self, name: &str, unit: &str, limits: ValueLimits, node: &Node) {
         if !node.is_table() {
             return self.quantity(name, unit, limits, node);
         }
@@ -196,13 +196,13 @@ impl Check<'_> {
                 misspelt.extend(near);
                 let message = format!("a power law has no key `{}`", entry.key);
                 let problem =
-                    Problem::new(&entry.key_span, message, "expected prefactor, exponent");
+                    FileProblem::new(&entry.key_span, message, "expected prefactor, exponent");
                 self.problems.push(problem.nearest(near));
             }
         }
         for (part, unit) in POWER_LAW.into_iter().zip([unit, "1"]) {
             match node.get(part) {
-                Some(value) => self.quantity(part, unit, Limits::ANY, value),
+                Some(value) => self.quantity(part, unit, ValueLimits::ANY, value),
                 None if misspelt.contains(&part) => {}
                 None => {
                     let label = "expected { prefactor = …, exponent = … }, a power law of the \
@@ -240,7 +240,7 @@ impl Check<'_> {
             None => format!("`{name}` is {}", node.kind()),
         };
         let label = format!("expected one of: \"{}\"", options.join("\", \""));
-        let problem = Problem::new(&node.span, message, label);
+        let problem = FileProblem::new(&node.span, message, label);
         self.problems
             .push(match keys::advice_on_option(name, text) {
                 Some(advice) => problem.help(advice),
@@ -303,7 +303,7 @@ impl Check<'_> {
             .node
             .text()
             .and_then(|text| keys::advice_on_option(tag, text));
-        let problem = Problem::new(&entry.key_span, message, label);
+        let problem = FileProblem::new(&entry.key_span, message, label);
         self.problems.push(match advice {
             Some(advice) => problem.help(advice),
             None => problem,
@@ -365,12 +365,12 @@ fn example(key: &Key) -> String {
 
 /// The problems of a file, with one in place of all about units where no
 /// quantity at all suits the file's unit system.
-fn merge_unit_slips(check: Check<'_>) -> Vec<Problem> {
+fn merge_unit_slips(check: FormCheck<'_>) -> Vec<FileProblem> {
     let end = match check.units {
         Units::Si => HAS_NONE,
         Units::Dimensionless => HAS_ONE,
     };
-    let (slips, mut others): (Vec<Problem>, Vec<Problem>) =
+    let (slips, mut others): (Vec<FileProblem>, Vec<FileProblem>) =
         (check.problems.into_iter()).partition(|problem| problem.message.ends_with(end));
     match &slips[..] {
         [first, _, ..] if check.fitting == 0 => {
@@ -379,13 +379,13 @@ fn merge_unit_slips(check: Check<'_>) -> Vec<Problem> {
                 (Units::Dimensionless, Some(node)) => {
                     let message = format!("this file is dimensionless, but its {count} quantities have units");
                     let label = "expected \"SI\", or plain numbers throughout";
-                    Problem::new(&node.span, message, label)
+                    FileProblem::new(&node.span, message, label)
                         .also(&first.span, "the first quantity with a unit")
                 }
                 _ => {
                     let message = format!("none of the {count} quantities of this file has a unit");
                     let label = "the first: expected a unit, as in \"6.35 mm\"";
-                    Problem::new(&first.span, message, label)
+                    FileProblem::new(&first.span, message, label)
                         .help("where plain numbers are meant, write units = \"dimensionless\" at the top")
                 }
             });

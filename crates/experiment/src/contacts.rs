@@ -1,10 +1,10 @@
 //! Sections of contacts and their laws, by the declarations of the registry.
 
-use crate::bodies::{Group, Materials};
+use crate::bodies::{BeadGroup, Materials};
 use crate::document::{Node, Value};
-use crate::keys::Limits;
-use crate::report::{Problem, nearest_word};
-use crate::values::{Expected, Units, View, whole};
+use crate::keys::ValueLimits;
+use crate::report::{FileProblem, nearest_word};
+use crate::values::{ExpectedQuantity, Units, View, whole};
 use hertzchain_chain::laws::{LAWS, Law, LawError, Nature, Parameter, Row, Source, find};
 use std::ops::Range;
 use std::sync::Arc;
@@ -77,10 +77,10 @@ impl LawSpec {
     }
 
     /// The law with these values of its parameters.
-    pub(crate) fn build(&self, given: &[(&str, f64)]) -> Result<Arc<dyn Law>, Problem> {
+    pub(crate) fn build(&self, given: &[(&str, f64)]) -> Result<Arc<dyn Law>, FileProblem> {
         let message = |e: &LawError| format!("law `{}` can't be used", e.law);
         let built = self.row.build(given);
-        built.map_err(|e| Problem::new(&self.span, message(&e), e.what))
+        built.map_err(|e| FileProblem::new(&self.span, message(&e), e.what))
     }
 
     /// A parameter that the file leaves out and that has this kind of source.
@@ -104,14 +104,14 @@ impl SectionSpec {
 }
 
 /// Everything wrong with one member of `laws`.
-pub(crate) fn check_law(node: &Node, units: Units) -> Vec<Problem> {
+pub(crate) fn check_law(node: &Node, units: Units) -> Vec<FileProblem> {
     let row = match row_of(node) {
         Ok(row) => row,
         Err(problem) => return vec![problem],
     };
     let mut problems = Vec::new();
     let known = keys_of(row);
-    let unknown = |entry: &&crate::document::Entry| {
+    let unknown = |entry: &&crate::document::TableEntry| {
         entry.key != "law" && !known.contains(&entry.key.as_str())
     };
     let unknown: Vec<_> = node.entries().iter().filter(unknown).collect();
@@ -119,7 +119,7 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<Problem> {
         let message = format!("law `{}` has no parameter `{}`", row.info.name, entry.key);
         let label = format!("expected one of: {}", known.join(", "));
         let near = nearest_word(&entry.key, known.iter().copied());
-        problems.push(Problem::new(&entry.key_span, message, label).nearest(near));
+        problems.push(FileProblem::new(&entry.key_span, message, label).nearest(near));
     }
     problems.extend(contact_of(node).err());
     let read = |p: &Parameter| Some(value_of(p, row, node, units, node.get(p.name)?));
@@ -130,7 +130,7 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<Problem> {
         let steers = |other: &&Parameter| parameter.unit.contains(&format!("{{{}}}", other.name));
         // A misspelt key is one mistake, and has been reported.
         let misspelt =
-            |e: &&crate::document::Entry| nearest_word(&e.key, [parameter.name]).is_some();
+            |e: &&crate::document::TableEntry| nearest_word(&e.key, [parameter.name]).is_some();
         match read(parameter) {
             _ if unsound.iter().copied().any(|other| steers(&other)) => {}
             Some(read) => problems.extend(read.err()),
@@ -142,7 +142,7 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<Problem> {
 }
 
 /// One member of `laws`, already checked.
-fn law(node: &Node, units: Units) -> Result<LawSpec, Problem> {
+fn law(node: &Node, units: Units) -> Result<LawSpec, FileProblem> {
     let row = row_of(node)?;
     let contact = contact_of(node)?;
     let (mut given, mut references) = (Vec::new(), Vec::new());
@@ -166,7 +166,7 @@ fn law(node: &Node, units: Units) -> Result<LawSpec, Problem> {
 }
 
 /// The contact that a law's K or A belongs to, where the file names one.
-fn contact_of(node: &Node) -> Result<Option<usize>, Problem> {
+fn contact_of(node: &Node) -> Result<Option<usize>, FileProblem> {
     let contact = |value| whole(CONTACT, 0, i64::MAX, value);
     let found = node.get(CONTACT).map(contact).transpose()?;
     Ok(found.and_then(|contact| usize::try_from(contact).ok()))
@@ -180,11 +180,11 @@ fn keys_of(row: &Row) -> Vec<&'static str> {
 }
 
 /// The registry row that a member of `laws` names.
-pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
+pub(crate) fn row_of(node: &Node) -> Result<&'static Row, FileProblem> {
     let name = match node.value {
         Value::Table(_) => node.get("law").ok_or_else(|| {
             let label = "expected { law = \"name\", parameter = value, … }";
-            let problem = Problem::new(&node.span, "this law has no name", label);
+            let problem = FileProblem::new(&node.span, "this law has no name", label);
             let mut words = ["name", "type", "kind", "model"].into_iter();
             match words.find(|word| node.get(word).is_some()) {
                 Some(word) => problem.help(format!("write `law` in place of `{word}`")),
@@ -195,7 +195,7 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
     };
     let Some(text) = name.text() else {
         let message = format!("a law is {}", name.kind());
-        return Err(Problem::new(
+        return Err(FileProblem::new(
             &name.span,
             message,
             "expected a law's name in quotes",
@@ -207,11 +207,11 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, Problem> {
         let near = nearest_word(text, names.iter().copied());
         let near = near.or_else(|| names.iter().copied().find(part));
         let label = format!("expected one of: {}", names.join(", "));
-        Problem::new(&name.span, format!("there is no law `{text}`"), label).nearest(near)
+        FileProblem::new(&name.span, format!("there is no law `{text}`"), label).nearest(near)
     })
 }
 
-fn missing(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> Problem {
+fn missing(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> FileProblem {
     let (law, name) = (row.info.name, parameter.name);
     let value = match (units, unit_of(parameter, row, node, units).as_str()) {
         (Units::Si, "1") | (Units::Dimensionless, _) => "…".to_owned(),
@@ -219,7 +219,7 @@ fn missing(parameter: &Parameter, row: &Row, node: &Node, units: Units) -> Probl
     };
     let meaning = parameter.meaning;
     let label = format!("expected {{ law = \"{law}\", {name} = {value} }}: {meaning}");
-    Problem::new(&node.span, format!("law `{law}` needs `{name}`"), label)
+    FileProblem::new(&node.span, format!("law `{law}` needs `{name}`"), label)
 }
 
 /// The value of a parameter in SI; its unit may depend on another one of the law.
@@ -229,7 +229,7 @@ fn value_of(
     node: &Node,
     units: Units,
     value: &Node,
-) -> Result<f64, Problem> {
+) -> Result<f64, FileProblem> {
     /// Largest exponent: steeper is a wall that no step can follow.
     const STEEPEST: f64 = 100.0;
     let unit = unit_of(parameter, row, node, units);
@@ -241,10 +241,10 @@ fn value_of(
         _ => "above the law's least value",
     };
     let most = if is_exponent { STEEPEST } else { f64::MAX };
-    let expected = Expected {
+    let expected = ExpectedQuantity {
         name: parameter.name,
         unit: &unit,
-        limits: Limits::closed(parameter.least, most, words),
+        limits: ValueLimits::closed(parameter.least, most, words),
         units,
     };
     expected.read(value).map(|si| si.value)
@@ -268,10 +268,10 @@ fn exponent(parameter: &Parameter, node: &Node, units: Units) -> String {
         Source::Default(value) => value,
         _ => 1.0,
     };
-    let plain = Expected {
+    let plain = ExpectedQuantity {
         name: parameter.name,
         unit: "1",
-        limits: Limits::ANY,
+        limits: ValueLimits::ANY,
         units,
     };
     let value = node.get(parameter.name).and_then(|n| plain.read(n).ok());
@@ -285,9 +285,9 @@ fn exponent(parameter: &Parameter, node: &Node, units: Units) -> String {
 pub(crate) fn read(
     root: &View<'_>,
     materials: &Materials,
-    groups: &[Group],
-) -> Result<Vec<SectionSpec>, Problem> {
-    let beads = groups.iter().map(Group::count).sum();
+    groups: &[BeadGroup],
+) -> Result<Vec<SectionSpec>, FileProblem> {
+    let beads = groups.iter().map(BeadGroup::count).sum();
     let tables = root.tables("contacts");
     let section = |table: &View<'_>| section(table, materials, beads);
     let mut sections: Vec<SectionSpec> = tables.iter().map(section).collect::<Result<_, _>>()?;
@@ -325,7 +325,11 @@ fn hertz(root: &View<'_>) -> SectionSpec {
     }
 }
 
-fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<SectionSpec, Problem> {
+fn section(
+    table: &View<'_>,
+    materials: &Materials,
+    beads: usize,
+) -> Result<SectionSpec, FileProblem> {
     let from = table.count("from")?.unwrap_or(0);
     let to = table.count("to")?;
     within(&table.span_of("from"), from, beads)?;
@@ -357,28 +361,30 @@ fn section(table: &View<'_>, materials: &Materials, beads: usize) -> Result<Sect
     })
 }
 
-fn within(span: &Range<usize>, contact: usize, beads: usize) -> Result<(), Problem> {
+fn within(span: &Range<usize>, contact: usize, beads: usize) -> Result<(), FileProblem> {
     if contact <= beads {
         return Ok(());
     }
     let message = format!("contact {contact} is outside the chain of {beads} beads");
     let label = format!("expected a contact from 0 to {beads}, the wall contact");
-    Err(Problem::new(span, message, label))
+    Err(FileProblem::new(span, message, label))
 }
 
 /// Refuses the same law with the same parameters twice in one section: its
 /// force would count twice, which is not meant. The same
 /// law with other parameters is a sum of two terms.
-fn each_once(laws: &[LawSpec]) -> Result<(), Problem> {
+fn each_once(laws: &[LawSpec]) -> Result<(), FileProblem> {
     for (index, law) in laws.iter().enumerate() {
         let same = |other: &&LawSpec| other.name() == law.name() && other.given == law.given;
         if let Some(first) = laws.iter().take(index).find(same) {
             let message = format!("law `{}` stands twice in this section", law.name());
-            return Err(Problem::new(&law.span, message, "expected each term once")
-                .also(&first.span, "the first one is here")
-                .help(
-                    "forces of laws add, so this would double them; change a parameter instead",
-                ));
+            return Err(
+                FileProblem::new(&law.span, message, "expected each term once")
+                    .also(&first.span, "the first one is here")
+                    .help(
+                        "forces of laws add, so this would double them; change a parameter instead",
+                    ),
+            );
         }
     }
     Ok(())
@@ -386,7 +392,7 @@ fn each_once(laws: &[LawSpec]) -> Result<(), Problem> {
 
 /// Fills in stiffnesses that do not follow from materials: 1 in a chain without any
 /// (`bare`), and the K of the section's `elastic_hertz` in laws that share it.
-fn fill_stiffness(section: &mut SectionSpec, bare: bool) -> Result<(), Problem> {
+fn fill_stiffness(section: &mut SectionSpec, bare: bool) -> Result<(), FileProblem> {
     let bare = bare && section.material.is_none();
     let unit_stiffness = |laws: &mut [LawSpec], dissipative: bool| {
         let wanted = laws
@@ -403,7 +409,7 @@ fn fill_stiffness(section: &mut SectionSpec, bare: bool) -> Result<(), Problem> 
 
 /// Damping whose equation has the contact's K takes that of `elastic_hertz`,
 /// where the file gives it; forces of several add, so their K do.
-fn shared_stiffness(laws: &mut [LawSpec]) -> Result<(), Problem> {
+fn shared_stiffness(laws: &mut [LawSpec]) -> Result<(), FileProblem> {
     let hertz = || laws.iter().filter(|law| law.name() == "elastic_hertz");
     if hertz().all(|law| law.value(STIFFNESS).is_none()) {
         return Ok(());
@@ -426,16 +432,16 @@ fn shared_stiffness(laws: &mut [LawSpec]) -> Result<(), Problem> {
     Ok(())
 }
 
-fn unclear(law: &LawSpec) -> Problem {
+fn unclear(law: &LawSpec) -> FileProblem {
     let message = format!("the stiffness of law `{}` is not clear", law.name());
-    Problem::new(&law.span, message, "expected a `stiffness` here").help(
+    FileProblem::new(&law.span, message, "expected a `stiffness` here").help(
         "of several \"elastic_hertz\" in this section one has a stiffness and one leaves it to the \
          materials, or theirs belong to other contacts",
     )
 }
 
 /// Every contact belongs to one section.
-fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), Problem> {
+fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), FileProblem> {
     let mut next = 0;
     let mut before: Option<&SectionSpec> = None;
     for section in sections {
@@ -454,10 +460,10 @@ fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), Problem> {
     }
 }
 
-fn uncovered(section: &SectionSpec, from: usize, to: usize) -> Problem {
+fn uncovered(section: &SectionSpec, from: usize, to: usize) -> FileProblem {
     let verb = if from == to { "has" } else { "have" };
     let message = format!("{} {verb} no laws", contacts(from, to));
-    Problem::new(
+    FileProblem::new(
         &section.span,
         message,
         "expected sections that leave out no contact",
@@ -473,7 +479,7 @@ fn contacts(from: usize, to: usize) -> String {
 }
 
 /// Two sections that share contacts, both shown.
-fn overlap(first: &SectionSpec, second: &SectionSpec, beads: usize) -> Problem {
+fn overlap(first: &SectionSpec, second: &SectionSpec, beads: usize) -> FileProblem {
     let (from, end) = (second.from, first.last(beads));
     let last = end.min(second.last(beads));
     let verb = if from == last { "belongs" } else { "belong" };
@@ -499,7 +505,7 @@ fn overlap(first: &SectionSpec, second: &SectionSpec, beads: usize) -> Problem {
             .to_owned(),
     };
     let expected = format!("{begins}; expected contacts that no other section has");
-    Problem::new(&second.from_span, message, expected)
+    FileProblem::new(&second.from_span, message, expected)
         .also(&first.to_span, format!("this section has {ends}"))
         .help(help)
 }

@@ -1,7 +1,7 @@
 //! A file's text as a tree of values with their places, and what is no TOML in it.
 
 use crate::keys::{Kind, ROOT};
-use crate::report::Problem;
+use crate::report::FileProblem;
 use crate::units;
 use std::io::{Error as IoError, Read};
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub(crate) enum Value {
     Number(Number),
     Flag(bool),
     List(Vec<Node>),
-    Table(Vec<Entry>),
+    Table(Vec<TableEntry>),
     /// A date or time, which no key of an experiment is.
     Date,
 }
@@ -39,7 +39,7 @@ pub(crate) struct Number {
 
 /// One key and its value.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Entry {
+pub(crate) struct TableEntry {
     pub(crate) key: String,
     pub(crate) key_span: Range<usize>,
     pub(crate) node: Node,
@@ -85,7 +85,7 @@ impl Node {
     }
 
     /// The entries of a table; none of anything else.
-    pub(crate) fn entries(&self) -> &[Entry] {
+    pub(crate) fn entries(&self) -> &[TableEntry] {
         match &self.value {
             Value::Table(entries) => entries,
             _ => &[],
@@ -122,7 +122,7 @@ impl Node {
     /// law given by its name alone keeps the name as its `law`.
     pub(crate) fn entry_mut(&mut self, key: &str) -> &mut Self {
         let span = self.span.clone();
-        let entry = |key: &str, value: Value| Entry {
+        let entry = |key: &str, value: Value| TableEntry {
             key: key.to_owned(),
             key_span: span.clone(),
             node: Self {
@@ -149,7 +149,7 @@ impl Node {
 }
 
 /// Parses a text; every slip of the pen is one problem.
-pub(crate) fn parse(text: &str) -> Result<Node, Vec<Problem>> {
+pub(crate) fn parse(text: &str) -> Result<Node, Vec<FileProblem>> {
     let (table, errors) = DeTable::parse_recoverable(text);
     let root = Node {
         value: Value::Table(entries(table.get_ref())),
@@ -162,13 +162,13 @@ pub(crate) fn parse(text: &str) -> Result<Node, Vec<Problem>> {
 }
 
 /// Entries in the order of the text.
-fn entries(table: &DeTable<'_>) -> Vec<Entry> {
-    let entry = |(key, value): (&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)| Entry {
+fn entries(table: &DeTable<'_>) -> Vec<TableEntry> {
+    let entry = |(key, value): (&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)| TableEntry {
         key: key.get_ref().to_string(),
         key_span: key.span(),
         node: node(value),
     };
-    let mut entries: Vec<Entry> = table.iter().map(entry).collect();
+    let mut entries: Vec<TableEntry> = table.iter().map(entry).collect();
     entries.sort_by_key(|entry| entry.key_span.start);
     entries
 }
@@ -233,7 +233,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, IoError> {
 
 /// One problem a slip of the pen, at most 20: what only follows from an earlier error is
 /// left out.
-fn problems(errors: &[Error], text: &str) -> Vec<Problem> {
+fn problems(errors: &[Error], text: &str) -> Vec<FileProblem> {
     const MOST: usize = 20;
     let mut reported = Reported::default();
     let mut problems = Vec::new();
@@ -323,7 +323,7 @@ fn key_of(line: &str) -> Option<&str> {
     (!key.is_empty() && key.chars().all(word)).then_some(key)
 }
 
-fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
+fn problem(error: &Error, place: &Range<usize>, text: &str) -> FileProblem {
     if is_duplicate(error) {
         return duplicate(place, text);
     }
@@ -340,7 +340,7 @@ fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
     if let Some(label) = unquoted(raw.trim()) {
         let start = value_at + (raw.len() - raw.trim_start().len());
         let place = start..start + raw.trim().len();
-        return Problem::new(&place, "this value is not valid TOML", label);
+        return FileProblem::new(&place, "this value is not valid TOML", label);
     }
     // A `key =` without a value, in this line or right before it.
     let before = line(text, here.start.saturating_sub(1));
@@ -355,11 +355,11 @@ fn problem(error: &Error, place: &Range<usize>, text: &str) -> Problem {
         }
         None => (place.clone(), error.message()),
     };
-    Problem::new(&place, "this is not valid TOML", label)
+    FileProblem::new(&place, "this is not valid TOML", label)
 }
 
 /// The name of a table with letters that need quotes, or with a space for a point.
-fn wrong_name(line: &Range<usize>, text: &str) -> Option<Problem> {
+fn wrong_name(line: &Range<usize>, text: &str) -> Option<FileProblem> {
     let written = &text[line.clone()];
     let code = written.split('#').next()?.trim();
     let inner = code.strip_prefix('[')?.strip_suffix(']')?;
@@ -376,7 +376,7 @@ fn wrong_name(line: &Range<usize>, text: &str) -> Option<Problem> {
     let start = line.start + written.find('[')?;
     let place = start..start + code.len();
     let label = format!("expected [{name}]");
-    (name != inner).then(|| Problem::new(&place, "this is no name of a table", label))
+    (name != inner).then(|| FileProblem::new(&place, "this is no name of a table", label))
 }
 
 /// A name as a key of TOML: in quotes unless it is bare.
@@ -417,7 +417,7 @@ fn unquoted(raw: &str) -> Option<String> {
 }
 
 /// The one problem of a second `[table]` or `key = …`, whose key is at `place`.
-fn duplicate(place: &Range<usize>, text: &str) -> Problem {
+fn duplicate(place: &Range<usize>, text: &str) -> FileProblem {
     let line = line(text, place.start);
     let whole = text[line.clone()].trim();
     let key = &text[place.clone()];
@@ -428,7 +428,7 @@ fn duplicate(place: &Range<usize>, text: &str) -> Problem {
         (false, _) => (key, "keep one of the two".to_owned()),
     };
     let message = format!("`{what}` stands here a second time");
-    let problem = Problem::new(place, message, "expected it once").help(help);
+    let problem = FileProblem::new(place, message, "expected it once").help(help);
     match first_place(text, &line, place) {
         Some(span) => problem.also(&span, "the first one is here"),
         None => problem,

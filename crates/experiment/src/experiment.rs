@@ -6,7 +6,7 @@ use crate::contacts::SectionSpec;
 use crate::document::{self, Node, Number, Value};
 use crate::keys::ROOT;
 use crate::reading::{Pick, Reading};
-use crate::report::{Mistakes, Problem, Source, Warning, nearest_word};
+use crate::report::{FileProblem, Mistakes, Source, Warning, nearest_word};
 use crate::rig::{Campaign, Rig};
 use crate::settings::{Liquid, Solver};
 use crate::spec::Spec;
@@ -82,7 +82,8 @@ impl Experiment {
     ) -> Result<Self, Mistakes> {
         let refused = |problem| Mistakes::new(vec![problem], &source);
         if tree.entries().is_empty() {
-            let problem = Problem::new(&(0..0), "this experiment is empty", "expected keys here");
+            let problem =
+                FileProblem::new(&(0..0), "this experiment is empty", "expected keys here");
             let help = "`hertzchain presets dry` prints an experiment to start from";
             return Err(refused(problem.help(help)));
         }
@@ -197,7 +198,7 @@ impl Experiment {
         }
     }
 
-    fn mistake(&self, problem: Problem) -> Mistakes {
+    fn mistake(&self, problem: FileProblem) -> Mistakes {
         Mistakes::new(vec![problem], &self.source)
     }
 

@@ -42,9 +42,9 @@ pub(crate) enum Need {
 #[derive(Debug)]
 pub(crate) enum Kind {
     /// A quantity in this SI unit; "1" for a plain number.
-    Quantity(&'static str, Limits),
+    Quantity(&'static str, ValueLimits),
     /// A quantity, or a power law of the striker's speed.
-    Scaled(&'static str, Limits),
+    Scaled(&'static str, ValueLimits),
     /// Quantities in this SI unit.
     Quantities(&'static str),
     /// A whole number within limits.
@@ -77,7 +77,7 @@ pub(crate) struct Variants {
 
 /// Values that a quantity may have, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Limits {
+pub(crate) struct ValueLimits {
     pub(crate) least: f64,
     pub(crate) most: f64,
     /// Whether the ends themselves are accepted.
@@ -115,7 +115,7 @@ impl Variants {
     }
 }
 
-impl Limits {
+impl ValueLimits {
     pub(crate) const ANY: Self = Self::open(f64::MIN, f64::MAX, true, "finite");
     const POSITIVE: Self = Self::open(0.0, f64::INFINITY, false, "positive");
     const NOT_NEGATIVE: Self = Self::closed(0.0, f64::MAX, "0 or more");
@@ -161,38 +161,44 @@ impl Limits {
 pub(crate) const SMALLEST: f64 = 1e-100;
 pub(crate) const LARGEST: f64 = 1e100;
 /// Stands for a positive range in a dimensionless file.
-const PLAIN: Limits = Limits::closed(SMALLEST, LARGEST, "positive, from 1e-100 to 1e100");
+const PLAIN: ValueLimits = ValueLimits::closed(SMALLEST, LARGEST, "positive, from 1e-100 to 1e100");
 
 /// From a cluster of atoms to a moon.
-pub(crate) const LENGTH: Limits = Limits::closed(1e-9, 1e6, "from 1 nm to 1000 km");
+pub(crate) const LENGTH: ValueLimits = ValueLimits::closed(1e-9, 1e6, "from 1 nm to 1000 km");
 /// From less than an atom's thousandth to a planet.
-pub(crate) const MASS: Limits = Limits::closed(1e-30, 1e25, "from 1e-30 kg to 1e25 kg");
+pub(crate) const MASS: ValueLimits = ValueLimits::closed(1e-30, 1e25, "from 1e-30 kg to 1e25 kg");
 /// From a creep to a hundred times any bullet.
-pub(crate) const SPEED: Limits = Limits::closed(1e-12, 1e6, "from 1e-12 m/s to 1e6 m/s");
+pub(crate) const SPEED: ValueLimits = ValueLimits::closed(1e-12, 1e6, "from 1e-12 m/s to 1e6 m/s");
 
-const GAP_WIDTH: Limits = Limits::closed(0.0, 1e6, "from 0 to 1000 km");
+const GAP_WIDTH: ValueLimits = ValueLimits::closed(0.0, 1e6, "from 0 to 1000 km");
 /// From a thousandth of an aerogel's to fifty times that of osmium.
-const DENSITY: Limits = Limits::closed(1e-3, 1e6, "from 1e-3 kg/m^3 to 1e6 kg/m^3");
+const DENSITY: ValueLimits = ValueLimits::closed(1e-3, 1e6, "from 1e-3 kg/m^3 to 1e6 kg/m^3");
 /// From a gel too soft to stand to a billion times diamond, for rigid walls.
-const YOUNG_MODULUS: Limits = Limits::closed(1.0, 1e21, "from 1 Pa to 1e21 Pa");
+const YOUNG_MODULUS: ValueLimits = ValueLimits::closed(1.0, 1e21, "from 1 Pa to 1e21 Pa");
 /// Of a bead that starts moving, either way.
-const VELOCITY: Limits = Limits::closed(-1e6, 1e6, "from -1e6 m/s to 1e6 m/s");
+const VELOCITY: ValueLimits = ValueLimits::closed(-1e6, 1e6, "from -1e6 m/s to 1e6 m/s");
 /// From light crossing an atom to thirty years.
-const TIME: Limits = Limits::closed(1e-18, 1e9, "from 1e-18 s to 1e9 s");
-const FREQUENCY: Limits = Limits::closed(1e-9, 1e18, "from 1e-9 Hz to 1e18 Hz");
+const TIME: ValueLimits = ValueLimits::closed(1e-18, 1e9, "from 1e-18 s to 1e9 s");
+const FREQUENCY: ValueLimits = ValueLimits::closed(1e-9, 1e18, "from 1e-9 Hz to 1e18 Hz");
 /// Up to the surface of a dense star.
-const GRAVITY: Limits = Limits::closed(0.0, 1e12, "from 0 to 1e12 m/s^2");
-const POISSON: Limits = Limits::open(-1.0, 1.0, false, "between -1 and 1");
-const ACCURACY: Limits = Limits::closed(1e-13, 1e-2, "between 1e-13 and 1e-2");
-const INCLINE: Limits = Limits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
-const FRICTION: Limits = Limits::closed(0.0, 10.0, "from 0 to 10");
-const RATIO: Limits = Limits::open(0.0, 100.0, false, "positive and below 100");
-const DISPLACEMENT: Kind = Quantity("m", Limits::closed(-1e6, 1e6, "from -1000 km to 1000 km"));
+const GRAVITY: ValueLimits = ValueLimits::closed(0.0, 1e12, "from 0 to 1e12 m/s^2");
+const POISSON: ValueLimits = ValueLimits::open(-1.0, 1.0, false, "between -1 and 1");
+const ACCURACY: ValueLimits = ValueLimits::closed(1e-13, 1e-2, "between 1e-13 and 1e-2");
+const INCLINE: ValueLimits = ValueLimits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
+const FRICTION: ValueLimits = ValueLimits::closed(0.0, 10.0, "from 0 to 10");
+const RATIO: ValueLimits = ValueLimits::open(0.0, 100.0, false, "positive and below 100");
+const DISPLACEMENT: Kind = Quantity(
+    "m",
+    ValueLimits::closed(-1e6, 1e6, "from -1000 km to 1000 km"),
+);
 /// Up to the Earth's mantle and beyond.
-const VISCOSITY: Kind = Scaled("Pa s", Limits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"));
+const VISCOSITY: Kind = Scaled(
+    "Pa s",
+    ValueLimits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"),
+);
 /// Of radii over their mean.
-pub(crate) const SPREAD: Kind = Quantity("1", Limits::closed(0.0, 0.1, "from 0 to 0.1"));
-pub(crate) const VOLTAGE: Kind = Quantity("V", Limits::ANY);
+pub(crate) const SPREAD: Kind = Quantity("1", ValueLimits::closed(0.0, 0.1, "from 0 to 0.1"));
+pub(crate) const VOLTAGE: Kind = Quantity("V", ValueLimits::ANY);
 
 /// Longest chain: what fits into memory with all that a shot needs.
 pub(crate) const MOST_BEADS: i64 = 2_000_000;
@@ -206,13 +212,13 @@ pub(crate) const fn positive(unit: &'static str) -> Kind {
         b"Hz" => FREQUENCY,
         b"m/s" => SPEED,
         b"kg/m^3" => DENSITY,
-        _ => Limits::POSITIVE,
+        _ => ValueLimits::POSITIVE,
     };
     Quantity(unit, limits)
 }
 
 pub(crate) const fn not_negative(unit: &'static str) -> Kind {
-    Quantity(unit, Limits::NOT_NEGATIVE)
+    Quantity(unit, ValueLimits::NOT_NEGATIVE)
 }
 
 /// A whole number of things that a chain has.

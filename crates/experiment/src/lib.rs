@@ -69,8 +69,8 @@ pub use paths::{Named, PathError, Place};
 pub use reading::{Pick, Reading, Switch, SwitchError};
 pub use report::{Finding, Mistakes, Warning};
 pub use rig::{
-    Actuator, Amplifier, Campaign, Channels, Factor, Laying, LowPass, LowPassKind, Photogate,
-    Recorder, Rig, RigPart, RigPartKind, Trigger,
+    Actuator, Amplifier, Campaign, Channels, Laying, LowPass, LowPassFactor, LowPassKind,
+    Photogate, Recorder, Rig, RigPart, RigPartKind, Trigger,
 };
 pub use schema::schema;
 pub use settings::{Liquid, Method, Solver};

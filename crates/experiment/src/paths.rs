@@ -8,11 +8,11 @@
 use crate::contacts::{self, CONTACT};
 use crate::document::{Node, Value};
 use crate::experiment::Experiment;
-use crate::keys::{Fields, Key, Kind, Limits, ROOT};
+use crate::keys::{Fields, Key, Kind, ROOT, ValueLimits};
 use crate::reading::{PreloadReading, Reading};
 use crate::report::{Mistakes, nearest_word};
 use crate::rig::RIG;
-use crate::values::{Expected, POWER_LAW, Si, Units};
+use crate::values::{ExpectedQuantity, POWER_LAW, Si, Units};
 
 /// One number of an experiment, in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -239,11 +239,11 @@ impl Experiment {
 
     fn slots(&self) -> Vec<Slot<'_>> {
         let units = self.units();
-        let mut walk = Walk {
+        let mut walk = SlotWalk {
             units,
             slots: Vec::new(),
         };
-        walk.table(Some(self.tree()), &ROOT, &Way::default());
+        walk.table(Some(self.tree()), &ROOT, &SlotPath::default());
         walk.slots
     }
 
@@ -279,10 +279,10 @@ impl Experiment {
 }
 
 /// The node at the end of some steps; tables are made on the way.
-fn node_at<'a>(node: &'a mut Node, steps: &[Step]) -> &'a mut Node {
+fn node_at<'a>(node: &'a mut Node, steps: &[PathStep]) -> &'a mut Node {
     steps.iter().fold(node, |node, step| match step {
-        Step::Key(key) => node.entry_mut(key),
-        Step::Index(at) => match &mut node.value {
+        PathStep::Key(key) => node.entry_mut(key),
+        PathStep::Index(at) => match &mut node.value {
             Value::List(members) => &mut members[*at],
             // A step to a member was found in a list.
             _ => unreachable!("only lists have members"),
@@ -332,7 +332,7 @@ fn nearest_path(path: &str, slots: &[Slot<'_>]) -> Option<String> {
 #[derive(Clone, Debug)]
 struct Slot<'a> {
     path: String,
-    steps: Vec<Step>,
+    steps: Vec<PathStep>,
     unit: String,
     /// `None` where the file gives nothing.
     node: Option<&'a Node>,
@@ -365,10 +365,10 @@ impl Slot<'_> {
 
     /// The value in SI, where the file gives one.
     fn value(&self, units: Units) -> Option<Si> {
-        let expected = Expected {
+        let expected = ExpectedQuantity {
             name: &self.path,
             unit: &self.unit,
-            limits: Limits::ANY,
+            limits: ValueLimits::ANY,
             units,
         };
         let si = expected.read(self.node?).ok()?;
@@ -379,22 +379,22 @@ impl Slot<'_> {
 
 /// One step down the tree.
 #[derive(Clone, Debug)]
-enum Step {
+enum PathStep {
     Key(String),
     Index(usize),
 }
 
 /// A way down the tree.
 #[derive(Clone, Debug, Default)]
-struct Way {
+struct SlotPath {
     path: String,
-    steps: Vec<Step>,
+    steps: Vec<PathStep>,
 }
 
-impl Way {
+impl SlotPath {
     fn key(&self, key: &str) -> Self {
         let mut way = self.named(key);
-        way.steps.push(Step::Key(key.to_owned()));
+        way.steps.push(PathStep::Key(key.to_owned()));
         way
     }
 
@@ -411,26 +411,26 @@ impl Way {
     fn index(&self, index: usize) -> Self {
         let mut way = self.clone();
         way.path.push_str(&format!("[{index}]"));
-        way.steps.push(Step::Index(index));
+        way.steps.push(PathStep::Index(index));
         way
     }
 }
 
 /// Collects all places of a checked file.
-struct Walk<'a> {
+struct SlotWalk<'a> {
     units: Units,
     slots: Vec<Slot<'a>>,
 }
 
-impl<'a> Walk<'a> {
-    fn table(&mut self, node: Option<&'a Node>, fields: &'static Fields, way: &Way) {
+impl<'a> SlotWalk<'a> {
+    fn table(&mut self, node: Option<&'a Node>, fields: &'static Fields, way: &SlotPath) {
         for key in fields.keys {
             let value = node.and_then(|node| node.get(key.name));
             self.value(key, value, &way.key(key.name));
         }
     }
 
-    fn value(&mut self, key: &'static Key, node: Option<&'a Node>, way: &Way) {
+    fn value(&mut self, key: &'static Key, node: Option<&'a Node>, way: &SlotPath) {
         match (&key.kind, node) {
             (Kind::Scaled(unit, _), Some(law)) if law.is_table() => {
                 for (part, unit) in POWER_LAW.into_iter().zip([*unit, "1"]) {
@@ -470,12 +470,12 @@ impl<'a> Walk<'a> {
     }
 
     /// A law's parameters; the path has the law's name in place of its index.
-    fn law(&mut self, member: &'a Node, way: &Way, index: usize) {
+    fn law(&mut self, member: &'a Node, way: &SlotPath, index: usize) {
         let Ok(row) = contacts::row_of(member) else {
             return;
         };
         let mut at = way.named(row.info.name);
-        at.steps.push(Step::Index(index));
+        at.steps.push(PathStep::Index(index));
         for parameter in row.info.parameters {
             let unit = contacts::unit_of(parameter, row, member, self.units);
             let node = member.get(parameter.name);
@@ -487,7 +487,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn push(&mut self, unit: &str, node: Option<&'a Node>, way: Way) -> &mut Slot<'a> {
+    fn push(&mut self, unit: &str, node: Option<&'a Node>, way: SlotPath) -> &mut Slot<'a> {
         let at = self.slots.len();
         self.slots.push(Slot {
             path: way.path,

@@ -14,7 +14,7 @@ pub(crate) type Source = Arc<NamedSource<String>>;
 #[derive(Clone, Debug)]
 pub struct Finding {
     severity: Severity,
-    problem: Problem,
+    problem: FileProblem,
     source: Source,
 }
 
@@ -23,7 +23,7 @@ pub type Warning = Finding;
 
 /// A finding whose file is not determined yet.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Problem {
+pub(crate) struct FileProblem {
     pub(crate) message: String,
     label: String,
     help: Option<String>,
@@ -32,7 +32,7 @@ pub(crate) struct Problem {
     other: Option<Box<(Range<usize>, String)>>,
 }
 
-impl Problem {
+impl FileProblem {
     /// A problem with the text at `span`: what is wrong, and what was expected.
     pub(crate) fn new(
         span: &Range<usize>,
@@ -122,7 +122,7 @@ impl Finding {
 
     /// File, line, message, expectation and advice in one line, for logs.
     pub fn one_line(&self) -> String {
-        let Problem {
+        let FileProblem {
             message,
             label,
             help,
@@ -163,7 +163,7 @@ impl Diagnostic for Finding {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let Problem {
+        let FileProblem {
             label, span, other, ..
         } = &self.problem;
         let here = LabeledSpan::new_primary_with_span(Some(label.clone()), span.clone());
@@ -179,7 +179,7 @@ impl Diagnostic for Finding {
 pub struct Mistakes(Vec<Finding>);
 
 impl Mistakes {
-    pub(crate) fn new(problems: Vec<Problem>, source: &Source) -> Self {
+    pub(crate) fn new(problems: Vec<FileProblem>, source: &Source) -> Self {
         let findings = problems.into_iter().map(|p| p.at(Severity::Error, source));
         Self(findings.collect())
     }

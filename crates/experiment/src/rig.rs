@@ -1,13 +1,13 @@
 //! The apparatus: the campaign that it runs, the numbers of its instruments, and its parts by
 //! name. No law and no single shot uses them.
 
-use crate::bodies::{Group, Materials};
+use crate::bodies::{BeadGroup, Materials};
 use crate::contacts::{self, SectionSpec};
 use crate::keys::{
     Choice, Count, Fields, SPREAD, Table, Text, VOLTAGE, choice, from, not_negative, positive,
     table,
 };
-use crate::report::{Problem, to_digits};
+use crate::report::{FileProblem, to_digits};
 use crate::settings::Liquid;
 use crate::values::{FromKey, View, record};
 use std::f64::consts::SQRT_2;
@@ -139,7 +139,7 @@ pub enum Trigger {
 }
 
 impl FromKey for Trigger {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         const LEVEL_V: f64 = 0.02;
         let level_v = table.quantity("level")?.unwrap_or(LEVEL_V);
         let level = table.text(key) == Some("level");
@@ -150,7 +150,7 @@ impl FromKey for Trigger {
 macro_rules! choice_keys {
     ($($Type:ident)+) => {
         $(impl FromKey for $Type {
-            fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+            fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
                 Ok(table.text(key).and_then(Self::from_name))
             }
         })+
@@ -159,14 +159,14 @@ macro_rules! choice_keys {
 choice_keys! { LowPass LowPassKind Channels }
 
 impl FromKey for u32 {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(table.count(key)?.and_then(|bits| Self::try_from(bits).ok()))
     }
 }
 
 /// One factor of a low-pass, its frequency over that of the corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Factor {
+pub enum LowPassFactor {
     /// ω/(s + ω).
     One {
         /// ω over the corner's.
@@ -181,29 +181,29 @@ pub enum Factor {
     },
 }
 
-const fn one(frequency: f64) -> Factor {
-    Factor::One { frequency }
+const fn one(frequency: f64) -> LowPassFactor {
+    LowPassFactor::One { frequency }
 }
 
-const fn two(frequency: f64, damping: f64) -> Factor {
-    Factor::Two { frequency, damping }
+const fn two(frequency: f64, damping: f64) -> LowPassFactor {
+    LowPassFactor::Two { frequency, damping }
 }
 
 impl Amplifier {
     /// Factors of the low-pass, whose product falls to 1/√2 at the corner.
-    pub const fn factors(&self) -> &'static [Factor] {
+    pub const fn factors(&self) -> &'static [LowPassFactor] {
         // Damping 2 cos(π/8) and 2 cos(3π/8).
-        const BUTTERWORTH_4: &[Factor] = &[
+        const BUTTERWORTH_4: &[LowPassFactor] = &[
             two(1.0, 1.847_759_065_022_573_5),
             two(1.0, 0.765_366_864_730_179_7),
         ];
         // Roots of the reverse Bessel polynomials, over the frequency of half power.
-        const BESSEL_2: &[Factor] = &[two(1.272_019_649_514_068_8, 1.732_050_807_568_877_4)];
-        const BESSEL_3: &[Factor] = &[
+        const BESSEL_2: &[LowPassFactor] = &[two(1.272_019_649_514_068_8, 1.732_050_807_568_877_4)];
+        const BESSEL_3: &[LowPassFactor] = &[
             one(1.322_675_799_910_444_4),
             two(1.447_617_133_146_987_4, 1.447_080_359_890_413_2),
         ];
-        const BESSEL_4: &[Factor] = &[
+        const BESSEL_4: &[LowPassFactor] = &[
             two(1.430_171_559_993_991, 1.915_948_923_718_216),
             two(1.603_357_516_216_973, 1.241_405_930_098_995_7),
         ];
@@ -247,7 +247,7 @@ impl Recorder {
         (self.record_s * self.sampling_hz).round() as usize
     }
 
-    fn check(&self, table: &View<'_>) -> Result<(), Problem> {
+    fn check(&self, table: &View<'_>) -> Result<(), FileProblem> {
         /// A quarter of a minute at 1 MHz.
         const MOST_SAMPLES: f64 = 1.6e7;
         let samples = (self.record_s * self.sampling_hz).round();
@@ -284,7 +284,7 @@ impl Recorder {
 impl Campaign {
     /// The campaign of a file; without the table the paper's numbers and the
     /// striker's own speed.
-    pub(crate) fn read(root: &View<'_>, striker_m_s: Option<f64>) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>, striker_m_s: Option<f64>) -> Result<Self, FileProblem> {
         let table = root.table("campaign");
         let count = |key| table.map_or(Ok(None), |t| t.count(key));
         let part = |key| table.and_then(|t| t.table(key));
@@ -313,7 +313,7 @@ impl Campaign {
             Some(table) if actuator.least_speed_m_s >= actuator.most_speed_m_s => {
                 let message = "the slowest shot is not slower than the fastest";
                 let label = "expected `least_speed` below `most_speed`";
-                Err(Problem::new(&table.span(), message, label))
+                Err(FileProblem::new(&table.span(), message, label))
             }
             _ => Ok(campaign),
         }
@@ -321,7 +321,7 @@ impl Campaign {
 }
 
 /// The speeds as a list, or in equal ratios from the slowest to the fastest; none without both.
-fn speeds(table: &View<'_>) -> Result<Vec<f64>, Problem> {
+fn speeds(table: &View<'_>) -> Result<Vec<f64>, FileProblem> {
     let listed = table.quantities("speeds")?;
     let ends = (table.quantity("slowest")?, table.quantity("fastest")?);
     let count = table.count("speed_count")?;
@@ -352,8 +352,8 @@ fn speeds(table: &View<'_>) -> Result<Vec<f64>, Problem> {
 pub(crate) fn cases(
     root: &View<'_>,
     materials: &Materials,
-    groups: &[Group],
-) -> Result<Vec<CaseSpec>, Problem> {
+    groups: &[BeadGroup],
+) -> Result<Vec<CaseSpec>, FileProblem> {
     let mut cases: Vec<CaseSpec> = Vec::new();
     let tables = root.table("campaign").map(|table| table.tables("cases"));
     for table in tables.into_iter().flatten() {
@@ -457,7 +457,7 @@ impl Rig {
         self.parts.iter().find(|part| part.kind == kind)
     }
 
-    pub(crate) fn read(root: &View<'_>) -> Result<Option<Self>, Problem> {
+    pub(crate) fn read(root: &View<'_>) -> Result<Option<Self>, FileProblem> {
         let Some(table) = root.table("rig") else {
             return Ok(None);
         };

@@ -2,7 +2,7 @@
 
 use crate::bodies::Materials;
 use crate::keys::{SPEED, Text, choice, positive};
-use crate::report::{Problem, brief};
+use crate::report::{FileProblem, brief};
 use crate::values::{Units, View, record};
 use hertzchain_chain::{Gap, Initial, Motion, Push};
 use std::ops::Range;
@@ -35,7 +35,7 @@ impl Solver {
     /// The accuracy when a file names none.
     pub const DEFAULT_ACCURACY: f64 = 1e-6;
 
-    pub(crate) fn read(root: &View<'_>) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>) -> Result<Self, FileProblem> {
         let table = root.table("solver");
         let number = |key| table.map_or(Ok(None), |t| t.quantity(key));
         let method = table.and_then(|t| Method::from_name(t.text("method")?));
@@ -70,7 +70,7 @@ impl Liquid {
     }
 
     /// The liquid of a file or of a case.
-    pub(crate) fn read_from(root: &View<'_>) -> Result<Option<Self>, Problem> {
+    pub(crate) fn read_from(root: &View<'_>) -> Result<Option<Self>, FileProblem> {
         let table = root.table("liquid");
         table.map(|table| Self::read(Some(&table))).transpose()
     }
@@ -94,7 +94,7 @@ pub(crate) struct Sensors {
 }
 
 impl Sensors {
-    pub(crate) fn read(root: &View<'_>, beads: usize) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>, beads: usize) -> Result<Self, FileProblem> {
         let usual = if beads >= 8 { 7 } else { 1 };
         let table = root.table("sensors");
         let list = |key| table.map_or(Ok(Vec::new()), |t| t.counts(key));
@@ -113,7 +113,7 @@ impl Sensors {
 }
 
 /// Gaps with their places in the file.
-pub(crate) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, Problem> {
+pub(crate) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, FileProblem> {
     let gap = |table: &View<'_>| {
         let contact = table.count("contact")?.unwrap_or(0);
         let gap_m = table.needed("gap")?;
@@ -123,12 +123,12 @@ pub(crate) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, Problem>
 }
 
 /// Initial deviations with their places in the file.
-pub(crate) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, Problem> {
+pub(crate) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, FileProblem> {
     let initial = |table: &View<'_>| {
         if !table.has("displacement") && !table.has("velocity") {
             let message = "this bead is neither displaced nor moving";
             let label = "expected `displacement` or `velocity`, or no such table";
-            return Err(Problem::new(&table.span(), message, label));
+            return Err(FileProblem::new(&table.span(), message, label));
         }
         let initial = Initial {
             bead: table.count("bead")?.unwrap_or(0),
@@ -142,15 +142,15 @@ pub(crate) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, P
 
 /// Shape and material of body 0 or of a half-bead, as far as given.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Shape {
+pub(crate) struct BodyShape {
     pub(crate) radius_m: Option<f64>,
     pub(crate) mass_kg: Option<f64>,
     pub(crate) material: Option<usize>,
     pub(crate) span: Range<usize>,
 }
 
-impl Shape {
-    fn read(table: &View<'_>, materials: &Materials) -> Result<Self, Problem> {
+impl BodyShape {
+    fn read(table: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
         Ok(Self {
             radius_m: table.quantity("radius")?,
             mass_kg: table.quantity("mass")?,
@@ -164,12 +164,12 @@ impl Shape {
 #[derive(Clone, Debug)]
 pub(crate) enum Near {
     Striker {
-        shape: Shape,
+        shape: BodyShape,
         speed_m_s: f64,
         speed_span: Range<usize>,
     },
     Driven {
-        shape: Shape,
+        shape: BodyShape,
         motion: Motion,
     },
     /// Beads that start displaced or moving, as the file says here.
@@ -183,20 +183,20 @@ impl Near {
         root: &View<'_>,
         materials: &Materials,
         folder: &Path,
-    ) -> Result<Self, Problem> {
+    ) -> Result<Self, FileProblem> {
         match (root.table("striker"), root.variant("driven")) {
             (Some(striker), Some((_, driven))) => {
                 let message = "there are a striker and a driven end";
-                let problem = Problem::new(&driven.span(), message, "expected one of the two");
+                let problem = FileProblem::new(&driven.span(), message, "expected one of the two");
                 Err(problem.also(&striker.span(), "the striker is here"))
             }
             (Some(striker), None) => Ok(Self::Striker {
-                shape: Shape::read(&striker, materials)?,
+                shape: BodyShape::read(&striker, materials)?,
                 speed_m_s: striker.needed("speed")?,
                 speed_span: striker.span_of("speed"),
             }),
             (None, Some((tag, table))) => Ok(Self::Driven {
-                shape: Shape::read(&table, materials)?,
+                shape: BodyShape::read(&table, materials)?,
                 motion: motion(tag, &table, folder)?,
             }),
             (None, None) if root.has("initial") => Ok(Self::Free {
@@ -218,7 +218,7 @@ impl Near {
     }
 
     /// Shape of body 0, if there is one.
-    pub(crate) const fn shape(&self) -> Option<&Shape> {
+    pub(crate) const fn shape(&self) -> Option<&BodyShape> {
         match self {
             Self::Striker { shape, .. } | Self::Driven { shape, .. } => Some(shape),
             Self::Free { .. } => None,
@@ -235,7 +235,7 @@ impl Near {
 }
 
 /// The motion of `[driven]`, no faster than a striker may be.
-fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, Problem> {
+fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
     let amplitude_m = table.quantity("amplitude")?.unwrap_or(1.0);
     if amplitude_m == 0.0 {
         let message = "an amplitude of 0 sets nothing in motion";
@@ -272,7 +272,7 @@ fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, Problem>
 }
 
 /// Measured motion: points in the experiment file, or in a CSV file beside it.
-fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, Problem> {
+fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
     let (times_s, positions_m, key) = match (table.text("file"), table.has("times")) {
         (Some(_), true) => {
             let message = "the motion stands both here and in a file";
@@ -309,7 +309,7 @@ fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, Problem> {
 }
 
 /// The two columns of a CSV file, whose first line names them with their units.
-fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), Problem> {
+fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), FileProblem> {
     /// Larger files are a mistake.
     const MOST_BYTES: u64 = 64 << 20;
     let header = match table.units {
@@ -344,7 +344,7 @@ fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), Pr
 }
 
 /// The push on bead 1.
-pub(crate) fn push(root: &View<'_>) -> Result<Push, Problem> {
+pub(crate) fn push(root: &View<'_>) -> Result<Push, FileProblem> {
     let Some((tag, table)) = root.variant("near_end") else {
         return Ok(Push::None);
     };
@@ -364,7 +364,7 @@ pub(crate) enum Far {
     /// A half-bead or a plane, fixed or on a stop of this mass.
     Wall {
         is_plane: bool,
-        shape: Shape,
+        shape: BodyShape,
         stop_kg: Option<f64>,
     },
     Periodic {
@@ -375,9 +375,9 @@ pub(crate) enum Far {
 
 impl Far {
     /// A half-bead like bead N when the file is silent.
-    pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
         let Some((tag, table)) = root.variant("far_end") else {
-            let shape = Shape::default();
+            let shape = BodyShape::default();
             return Ok(Self::Wall {
                 is_plane: false,
                 shape,
@@ -391,14 +391,14 @@ impl Far {
             "free" => Self::Free,
             _ => Self::Wall {
                 is_plane: tag.starts_with("plane"),
-                shape: Shape::read(&table, materials)?,
+                shape: BodyShape::read(&table, materials)?,
                 stop_kg: table.quantity("mass")?,
             },
         })
     }
 
     /// Shape of a wall.
-    pub(crate) const fn shape(&self) -> Option<&Shape> {
+    pub(crate) const fn shape(&self) -> Option<&BodyShape> {
         match self {
             Self::Wall { shape, .. } => Some(shape),
             Self::Periodic { .. } | Self::Free => None,

@@ -1,10 +1,10 @@
 //! A file's content, typed and in SI: its parts fit together, and errors of the physics are
 //! reported at their place.
 
-use crate::bodies::{self, Group, Materials};
+use crate::bodies::{self, BeadGroup, Materials};
 use crate::contacts::{self, SectionSpec};
 use crate::reading::Reading;
-use crate::report::Problem;
+use crate::report::FileProblem;
 use crate::rig::{self, Campaign, CaseSpec, Rig};
 use crate::settings::{self, Far, Liquid, Near, Sensors, Solver};
 use crate::values::{Units, View};
@@ -25,7 +25,7 @@ pub(crate) struct Spec {
     pub(crate) title: String,
     pub(crate) units: Units,
     pub(crate) materials: Materials,
-    pub(crate) groups: Vec<Group>,
+    pub(crate) groups: Vec<BeadGroup>,
     /// Beads taken off at the far end by a reading.
     pub(crate) beads_less: usize,
     pub(crate) near: Near,
@@ -58,12 +58,12 @@ pub(crate) struct Spec {
 
 impl Spec {
     /// Reads a checked document; files it names lie in `folder`.
-    pub(crate) fn read(root: &View<'_>, folder: &Path) -> Result<Self, Problem> {
+    pub(crate) fn read(root: &View<'_>, folder: &Path) -> Result<Self, FileProblem> {
         /// Coefficient of dry friction between beads and track, where a file has none.
         const FRICTION: f64 = 0.05;
         let materials = Materials::read(root)?;
         let groups = bodies::groups(root, &materials)?;
-        let count = groups.iter().map(Group::count).sum();
+        let count = groups.iter().map(BeadGroup::count).sum();
         let track = |name| root.table("track").map_or(Ok(None), |t| t.quantity(name));
         let gravity = match root.units {
             Units::Si => STANDARD_GRAVITY_M_S2,
@@ -114,7 +114,7 @@ impl Spec {
     }
 
     pub(crate) fn bead_count(&self) -> usize {
-        let count: usize = self.groups.iter().map(Group::count).sum();
+        let count: usize = self.groups.iter().map(BeadGroup::count).sum();
         count.saturating_sub(self.beads_less)
     }
 
@@ -138,11 +138,11 @@ impl Spec {
     }
 
     /// Everything must lie inside the chain, whatever a reading did to it.
-    pub(crate) fn check_layout(&self) -> Result<(), Problem> {
+    pub(crate) fn check_layout(&self) -> Result<(), FileProblem> {
         let beads = self.bead_count();
         if beads == 0 {
             let message = "the chain has no beads";
-            return Err(Problem::new(
+            return Err(FileProblem::new(
                 &self.beads_span(),
                 message,
                 "expected at least one",
@@ -166,7 +166,7 @@ impl Spec {
         }
         if let (Some(span), false) = (&sensors.channel, self.has_wall()) {
             let message = "the channel adds the wall's signal, but there is no wall";
-            return Err(Problem::new(
+            return Err(FileProblem::new(
                 span,
                 message,
                 "expected a [far_end] to lean on",
@@ -195,7 +195,7 @@ impl Spec {
         found: usize,
         there: &RangeInclusive<usize>,
         span: &Range<usize>,
-    ) -> Result<(), Problem> {
+    ) -> Result<(), FileProblem> {
         if there.contains(&found) {
             return Ok(());
         }
@@ -209,7 +209,7 @@ impl Spec {
                 there.end()
             ),
         };
-        let problem = Problem::new(span, message, label);
+        let problem = FileProblem::new(span, message, label);
         Err(match (what, found) {
             ("sensor bead" | "bead", 0) => problem.help(BEADS),
             _ => problem,
@@ -218,7 +218,7 @@ impl Spec {
 
     /// Without striker or driven end some bead must move or be displaced; a ring has no end to
     /// strike, to drive or to push.
-    fn check_motion(&self) -> Result<(), Problem> {
+    fn check_motion(&self) -> Result<(), FileProblem> {
         let is_free = matches!(self.near, Near::Free { .. });
         let still = |i: &Initial| i.displacement_m == 0.0 && i.velocity_m_s == 0.0;
         if let Some((_, span)) = self.initial.first()
@@ -226,7 +226,7 @@ impl Spec {
             && self.initial.iter().all(|(initial, _)| still(initial))
         {
             let label = "all [[initial]] are 0: expected a bead that moves or is displaced";
-            return Err(Problem::new(
+            return Err(FileProblem::new(
                 span,
                 "nothing sets the chain in motion",
                 label,
@@ -236,13 +236,13 @@ impl Spec {
         if matches!(self.far, Far::Periodic { .. }) && (pushed || !is_free) {
             let label = "expected [[initial]] and neither striker, driven nor near_end";
             let message = "a periodic chain has no near end";
-            return Err(Problem::new(&self.far_span, message, label));
+            return Err(FileProblem::new(&self.far_span, message, label));
         }
         Ok(())
     }
 
     /// The problem in the file behind a chain that can't be set up.
-    pub(crate) fn chain_problem(&self, error: &ChainError) -> Problem {
+    pub(crate) fn chain_problem(&self, error: &ChainError) -> FileProblem {
         match error {
             ChainError::Law { contact, error } => self.law_problem(*contact, error),
             ChainError::Equilibrium(why) => self.equilibrium_problem(why),
@@ -252,32 +252,32 @@ impl Spec {
                 expected,
             } => {
                 let label = format!("expected it to be {expected}");
-                Problem::new(&self.beads_span(), format!("{what} is {value}"), label)
+                FileProblem::new(&self.beads_span(), format!("{what} is {value}"), label)
             }
             ChainError::Layout(why) | ChainError::NotConverged(why) => {
-                Problem::new(&self.beads_span(), why, "expected parts that fit together")
+                FileProblem::new(&self.beads_span(), why, "expected parts that fit together")
             }
         }
     }
 
     /// No rest position: nothing holds the far end, or no law carries the load.
-    fn equilibrium_problem(&self, why: &str) -> Problem {
+    fn equilibrium_problem(&self, why: &str) -> FileProblem {
         let message = format!("the chain has no rest position: {why}");
         if let Some(span) = &self.suspension_span {
             let label = "expected no [near_end] push and no incline with threads";
-            return Problem::new(span, message, label);
+            return FileProblem::new(span, message, label);
         }
         let inelastic = self.sections.iter().find(|section| !section.is_elastic());
         match inelastic.filter(|_| self.has_wall()) {
             None => {
                 let label = "expected a far end that holds what pushes and pulls";
-                Problem::new(&self.far_span, message, label)
+                FileProblem::new(&self.far_span, message, label)
             }
             Some(section) => {
                 let message =
                     "the chain has no rest position: no law of these contacts carries a load";
                 let label = "expected a law that pushes the beads apart";
-                Problem::new(&section.laws_span, message, label)
+                FileProblem::new(&section.laws_span, message, label)
                     .help("add \"elastic_hertz\" to `laws`")
             }
         }
@@ -285,7 +285,7 @@ impl Spec {
 
     /// The problem behind a motion that a solver does not finish: at the laws of the contact
     /// where it ended, or at the solver's settings.
-    pub(crate) fn solver_problem(&self, error: &SolveError) -> Problem {
+    pub(crate) fn solver_problem(&self, error: &SolveError) -> FileProblem {
         match error {
             SolveError::StepTooSmall { contact, .. }
             | SolveError::NotFinite { contact, .. }
@@ -298,17 +298,17 @@ impl Spec {
     }
 
     /// A result that a solver does not reach, at its settings; without any, at the laws.
-    pub(crate) fn unreached(&self, why: &str) -> Problem {
+    pub(crate) fn unreached(&self, why: &str) -> FileProblem {
         match &self.solver_span {
-            Some(table) => Problem::new(table, why, "the solver is chosen here"),
+            Some(table) => FileProblem::new(table, why, "the solver is chosen here"),
             None => self.problem_of_contact(0, why),
         }
     }
 
-    fn problem_of_contact(&self, contact: usize, why: &str) -> Problem {
+    fn problem_of_contact(&self, contact: usize, why: &str) -> FileProblem {
         let section = self.section_of(contact);
         let span = section.map_or(0..0, |section| section.laws_span.clone());
-        Problem::new(&span, why, format!("the laws of contact {contact}"))
+        FileProblem::new(&span, why, format!("the laws of contact {contact}"))
     }
 
     fn section_of(&self, contact: usize) -> Option<&SectionSpec> {
@@ -317,12 +317,12 @@ impl Spec {
         sections.find(|section| (section.from..=section.last(beads)).contains(&contact))
     }
 
-    fn law_problem(&self, contact: usize, error: &LawError) -> Problem {
+    fn law_problem(&self, contact: usize, error: &LawError) -> FileProblem {
         let section = self.section_of(contact);
         let law = section.and_then(|s| s.laws.iter().find(|law| law.name() == error.law));
         let span = law.map_or(0..0, |law| law.span.clone());
         let message = format!("law `{}` can't be used on contact {contact}", error.law);
-        let problem = Problem::new(&span, message, &error.what);
+        let problem = FileProblem::new(&span, message, &error.what);
         let left: Vec<String> = law.map_or(Vec::new(), |law| {
             let parameters = law.row.info.parameters.iter();
             let left = parameters.filter(|p| p.source.is_derived() && law.value(p.name).is_none());
@@ -348,14 +348,14 @@ impl Spec {
 fn repeated<'a>(
     what: &str,
     found: impl Iterator<Item = (usize, &'a Range<usize>)>,
-) -> Result<(), Problem> {
+) -> Result<(), FileProblem> {
     let mut found: Vec<_> = found.collect();
     found.sort_by_key(|(index, span)| (*index, span.start));
     match found.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         None => Ok(()),
         Some(pair) => {
             let message = format!("{what} {} stands here a second time", pair[1].0);
-            let problem = Problem::new(pair[1].1, message, "expected each at most once");
+            let problem = FileProblem::new(pair[1].1, message, "expected each at most once");
             Err(problem.also(pair[0].1, "the first one is here"))
         }
     }

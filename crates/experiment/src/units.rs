@@ -372,7 +372,7 @@ const DEEPEST: usize = 16;
 /// # Errors
 /// Unknown symbols, malformed exponents, ambiguous products.
 pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
-    let mut reader = Reader { text, at: 0 };
+    let mut reader = UnitReader { text, at: 0 };
     let unit = reader.product(0)?;
     match reader.peek() {
         None => Ok(unit),
@@ -380,12 +380,12 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
     }
 }
 
-struct Reader<'a> {
+struct UnitReader<'a> {
     text: &'a str,
     at: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> UnitReader<'a> {
     fn rest(&self) -> &'a str {
         self.text.get(self.at..).unwrap_or_default()
     }

@@ -4,7 +4,7 @@
 
 use crate::bodies::MaterialSpec;
 use crate::contacts::{LawSpec, SectionSpec};
-use crate::report::{Problem, brief, to_digits};
+use crate::report::{FileProblem, brief, to_digits};
 use crate::settings::{Method, Near};
 use crate::spec::Spec;
 use crate::values::Units;
@@ -49,18 +49,18 @@ struct Collision<'a> {
     /// Overlap at which the laws that push back have taken up the energy.
     overlap_m: f64,
     /// In the order of the section's laws.
-    terms: Vec<Term>,
+    terms: Vec<LawTerm>,
 }
 
 /// One law with its numbers for the pair.
-struct Term {
+struct LawTerm {
     law: Arc<dyn Law>,
     columns: Columns,
 }
 
 /// The first reason why a chain can't be computed sensibly: crushed bodies, motion that stops at
 /// once.
-pub(crate) fn refusal(spec: &Spec, chain: &Chain) -> Option<Problem> {
+pub(crate) fn refusal(spec: &Spec, chain: &Chain) -> Option<FileProblem> {
     let collisions = collisions(spec, chain);
     let crushed = collisions.iter().find_map(Collision::crushed);
     crushed.or_else(|| {
@@ -70,7 +70,7 @@ pub(crate) fn refusal(spec: &Spec, chain: &Chain) -> Option<Problem> {
 }
 
 /// Laws outside their validity; of overlaps the worst.
-pub(crate) fn warnings(spec: &Spec, chain: &Chain) -> Vec<Problem> {
+pub(crate) fn warnings(spec: &Spec, chain: &Chain) -> Vec<FileProblem> {
     let collisions = collisions(spec, chain);
     let depth = |collision: &Collision<'_>| collision.overlap_m / collision.pair.radius_m;
     let spheres = collisions
@@ -96,12 +96,12 @@ fn collisions<'a>(spec: &'a Spec, chain: &Chain) -> Vec<Collision<'a>> {
             // A law that can't serve this pair is reported by those who set it up.
             let row = law.coefficients(&pair).ok()?;
             let columns = Columns::from_rows(&[row]);
-            Some(Term {
+            Some(LawTerm {
                 law: law.clone(),
                 columns,
             })
         });
-        let terms: Vec<Term> = terms.collect::<Option<_>>()?;
+        let terms: Vec<LawTerm> = terms.collect::<Option<_>>()?;
         // No contact can hold more than what was put in.
         let own_j = 0.5 * pair.mass_kg * speed_m_s * speed_m_s;
         let overlap_m = overlap_m(&terms, own_j.min(energy_j))?;
@@ -144,7 +144,7 @@ fn fastest(chain: &Chain) -> (f64, f64) {
     fastest
 }
 
-impl Term {
+impl LawTerm {
     fn is_dissipative(&self) -> bool {
         self.law.info().nature == Nature::Dissipative
     }
@@ -172,7 +172,7 @@ impl Term {
 
 /// Where the slow work of all terms reaches an energy, to a hundredth; `None`
 /// when it never does.
-fn overlap_m(terms: &[Term], energy_j: f64) -> Option<f64> {
+fn overlap_m(terms: &[LawTerm], energy_j: f64) -> Option<f64> {
     const FACTOR: f64 = 16.0;
     const WIDTH: f64 = 1.01;
     let enough = |overlap_m: f64| {
@@ -221,7 +221,7 @@ impl<'a> Collision<'a> {
         })
     }
 
-    fn crushed(&self) -> Option<Problem> {
+    fn crushed(&self) -> Option<FileProblem> {
         let most_m = CRUSHED * self.pair.radius_m;
         // Dimensionless lengths have no radius to be compared with.
         if self.spec.units == Units::Dimensionless || self.overlap_m <= most_m {
@@ -232,16 +232,16 @@ impl<'a> Collision<'a> {
         let label =
             format!("expected bodies that stop within {most} m, twice their reduced radius");
         let law = self.section.laws.iter().find(|law| !law.is_dissipative())?;
-        let problem = Problem::new(&self.cause(law), message, label);
+        let problem = FileProblem::new(&self.cause(law), message, label);
         Some(problem.help("take a lower speed or mass, or stiffer or larger bodies"))
     }
 
-    fn too_deep(&self, law: &LawSpec) -> Problem {
+    fn too_deep(&self, law: &LawSpec) -> FileProblem {
         let (bodies, overlap) = (self.bodies(), brief(self.overlap_m));
         let ratio = brief(self.overlap_m / self.pair.radius_m);
         let message = format!("{bodies} overlap by {overlap} m, {ratio} of their reduced radius");
         let label = format!("beyond {DEEP} of it `{}` is out of its range", law.name());
-        Problem::new(&self.cause(law), message, label).help(validity(law))
+        FileProblem::new(&self.cause(law), message, label).help(validity(law))
     }
 
     /// What probably makes bodies overlap so much: the speed, the law's own
@@ -295,7 +295,7 @@ struct Damping<'a> {
 }
 
 impl Damping<'_> {
-    fn overpowering(&self) -> Option<Problem> {
+    fn overpowering(&self) -> Option<FileProblem> {
         let most = to_digits(OVERPOWERING, 6);
         let label =
             format!("expected it at most {most} times as strong: beyond, all motion stops at once");
@@ -304,7 +304,7 @@ impl Damping<'_> {
     }
 
     /// Too strong for the law's range, or too weak to be seen.
-    fn warning(&self) -> Option<Problem> {
+    fn warning(&self) -> Option<FileProblem> {
         if self.strength > STRONG {
             let label = "the two then do not come apart again";
             return Some(self.problem(label).help(validity(self.law)));
@@ -316,7 +316,7 @@ impl Damping<'_> {
 
     /// A problem with the number that the user gave: in the law, or the larger viscosity of the
     /// material that makes the law what it is.
-    fn problem(&self, label: &str) -> Problem {
+    fn problem(&self, label: &str) -> FileProblem {
         let (law, strength, bodies) = (self.law, brief(self.strength), self.collision.bodies());
         let message = format!(
             "law `{}` is {strength} times as strong as the elastic force of {bodies}",
@@ -326,7 +326,7 @@ impl Damping<'_> {
         let own = first.is_none_or(|p| p.source == Source::Required || law.value(p.name).is_some());
         let material = self.collision.material().filter(|_| !own);
         let viscosity = material.and_then(MaterialSpec::viscosity_span);
-        Problem::new(viscosity.unwrap_or(&law.span), message, label)
+        FileProblem::new(viscosity.unwrap_or(&law.span), message, label)
     }
 
     /// The value at which the law is as strong as the elastic force: every
@@ -350,7 +350,11 @@ impl Damping<'_> {
 /// The first contact that is overlapped by more than the smaller radius at the
 /// start, by load or by displacement. Dimensionless lengths have no radius to
 /// be compared with.
-pub(crate) fn overlapped_at_start(spec: &Spec, chain: &Chain, system: &System) -> Option<Problem> {
+pub(crate) fn overlapped_at_start(
+    spec: &Spec,
+    chain: &Chain,
+    system: &System,
+) -> Option<FileProblem> {
     if spec.units == Units::Dimensionless {
         return None;
     }
@@ -381,7 +385,7 @@ pub(crate) fn overlapped_at_start(spec: &Spec, chain: &Chain, system: &System) -
             let message = format!(
                 "contact {contact} is overlapped by {overlap} m at the start, more than a bead's radius"
             );
-            Problem::new(span, message, label)
+            FileProblem::new(span, message, label)
         })
     })
 }
@@ -415,7 +419,7 @@ const SHORT_CHAIN: f64 = 10.0;
 const STIFFEST: f64 = 1e6;
 
 /// The steps that a shot would take.
-struct Effort<'a> {
+struct ShotEffort<'a> {
     spec: &'a Spec,
     chain: &'a Chain,
     contact_time_s: f64,
@@ -431,7 +435,7 @@ pub fn longest_duration_s(system: &System) -> f64 {
 }
 
 /// The first reason why a shot of this system would not end sensibly.
-pub(crate) fn effort_problem(spec: &Spec, chain: &Chain, system: &System) -> Option<Problem> {
+pub(crate) fn effort_problem(spec: &Spec, chain: &Chain, system: &System) -> Option<FileProblem> {
     let scales = system.scales();
     let gaps_s = chain.gaps.iter().map(|gap| gap.gap_m).sum::<f64>() / scales.speed_m_s;
     let beads = chain.beads.len() as f64 + SHORT_CHAIN;
@@ -442,7 +446,7 @@ pub(crate) fn effort_problem(spec: &Spec, chain: &Chain, system: &System) -> Opt
         .map(swing_s)
         .filter(|swing_s| swing_s.is_finite());
     let given_s = spec.solver.duration_s.or(swing_s);
-    let effort = Effort {
+    let effort = ShotEffort {
         spec,
         chain,
         contact_time_s: scales.time_s,
@@ -456,7 +460,7 @@ pub(crate) fn effort_problem(spec: &Spec, chain: &Chain, system: &System) -> Opt
         .or_else(|| effort.stiff_spring())
 }
 
-impl Effort<'_> {
+impl ShotEffort<'_> {
     fn time(&self, time_s: f64) -> String {
         self.spec.units.with_unit(&brief(time_s), "s")
     }
@@ -467,18 +471,18 @@ impl Effort<'_> {
     }
 
     /// A whole contact would come and go within a step.
-    fn long_step(&self) -> Option<Problem> {
+    fn long_step(&self) -> Option<FileProblem> {
         let step_s = self.spec.solver.step_s?;
         (step_s > self.contact_time_s).then(|| {
             let (step, contact) = (self.time(step_s), self.time(self.contact_time_s));
             let message = format!("a step of {step} is longer than a contact lasts, {contact}");
             let label = format!("expected a shorter step: {}", self.good_step());
-            Problem::new(&self.spec.step_span, message, label)
+            FileProblem::new(&self.spec.step_span, message, label)
         })
     }
 
     /// A shot of more contact times than can be stepped through.
-    fn long_shot(&self, most_s: f64) -> Option<Problem> {
+    fn long_shot(&self, most_s: f64) -> Option<FileProblem> {
         if self.duration_s <= most_s {
             return None;
         }
@@ -492,15 +496,15 @@ impl Effort<'_> {
             (Some(_), _, _) => {
                 let message = format!("a shot of {shot} takes some {steps} steps");
                 let label = format!("expected a duration of at most {most}");
-                Problem::new(&spec.duration_span, message, label)
+                FileProblem::new(&spec.duration_span, message, label)
             }
             (None, Some(thread), _) => {
                 let label = format!("expected a `duration` in [solver] of at most {most}");
-                Problem::new(thread, message("one swing"), label)
+                FileProblem::new(thread, message("one swing"), label)
             }
             (None, None, Some((_, span))) => {
                 let label = "expected a smaller gap, or a faster striker";
-                Problem::new(span, message("a shot across this gap"), label)
+                FileProblem::new(span, message("a shot across this gap"), label)
             }
             (None, None, None) => return None,
         };
@@ -511,7 +515,7 @@ impl Effort<'_> {
     }
 
     /// More fixed steps than the wave loop does.
-    fn short_step(&self) -> Option<Problem> {
+    fn short_step(&self) -> Option<FileProblem> {
         let step_s = self.spec.solver.step_s?;
         let contact_times = self.prepared_s / self.contact_time_s;
         let passes = PASSES + PASSES_A_CONTACT_TIME * contact_times;
@@ -532,7 +536,7 @@ impl Effort<'_> {
         let least = self.time(self.duration_s / most);
         let label = format!("expected at least {least}; {}", self.good_step());
         let most = brief(most);
-        let problem = Problem::new(&self.spec.step_span, message, label).help(format!(
+        let problem = FileProblem::new(&self.spec.step_span, message, label).help(format!(
             "at most {most} steps are done: shorter ones add rounding errors, not accuracy"
         ));
         Some(match self.spec.solver.duration_s {
@@ -542,7 +546,7 @@ impl Effort<'_> {
     }
 
     /// A driven end that swings too often.
-    fn fast_drive(&self) -> Option<Problem> {
+    fn fast_drive(&self) -> Option<FileProblem> {
         let Near::Driven { shape, motion } = &self.spec.near else {
             return None;
         };
@@ -554,7 +558,7 @@ impl Effort<'_> {
                 brief(steps)
             );
             let label = format!("expected a slower motion: contacts last {contact}");
-            Problem::new(&shape.span, message, label).help(format!(
+            FileProblem::new(&shape.span, message, label).help(format!(
                 "at most {} steps are done; a shorter `duration` in [solver] makes them fewer",
                 brief(MOST_STEPS)
             ))
@@ -562,7 +566,7 @@ impl Effort<'_> {
     }
 
     /// A spring on bead 1 that swings within a contact time over and over.
-    fn stiff_spring(&self) -> Option<Problem> {
+    fn stiff_spring(&self) -> Option<FileProblem> {
         let Push::Spring { stiffness_n_m, .. } = self.chain.push else {
             return None;
         };
@@ -572,7 +576,7 @@ impl Effort<'_> {
             let message = "the spring on bead 1 is over a million times stiffer than its contact";
             let most = self.spec.units.with_unit(&brief(most_n_m), "N/m");
             let label = format!("expected a stiffness of at most {most}");
-            Problem::new(&self.spec.load_span, message, label)
+            FileProblem::new(&self.spec.load_span, message, label)
                 .help("the steps would follow the spring alone; push = \"constant\" holds as well")
         })
     }

@@ -1,8 +1,8 @@
 //! Values of checked tables in SI: a key's unit and limits come from its declaration.
 
 use crate::document::{Node, Number, Value};
-use crate::keys::{Fields, Kind, LARGEST, Limits, SMALLEST};
-use crate::report::{Problem, short};
+use crate::keys::{Fields, Kind, LARGEST, SMALLEST, ValueLimits};
+use crate::report::{FileProblem, short};
 use crate::units::{self, Dimension};
 use std::ops::Range;
 
@@ -39,24 +39,24 @@ pub(crate) struct Si {
 
 /// The quantity that a key must have.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expected<'a> {
+pub(crate) struct ExpectedQuantity<'a> {
     pub(crate) name: &'a str,
     pub(crate) unit: &'a str,
-    pub(crate) limits: Limits,
+    pub(crate) limits: ValueLimits,
     pub(crate) units: Units,
 }
 
-impl Expected<'_> {
+impl ExpectedQuantity<'_> {
     fn dimension(&self) -> Dimension {
         let unit = units::parse_unit(self.unit);
         unit.map_or(Dimension::NONE, |unit| unit.dimension)
     }
 
-    fn limits(&self) -> Limits {
+    fn limits(&self) -> ValueLimits {
         self.limits.within(self.units, self.unit)
     }
 
-    fn problem(&self, node: &Node, wrong: &str) -> Problem {
+    fn problem(&self, node: &Node, wrong: &str) -> FileProblem {
         let (dimension, unit) = (self.dimension(), self.unit);
         let label = if self.units == Units::Dimensionless || dimension == Dimension::NONE {
             format!("expected a plain number, {}", self.limits().words)
@@ -66,11 +66,11 @@ impl Expected<'_> {
         } else {
             format!("expected a quantity in {unit}, such as \"1 {unit}\"")
         };
-        Problem::new(&node.span, format!("`{}`{wrong}", self.name), label)
+        FileProblem::new(&node.span, format!("`{}`{wrong}", self.name), label)
     }
 
     /// The node's value in SI, within the limits.
-    pub(crate) fn read(&self, node: &Node) -> Result<Si, Problem> {
+    pub(crate) fn read(&self, node: &Node) -> Result<Si, FileProblem> {
         let si = match &node.value {
             Value::Number(number) => self.number(node, *number)?,
             Value::Text(text) => self.quantity(node, text)?,
@@ -79,7 +79,7 @@ impl Expected<'_> {
         self.within(node, si)
     }
 
-    fn number(&self, node: &Node, number: Number) -> Result<Si, Problem> {
+    fn number(&self, node: &Node, number: Number) -> Result<Si, FileProblem> {
         let plain = number.from_code || self.units == Units::Dimensionless;
         match plain || self.dimension() == Dimension::NONE {
             true => Ok(Si {
@@ -90,7 +90,7 @@ impl Expected<'_> {
         }
     }
 
-    fn quantity(&self, node: &Node, text: &str) -> Result<Si, Problem> {
+    fn quantity(&self, node: &Node, text: &str) -> Result<Si, FileProblem> {
         let found = units::parse_quantity(text)
             .map_err(|error| self.problem(node, &format!(": {error}")))?;
         let expected = match self.units {
@@ -112,7 +112,7 @@ impl Expected<'_> {
         Err(self.problem(node, &format!(" {wrong}")))
     }
 
-    fn within(&self, node: &Node, si: Si) -> Result<Si, Problem> {
+    fn within(&self, node: &Node, si: Si) -> Result<Si, FileProblem> {
         if !si.value.is_finite() {
             return Err(self.problem(node, " is not a finite number"));
         }
@@ -135,12 +135,12 @@ impl Expected<'_> {
 }
 
 /// A whole number within limits.
-pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i64, Problem> {
+pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i64, FileProblem> {
     let label = match most {
         i64::MAX => format!("expected a whole number from {least}"),
         _ => format!("expected a whole number from {least} to {most}"),
     };
-    let problem = |wrong: &str| Problem::new(&node.span, format!("`{name}` {wrong}"), &label);
+    let problem = |wrong: &str| FileProblem::new(&node.span, format!("`{name}` {wrong}"), &label);
     let Value::Number(Number { value, .. }) = node.value else {
         return Err(problem(&format!("is {}", node.kind())));
     };
@@ -168,7 +168,7 @@ pub(crate) struct SpeedLaw {
     /// 0 for a plain number.
     pub(crate) exponent: f64,
     /// Of its value at any speed.
-    pub(crate) limits: Limits,
+    pub(crate) limits: ValueLimits,
     pub(crate) span: Range<usize>,
 }
 
@@ -196,8 +196,8 @@ impl<'a> View<'a> {
         name: &str,
         message: impl Into<String>,
         label: impl Into<String>,
-    ) -> Problem {
-        Problem::new(&self.span_of(name), message, label)
+    ) -> FileProblem {
+        FileProblem::new(&self.span_of(name), message, label)
     }
 
     pub(crate) fn has(&self, name: &str) -> bool {
@@ -209,9 +209,15 @@ impl<'a> View<'a> {
         Some((&self.fields.key(name)?.kind, self.node.get(name)?))
     }
 
-    fn si(&self, name: &str, unit: &str, limits: Limits, node: &Node) -> Result<f64, Problem> {
+    fn si(
+        &self,
+        name: &str,
+        unit: &str,
+        limits: ValueLimits,
+        node: &Node,
+    ) -> Result<f64, FileProblem> {
         let units = self.units;
-        let expected = Expected {
+        let expected = ExpectedQuantity {
             name,
             unit,
             limits,
@@ -221,7 +227,7 @@ impl<'a> View<'a> {
     }
 
     /// A quantity in SI.
-    pub(crate) fn quantity(&self, name: &str) -> Result<Option<f64>, Problem> {
+    pub(crate) fn quantity(&self, name: &str) -> Result<Option<f64>, FileProblem> {
         match self.value(name) {
             Some((Kind::Quantity(unit, limits), node)) => {
                 self.si(name, unit, *limits, node).map(Some)
@@ -231,29 +237,29 @@ impl<'a> View<'a> {
     }
 
     /// A quantity in SI that the check has seen to be there.
-    pub(crate) fn needed(&self, name: &str) -> Result<f64, Problem> {
+    pub(crate) fn needed(&self, name: &str) -> Result<f64, FileProblem> {
         let message = || format!("{} has no `{name}`", self.fields.title);
-        let missing = || Problem::new(&self.node.span, message(), "expected here");
+        let missing = || FileProblem::new(&self.node.span, message(), "expected here");
         self.quantity(name)?.ok_or_else(missing)
     }
 
-    pub(crate) fn quantities(&self, name: &str) -> Result<Vec<f64>, Problem> {
+    pub(crate) fn quantities(&self, name: &str) -> Result<Vec<f64>, FileProblem> {
         match self.value(name) {
             Some((Kind::Quantities(unit), node)) => (node.members().iter())
-                .map(|member| self.si(name, unit, Limits::ANY, member))
+                .map(|member| self.si(name, unit, ValueLimits::ANY, member))
                 .collect(),
             _ => Ok(Vec::new()),
         }
     }
 
-    pub(crate) fn speed_law(&self, name: &str) -> Result<Option<SpeedLaw>, Problem> {
+    pub(crate) fn speed_law(&self, name: &str) -> Result<Option<SpeedLaw>, FileProblem> {
         let Some((Kind::Scaled(unit, limits), node)) = self.value(name) else {
             return Ok(None);
         };
         let (prefactor, exponent) = match (node.get(POWER_LAW[0]), node.get(POWER_LAW[1])) {
             (Some(prefactor), Some(exponent)) => (
-                self.si(POWER_LAW[0], unit, Limits::ANY, prefactor)?,
-                self.si(POWER_LAW[1], "1", Limits::ANY, exponent)?,
+                self.si(POWER_LAW[0], unit, ValueLimits::ANY, prefactor)?,
+                self.si(POWER_LAW[1], "1", ValueLimits::ANY, exponent)?,
             ),
             _ => (self.si(name, unit, *limits, node)?, 0.0),
         };
@@ -265,7 +271,7 @@ impl<'a> View<'a> {
         }))
     }
 
-    pub(crate) fn count(&self, name: &str) -> Result<Option<usize>, Problem> {
+    pub(crate) fn count(&self, name: &str) -> Result<Option<usize>, FileProblem> {
         match self.value(name) {
             Some((Kind::Count { least, most }, node)) => {
                 let found = whole(name, *least, *most, node)?;
@@ -275,7 +281,7 @@ impl<'a> View<'a> {
         }
     }
 
-    pub(crate) fn counts(&self, name: &str) -> Result<Vec<(usize, Range<usize>)>, Problem> {
+    pub(crate) fn counts(&self, name: &str) -> Result<Vec<(usize, Range<usize>)>, FileProblem> {
         let count = |member: &Node| {
             let found = whole(name, 0, i64::MAX, member)?;
             let found = usize::try_from(found).unwrap_or(usize::MAX);
@@ -341,29 +347,29 @@ impl<'a> View<'a> {
 /// A type that the value of a key can have.
 pub(crate) trait FromKey: Sized {
     /// The value; `None` where the file gives none.
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem>;
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem>;
 }
 
 impl FromKey for f64 {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         table.quantity(key)
     }
 }
 
 impl FromKey for usize {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         table.count(key)
     }
 }
 
 impl FromKey for String {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(table.text(key).map(str::to_owned))
     }
 }
 
 impl<T: FromKey> FromKey for Option<T> {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, Problem> {
+    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(T::from_key(table, key)?.map(Some))
     }
 }
@@ -390,7 +396,7 @@ macro_rules! record {
 
             pub(crate) fn read(
                 table: Option<&$crate::values::View<'_>>,
-            ) -> Result<Self, $crate::report::Problem> {
+            ) -> Result<Self, $crate::report::FileProblem> {
                 $(let $field = match table {
                     Some(table) => <$Own as $crate::values::FromKey>::from_key(table, stringify!($key))?,
                     None => None,

@@ -1,7 +1,7 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
-use crate::chart::{Chart, Prepared, Style, x_scale};
-use crate::draw::{Colour, PT_PER_MM, Point, Rect, Side, Svg};
+use crate::chart::{Chart, ChartStyle, Prepared, x_scale};
+use crate::draw::{Colour, Margins, PT_PER_MM, Point, Rect, Svg};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
@@ -178,7 +178,7 @@ impl Figure {
     fn drawn(&self, mut svg: Svg) -> String {
         let panels = self.shared();
         let page = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
-        let grid = Grid::new(page, self.columns, self.letters, &panels);
+        let grid = PanelGrid::new(page, self.columns, self.letters, &panels);
         for (i, panel) in panels.iter().enumerate() {
             let frame = grid.frame(i);
             self.heading(&mut svg, panel, i, &frame, &grid);
@@ -191,7 +191,7 @@ impl Figure {
                 Panel::Empty => {}
             }
         }
-        svg.finish(self.size_mm(), &self.title, &self.caption)
+        svg.finish((self.width_mm, self.height_mm), &self.title, &self.caption)
     }
 
     /// The picture as PNG at a resolution in dots per inch; journals ask for 300.
@@ -221,7 +221,7 @@ impl Figure {
         panels
     }
 
-    fn heading(&self, svg: &mut Svg, panel: &Panel, index: usize, frame: &Rect, grid: &Grid) {
+    fn heading(&self, svg: &mut Svg, panel: &Panel, index: usize, frame: &Rect, grid: &PanelGrid) {
         let mut x = frame.x0;
         let baseline = frame.y0 - grid.above(index) - 4.0;
         if self.letters {
@@ -245,7 +245,7 @@ fn panel_letter(index: usize) -> String {
 /// Gives charts one x range and labels the last of them.
 fn share_x(panels: &mut [Panel], members: &[usize]) {
     let ranges = members.iter().filter_map(|i| match &panels[*i] {
-        Panel::Chart(chart) => Some(x_scale(chart, &Style::JOURNAL)),
+        Panel::Chart(chart) => Some(x_scale(chart, &ChartStyle::JOURNAL)),
         _ => None,
     });
     let ranges = ranges.map(|scale| (scale.lo, scale.hi));
@@ -265,30 +265,30 @@ const GUTTER: f64 = 7.0;
 const HEADING: f64 = 11.5;
 
 /// Places of the frames: equal in size, aligned along rows and columns.
-struct Grid {
+struct PanelGrid {
     columns: usize,
     frame: (f64, f64),
     /// Margins of each column (left, right) and row (top, bottom).
-    across: Vec<Side>,
-    down: Vec<Side>,
+    across: Vec<Margins>,
+    down: Vec<Margins>,
 }
 
-impl Grid {
+impl PanelGrid {
     fn new(page: (f64, f64), columns: usize, letters: bool, panels: &[Panel]) -> Self {
         let columns = columns.min(panels.len()).max(1);
         let rows = panels.len().div_ceil(columns).max(1);
         let mut grid = Self {
             columns,
             frame: (0.75 * page.0 / columns as f64, 0.75 * page.1 / rows as f64),
-            across: vec![Side::default(); columns],
-            down: vec![Side::default(); rows],
+            across: vec![Margins::default(); columns],
+            down: vec![Margins::default(); rows],
         };
         // Ticks depend on the frame and the frame on the tick labels. The first
         // guess is dropped; after it margins only grow, so this settles.
         for round in 0..4 {
             if round == 1 {
-                grid.across.fill(Side::default());
-                grid.down.fill(Side::default());
+                grid.across.fill(Margins::default());
+                grid.down.fill(Margins::default());
             }
             grid.measure(panels, letters);
             grid.fit(page);
@@ -300,7 +300,7 @@ impl Grid {
         for (i, panel) in panels.iter().enumerate() {
             let mut side = match panel {
                 Panel::Chart(chart) => self.prepared(chart).margins(),
-                _ => Side::default(),
+                _ => Margins::default(),
             };
             if letters || !panel.title().is_empty() {
                 side.top += HEADING;
@@ -313,7 +313,7 @@ impl Grid {
 
     /// A chart for a frame of this size.
     fn prepared<'a>(&self, chart: &'a Chart) -> Prepared<'a> {
-        Prepared::new(chart, Style::JOURNAL, self.frame)
+        Prepared::new(chart, ChartStyle::JOURNAL, self.frame)
     }
 
     fn fit(&mut self, page: (f64, f64)) {
@@ -345,6 +345,6 @@ impl Grid {
     /// Room between the heading and the frame.
     fn above(&self, index: usize) -> f64 {
         let top = self.down[index / self.columns].top;
-        (top - HEADING - 0.55 * Style::JOURNAL.small).max(0.0)
+        (top - HEADING - 0.55 * ChartStyle::JOURNAL.small).max(0.0)
     }
 }

@@ -1,7 +1,7 @@
 //! Maps of a quantity over two axes, as in a space-time diagram.
 
 use crate::axis::{Room, Scale, Ticks, ticks};
-use crate::chart::{Plot, Style};
+use crate::chart::{ChartStyle, Plot};
 use crate::draw::{Colour, ColourMap, Paint, PathData, Point, Rect, Svg};
 use crate::files::{indexed_png, rgb_png};
 use crate::text::{Anchor, TextLine};
@@ -114,7 +114,7 @@ impl HeatMap {
         Scale { lo, hi, log: false }
     }
 
-    fn bar_ticks(&self, style: &Style, height: f64) -> Ticks {
+    fn bar_ticks(&self, style: &ChartStyle, height: f64) -> Ticks {
         let room = Room {
             length: height,
             font: style.small,
@@ -124,7 +124,7 @@ impl HeatMap {
     }
 
     /// Room for bar, numbers and label: right of the frame, and above it.
-    pub(crate) fn bar_room(&self, style: &Style, height: f64) -> (f64, f64) {
+    pub(crate) fn bar_room(&self, style: &ChartStyle, height: f64) -> (f64, f64) {
         let label = TextLine::new(&self.label, style.label);
         let label = if self.label.is_empty() {
             0.0
@@ -137,7 +137,7 @@ impl HeatMap {
     }
 
     /// Draws bar, ticks, numbers and label right of `frame`.
-    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect, style: &Style) {
+    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect, style: &ChartStyle) {
         let bar = Rect::sized(frame.x1 + GAP, frame.y0, BAR, frame.height());
         let shades = (0..256).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0));
         let shades: Vec<u8> = shades.flat_map(|c| [c.0, c.1, c.2]).collect();

@@ -104,11 +104,11 @@ impl VerdictMatrix {
     /// wide if that holds its cells, else two, or wider if it has very many.
     #[must_use]
     pub fn figure(self) -> Figure {
-        let narrow = Layout::new(&self, SINGLE_COLUMN_MM);
+        let narrow = MatrixLayout::new(&self, SINGLE_COLUMN_MM);
         let (page_mm, layout) = if narrow.fits(SINGLE_COLUMN_MM) {
             (SINGLE_COLUMN_MM, narrow)
         } else {
-            (DOUBLE_COLUMN_MM, Layout::new(&self, DOUBLE_COLUMN_MM))
+            (DOUBLE_COLUMN_MM, MatrixLayout::new(&self, DOUBLE_COLUMN_MM))
         };
         let (width, height) = layout.size();
         let mm = |points: f64| (points + MARGINS) / PT_PER_MM;
@@ -117,7 +117,7 @@ impl VerdictMatrix {
 
     /// Draws the table, shrunk to fit the frame.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
-        let layout = Layout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
+        let layout = MatrixLayout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
         let (width, height) = layout.size();
         let fit = (frame.width() / width).min(frame.height() / height);
         // The page was made for it up to rounding.
@@ -131,7 +131,7 @@ impl VerdictMatrix {
     }
 }
 
-struct Layout {
+struct MatrixLayout {
     claims: Vec<Vec<TextLine>>,
     headers: Vec<TextLine>,
     below: Vec<(Option<Verdict>, Vec<TextLine>)>,
@@ -141,7 +141,7 @@ struct Layout {
     upright: bool,
 }
 
-impl Layout {
+impl MatrixLayout {
     /// For a page of this width.
     fn new(matrix: &VerdictMatrix, page_mm: f64) -> Self {
         let page = page_mm * PT_PER_MM - MARGINS;

@@ -99,12 +99,12 @@ pub(crate) fn ticks(scale: &Scale, room: &Room) -> Ticks {
 
 /// A tick distance of `mantissa * 10^exponent`.
 #[derive(Debug, Clone, Copy)]
-struct Step {
+struct TickStep {
     mantissa: u8,
     exponent: i32,
 }
 
-impl Step {
+impl TickStep {
     /// The first step that cuts the span into no more than `parts`.
     fn at_least(span: f64, parts: f64) -> Self {
         let raw = span / parts;
@@ -160,7 +160,7 @@ const TRIES: usize = 12;
 
 fn linear_ticks(scale: &Scale, room: &Room) -> Ticks {
     let exponent = shared_exponent(scale);
-    let mut step = Step::at_least(scale.hi - scale.lo, room.most() as f64);
+    let mut step = TickStep::at_least(scale.hi - scale.lo, room.most() as f64);
     let mut major = labelled(scale, step, exponent);
     for _ in 0..TRIES {
         if major.len() <= 3 || room.fits(scale, &major) {
@@ -190,7 +190,7 @@ fn shared_exponent(scale: &Scale) -> Option<i32> {
     (!(-2..5).contains(&exponent)).then_some(exponent)
 }
 
-fn labelled(scale: &Scale, step: Step, exponent: Option<i32>) -> Vec<Tick> {
+fn labelled(scale: &Scale, step: TickStep, exponent: Option<i32>) -> Vec<Tick> {
     let shift = exponent.unwrap_or(0);
     let decimals = usize::try_from(shift - step.exponent).unwrap_or(0);
     multiples(scale, step.size())
@@ -217,7 +217,7 @@ fn multiples(scale: &Scale, step: f64) -> impl Iterator<Item = f64> {
     (0..=count).map(move |i| first + f64::from(i))
 }
 
-fn minor(scale: &Scale, step: Step) -> Vec<f64> {
+fn minor(scale: &Scale, step: TickStep) -> Vec<f64> {
     let parts = step.subdivisions();
     multiples(scale, step.size() / parts)
         .filter(|n| n.rem_euclid(parts) != 0.0)

@@ -1,7 +1,7 @@
 //! Drawing a prepared chart into its frame.
 
 use super::free::{Occupancy, places};
-use super::{Chart, Plot, Prepared, Style, strokes};
+use super::{Chart, ChartStyle, Plot, Prepared, strokes};
 use crate::axis::{Scale, Ticks};
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
 use crate::text::{Anchor, TextLine};
@@ -165,7 +165,7 @@ fn draw_inset(svg: &mut Svg, inset: &Chart, area: &Rect) {
         return;
     }
     let prepared =
-        |frame: &Rect| Prepared::new(inset, Style::INSET, (frame.width(), frame.height()));
+        |frame: &Rect| Prepared::new(inset, ChartStyle::INSET, (frame.width(), frame.height()));
     let smaller = area.grown(-0.15 * area.width().min(area.height()));
     let mut margins = prepared(&smaller).margins();
     for _ in 0..3 {

@@ -1,6 +1,6 @@
 //! Free paper inside a frame, where insets, notes and labels of reference lines go.
 
-use super::{Chart, Kind, Plot, Reference, Style, strokes};
+use super::{Chart, ChartStyle, Plot, ReferenceLine, SeriesKind, strokes};
 use crate::draw::{Point, Rect};
 use crate::text::TextLine;
 
@@ -37,7 +37,7 @@ impl Occupancy {
     }
 
     /// The data and reference lines of a chart.
-    pub(super) fn of(chart: &Chart, style: &Style, plot: &Plot) -> Self {
+    pub(super) fn of(chart: &Chart, style: &ChartStyle, plot: &Plot) -> Self {
         let mut taken = Self::new(plot.frame);
         for series in &chart.series {
             if series.has_line() {
@@ -45,14 +45,17 @@ impl Occupancy {
                     .iter()
                     .for_each(|piece| taken.mark_line(piece, 3));
             }
-            if let Kind::Band(upper) = &series.kind {
+            if let SeriesKind::Band(upper) = &series.kind {
                 let edges = series.xy().zip(upper);
                 for edge in edges.map(|((x, low), high)| plot.at(x, low).zip(plot.at(x, *high))) {
                     edge.into_iter()
                         .for_each(|(a, b)| taken.mark_line(&[a, b], 1));
                 }
             }
-            if matches!(series.kind, Kind::Points(_) | Kind::LinePoints(_)) {
+            if matches!(
+                series.kind,
+                SeriesKind::Points(_) | SeriesKind::LinePoints(_)
+            ) {
                 let r = style.marker + 1.0;
                 for p in strokes::centres(plot, series) {
                     taken.mark_rect(&Rect::sized(p.x - r, p.y - r, 2.0 * r, 2.0 * r), 4);
@@ -132,7 +135,7 @@ pub(super) fn places(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
     corners.into_iter().chain(inner).map(at).collect()
 }
 
-impl Reference {
+impl ReferenceLine {
     /// Ends of the line on the page.
     pub(super) fn ends(&self, plot: &Plot) -> Option<(Point, Point)> {
         let (frame, value) = (plot.frame, self.value);

@@ -1,8 +1,8 @@
 //! Scales, ticks and legend of a chart and the room they need, before anything is drawn.
 
-use super::{Axis, Chart, Kind, Legend, Series, Style, strokes};
+use super::{Axis, Chart, ChartStyle, Legend, Series, SeriesKind, strokes};
 use crate::axis::{Extent, Room, Scale, Ticks, ticks};
-use crate::draw::{Colour, Point, Rect, Side, Svg};
+use crate::draw::{Colour, Margins, Point, Rect, Svg};
 use crate::text::{Anchor, TextLine};
 
 /// Two scales laid over a frame on the page.
@@ -31,7 +31,7 @@ impl Plot {
 /// A chart with its scales, ticks and legend chosen for a frame size.
 pub(crate) struct Prepared<'a> {
     pub(super) chart: &'a Chart,
-    pub(super) style: Style,
+    pub(super) style: ChartStyle,
     pub(super) x: Scale,
     pub(super) y: Scale,
     pub(super) x_ticks: Ticks,
@@ -42,7 +42,7 @@ pub(crate) struct Prepared<'a> {
 
 impl<'a> Prepared<'a> {
     /// For a frame of about the given size.
-    pub(crate) fn new(chart: &'a Chart, style: Style, size: (f64, f64)) -> Self {
+    pub(crate) fn new(chart: &'a Chart, style: ChartStyle, size: (f64, f64)) -> Self {
         let (x, y) = (x_scale(chart, &style), y_scale(chart, &style));
         let font = style.small;
         let room = |length, side_by_side| Room {
@@ -68,10 +68,10 @@ impl<'a> Prepared<'a> {
     }
 
     /// Room for tick labels, axis labels, legend and colour bar around the frame.
-    pub(crate) fn margins(&self) -> Side {
+    pub(crate) fn margins(&self) -> Margins {
         let (chart, style) = (self.chart, &self.style);
         let height = |text: &str| TextLine::new(text, style.label).height();
-        let mut side = Side {
+        let mut side = Margins {
             left: 2.0,
             right: 2.0,
             top: 0.55 * style.small,
@@ -125,14 +125,17 @@ impl<'a> Prepared<'a> {
 
 /// The x scale of a chart: as asked for, or around the data. Lines and maps fill the frame from
 /// edge to edge; points near an edge need air there.
-pub(crate) fn x_scale(chart: &Chart, style: &Style) -> Scale {
+pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     if let Some(scale) = chosen(&chart.x) {
         return scale;
     }
     let (mut all, mut points) = (Extent::new(chart.x.log), Extent::new(chart.x.log));
     for series in &chart.series {
         add_x(&mut all, series);
-        if matches!(series.kind, Kind::Points(_) | Kind::LinePoints(_)) {
+        if matches!(
+            series.kind,
+            SeriesKind::Points(_) | SeriesKind::LinePoints(_)
+        ) {
             add_x(&mut points, series);
         }
     }
@@ -161,7 +164,7 @@ fn add_x(extent: &mut Extent, series: &Series) {
 }
 
 /// The y scale of a chart: as asked for, or around the data.
-fn y_scale(chart: &Chart, style: &Style) -> Scale {
+fn y_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     let mut extent = Extent::new(chart.y.log);
     let x = x_scale(chart, style);
     for series in &chart.series {
@@ -169,7 +172,7 @@ fn y_scale(chart: &Chart, style: &Style) -> Scale {
             let error = |e: &[f64]| e.get(i).copied().unwrap_or(0.0);
             let (below, above) = &series.y_error;
             extent.extend([y, y - error(below), y + error(above)]);
-            if let Kind::Band(upper) = &series.kind {
+            if let SeriesKind::Band(upper) = &series.kind {
                 extent.extend(upper.get(i).copied());
             }
         }
@@ -248,7 +251,7 @@ impl LegendBox {
         &self,
         svg: &mut Svg,
         chart: &Chart,
-        style: &Style,
+        style: &ChartStyle,
         middle: f64,
         bottom: f64,
     ) {

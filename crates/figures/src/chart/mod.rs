@@ -24,7 +24,7 @@ pub(crate) struct Axis {
 
 /// A horizontal or vertical line at a value.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Reference {
+pub(crate) struct ReferenceLine {
     pub(crate) value: f64,
     pub(crate) label: String,
     pub(crate) vertical: bool,
@@ -49,7 +49,7 @@ pub struct Chart {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     pub(crate) series: Vec<Series>,
-    pub(crate) references: Vec<Reference>,
+    pub(crate) references: Vec<ReferenceLine>,
     pub(crate) notes: Vec<String>,
     pub(crate) inset: Option<Box<Chart>>,
     pub(crate) legend: Legend,
@@ -140,7 +140,7 @@ impl Chart {
 
     fn reference(mut self, value: f64, label: &str, vertical: bool) -> Self {
         let label = label.into();
-        self.references.push(Reference {
+        self.references.push(ReferenceLine {
             value,
             label,
             vertical,
@@ -278,7 +278,7 @@ pub struct Series {
     pub(crate) name: String,
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
-    pub(crate) kind: Kind,
+    pub(crate) kind: SeriesKind,
     pub(crate) colour: Option<Colour>,
     pub(crate) dash: Option<Dash>,
     pub(crate) width: f64,
@@ -289,7 +289,7 @@ pub struct Series {
 
 /// Kind of strokes of a series.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum SeriesKind {
     Line,
     Points(Option<Marker>),
     LinePoints(Marker),
@@ -298,7 +298,7 @@ pub(crate) enum Kind {
 }
 
 impl Series {
-    fn new(name: &str, x: &[f64], y: &[f64], kind: Kind) -> Self {
+    fn new(name: &str, x: &[f64], y: &[f64], kind: SeriesKind) -> Self {
         Self {
             name: name.into(),
             x: x.to_vec(),
@@ -315,19 +315,19 @@ impl Series {
     /// A line through the points. An empty name keeps it out of the legend.
     #[must_use]
     pub fn line(name: &str, x: &[f64], y: &[f64]) -> Self {
-        Self::new(name, x, y, Kind::Line)
+        Self::new(name, x, y, SeriesKind::Line)
     }
 
     /// Separate points.
     #[must_use]
     pub fn points(name: &str, x: &[f64], y: &[f64]) -> Self {
-        Self::new(name, x, y, Kind::Points(None))
+        Self::new(name, x, y, SeriesKind::Points(None))
     }
 
     /// A shaded area between two curves.
     #[must_use]
     pub fn band(name: &str, x: &[f64], lower: &[f64], upper: &[f64]) -> Self {
-        Self::new(name, x, lower, Kind::Band(upper.to_vec()))
+        Self::new(name, x, lower, SeriesKind::Band(upper.to_vec()))
     }
 
     /// Sets the colour; without it the palette is walked through.
@@ -348,9 +348,9 @@ impl Series {
     #[must_use]
     pub fn marker(mut self, marker: Marker) -> Self {
         self.kind = match self.kind {
-            Kind::Points(_) => Kind::Points(Some(marker)),
-            Kind::Line | Kind::LinePoints(_) => Kind::LinePoints(marker),
-            band @ Kind::Band(_) => band,
+            SeriesKind::Points(_) => SeriesKind::Points(Some(marker)),
+            SeriesKind::Line | SeriesKind::LinePoints(_) => SeriesKind::LinePoints(marker),
+            band @ SeriesKind::Band(_) => band,
         };
         self
     }
@@ -383,11 +383,11 @@ impl Series {
     }
 
     pub(crate) fn has_line(&self) -> bool {
-        matches!(self.kind, Kind::Line | Kind::LinePoints(_))
+        matches!(self.kind, SeriesKind::Line | SeriesKind::LinePoints(_))
     }
 
     pub(crate) fn is_band(&self) -> bool {
-        matches!(self.kind, Kind::Band(_))
+        matches!(self.kind, SeriesKind::Band(_))
     }
 
     /// All points, as far as both coordinates reach.
@@ -398,7 +398,7 @@ impl Series {
 
 /// The look of a chart's frame and text.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Style {
+pub(crate) struct ChartStyle {
     /// Font size of tick labels and legends.
     pub(crate) small: f64,
     /// Font size of axis labels.
@@ -415,7 +415,7 @@ pub(crate) struct Style {
     pub(crate) pad: f64,
 }
 
-impl Style {
+impl ChartStyle {
     /// Legible at the column width of a journal.
     pub(crate) const JOURNAL: Self = Self {
         small: 7.0,

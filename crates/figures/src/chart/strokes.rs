@@ -1,7 +1,7 @@
 //! Series as strokes on the page: broken at gaps, cut at the frame, thinned to what a printed
 //! pixel can show.
 
-use super::{Chart, Dash, Kind, Marker, Plot, Series, Style};
+use super::{Chart, ChartStyle, Dash, Marker, Plot, Series, SeriesKind};
 use crate::axis::Scale;
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg, clip_segment};
 use std::collections::BTreeSet;
@@ -145,9 +145,9 @@ fn draw_error_bars(svg: &mut Svg, plot: &Plot, series: &Series, size: f64, colou
 }
 
 /// Draws all series: bands below, then lines and points in their order.
-pub(super) fn draw(svg: &mut Svg, chart: &Chart, style: &Style, plot: &Plot) {
+pub(super) fn draw(svg: &mut Svg, chart: &Chart, style: &ChartStyle, plot: &Plot) {
     for (i, series) in chart.series.iter().enumerate() {
-        if let Kind::Band(upper) = &series.kind {
+        if let SeriesKind::Band(upper) = &series.kind {
             let mut path = PathData::new();
             for outline in band(plot, series, upper) {
                 path.polygon(&outline);
@@ -172,7 +172,13 @@ pub(super) fn draw(svg: &mut Svg, chart: &Chart, style: &Style, plot: &Plot) {
 }
 
 /// Draws a sample of a series into a box of a legend.
-pub(super) fn draw_sample(svg: &mut Svg, chart: &Chart, style: &Style, index: usize, place: &Rect) {
+pub(super) fn draw_sample(
+    svg: &mut Svg,
+    chart: &Chart,
+    style: &ChartStyle,
+    index: usize,
+    place: &Rect,
+) {
     let (series, colour) = (&chart.series[index], chart.colour_of(index));
     let middle = place.centre();
     if series.is_band() {
@@ -194,7 +200,7 @@ fn band_paint(colour: Colour) -> Paint {
 }
 
 /// Stroke of a line series: those of automatic colour differ by pattern too.
-fn line_paint(chart: &Chart, style: &Style, index: usize) -> Paint {
+fn line_paint(chart: &Chart, style: &ChartStyle, index: usize) -> Paint {
     let series = &chart.series[index];
     let before = chart.series[..index]
         .iter()
@@ -211,9 +217,9 @@ fn line_paint(chart: &Chart, style: &Style, index: usize) -> Paint {
 /// Marker of a series, if it has one.
 fn marker_of(series: &Series, index: usize) -> Option<Marker> {
     match series.kind {
-        Kind::Points(chosen) => Some(chosen.unwrap_or_else(|| Marker::of_index(index))),
-        Kind::LinePoints(marker) => Some(marker),
-        Kind::Line | Kind::Band(_) => None,
+        SeriesKind::Points(chosen) => Some(chosen.unwrap_or_else(|| Marker::of_index(index))),
+        SeriesKind::LinePoints(marker) => Some(marker),
+        SeriesKind::Line | SeriesKind::Band(_) => None,
     }
 }
 

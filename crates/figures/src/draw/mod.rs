@@ -34,14 +34,14 @@ pub(crate) struct Rect {
 
 /// Space around a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Side {
+pub(crate) struct Margins {
     pub(crate) left: f64,
     pub(crate) right: f64,
     pub(crate) top: f64,
     pub(crate) bottom: f64,
 }
 
-impl Side {
+impl Margins {
     /// The larger of both on every side, so that frames in a grid line up.
     pub(crate) fn union(self, other: Self) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl Rect {
     }
 
     /// Shrinks by the given space; never turns inside out.
-    pub(crate) fn inside(&self, by: Side) -> Self {
+    pub(crate) fn inside(&self, by: Margins) -> Self {
         let width = self.width() - by.left - by.right;
         let height = self.height() - by.top - by.bottom;
         Self::sized(self.x0 + by.left, self.y0 + by.top, width, height)

@@ -15,7 +15,7 @@ pub(crate) enum Script {
 
 /// Characters of one style at one script level.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Run {
+pub(crate) struct TextRun {
     pub(crate) text: String,
     pub(crate) style: Face,
     pub(crate) script: Script,
@@ -34,7 +34,7 @@ pub(crate) const SYMBOLS: &[(&str, char)] = &[
 ];
 
 /// Splits markup into runs; malformed markup is shown as it was typed.
-pub(crate) fn parse(source: &str) -> Vec<Run> {
+pub(crate) fn parse(source: &str) -> Vec<TextRun> {
     let mut parser = Parser {
         rest: source.chars().peekable(),
         math: false,
@@ -51,7 +51,7 @@ struct Parser<'a> {
     rest: Peekable<Chars<'a>>,
     math: bool,
     upright: bool,
-    runs: Vec<Run>,
+    runs: Vec<TextRun>,
 }
 
 impl Parser<'_> {
@@ -72,7 +72,7 @@ impl Parser<'_> {
         let style = if italic { Face::Italic } else { Face::Regular };
         match self.runs.last_mut() {
             Some(run) if run.style == style && run.script == script => run.text.push(c),
-            _ => self.runs.push(Run {
+            _ => self.runs.push(TextRun {
                 text: c.to_string(),
                 style,
                 script,

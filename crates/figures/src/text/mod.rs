@@ -13,7 +13,7 @@ pub(crate) use font::GlyphId;
 
 use crate::draw::{Colour, Point, Svg, escape, fmt};
 use font::{Face, units_per_em, width};
-use markup::{Run, Script, parse};
+use markup::{Script, TextRun, parse};
 
 /// Smallest size of anything that is written, points: what journals ask for.
 pub(crate) const LEAST_SIZE: f64 = 6.0;
@@ -66,7 +66,7 @@ impl Span {
 /// A line of text ready to be drawn at any place.
 #[derive(Debug, Clone)]
 pub(crate) struct TextLine {
-    runs: Vec<Run>,
+    runs: Vec<TextRun>,
     spans: Vec<Span>,
     plain: String,
     width_em: f64,
@@ -83,7 +83,7 @@ impl TextLine {
 
     /// Literal bold text, for panel letters.
     pub(crate) fn bold(text: &str, size: f64) -> Self {
-        let run = Run {
+        let run = TextRun {
             text: text.into(),
             style: Face::Bold,
             script: Script::Base,
@@ -91,7 +91,7 @@ impl TextLine {
         Self::from_runs(&[run], size)
     }
 
-    fn from_runs(runs: &[Run], size: f64) -> Self {
+    fn from_runs(runs: &[TextRun], size: f64) -> Self {
         let mut line = Self {
             runs: runs.to_vec(),
             spans: Vec::new(),
@@ -105,7 +105,7 @@ impl TextLine {
         line
     }
 
-    fn lay_out(&mut self, runs: &[Run]) {
+    fn lay_out(&mut self, runs: &[TextRun]) {
         // A superscript right after a subscript (or the reverse) starts at the
         // same place: both belong to the same base.
         let (mut x, mut script_start, mut stacked_end) = (0.0, 0.0, 0.0_f64);
@@ -123,7 +123,7 @@ impl TextLine {
         self.width_em = f64::max(x, stacked_end);
     }
 
-    fn place(&mut self, run: &Run, start: f64) -> f64 {
+    fn place(&mut self, run: &TextRun, start: f64) -> f64 {
         let (scale, up) = match run.script {
             Script::Base => (1.0, 0.0),
             // Large scripts sink deeper to differ from their base.

@@ -14,7 +14,7 @@ use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict,
 /// rounding flips are marked: a verdict is that of the constants as printed.
 pub(super) fn readings(scan: &Scan) -> Figure {
     let columns = columns(scan);
-    let moved: Vec<&Column> = columns.iter().filter(|c| c.is_shown(scan)).collect();
+    let moved: Vec<&ReadingColumn> = columns.iter().filter(|c| c.is_shown(scan)).collect();
     let names: Vec<&str> = moved.iter().map(|column| column.name.as_str()).collect();
     let mut matrix = VerdictMatrix::new(&names);
     let mut fixed: [Vec<String>; 4] = Default::default();
@@ -89,14 +89,14 @@ fn place(verdict: Verdict) -> usize {
 }
 
 /// One reading, or options of one switch with the same verdicts.
-struct Column<'a> {
+struct ReadingColumn<'a> {
     name: String,
     /// The switch that is changed; empty for the default and the closest.
     switch: &'static str,
     row: &'a Row,
 }
 
-impl Column<'_> {
+impl ReadingColumn<'_> {
     /// The default and the closest are always shown.
     fn is_shown(&self, scan: &Scan) -> bool {
         self.switch.is_empty() || self.row.verdicts != scan.default.verdicts
@@ -107,8 +107,8 @@ impl Column<'_> {
     }
 }
 
-fn columns(scan: &Scan) -> Vec<Column<'_>> {
-    let always = |name: &str, row| Column {
+fn columns(scan: &Scan) -> Vec<ReadingColumn<'_>> {
+    let always = |name: &str, row| ReadingColumn {
         name: name.to_owned(),
         switch: "",
         row,
@@ -122,7 +122,7 @@ fn columns(scan: &Scan) -> Vec<Column<'_>> {
             Some(last) if last.switch == switch && last.row.verdicts == row.verdicts => {
                 last.name += &format!(", {option}");
             }
-            _ => columns.push(Column {
+            _ => columns.push(ReadingColumn {
                 name: format!("{switch} = {option}"),
                 switch,
                 row,

@@ -74,14 +74,14 @@ fn gathered(
     let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
     let jobs: Vec<_> = jobs.collect();
     let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
-        let target = Target::new(case, experiment, speed, how, change)?;
+        let target = ShotTarget::new(case, experiment, speed, how, change)?;
         // What is cached serves every pick.
         Ok::<_, ReproduceError>(match cache {
             Some(_) => target.comparing_picks(),
             None => target,
         })
     };
-    let targets: Vec<Target> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
+    let targets: Vec<ShotTarget> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
     let points = shot_at(&targets, how.effort, cache, done)?;
     let curves = points.chunks(how.speeds_m_s.len().max(1));
     let curves = cases
@@ -112,7 +112,7 @@ fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, Repr
 }
 
 /// A shot to be computed.
-struct Target {
+struct ShotTarget {
     case: &'static str,
     speed_m_s: f64,
     plan: Plan,
@@ -125,7 +125,7 @@ struct Target {
 /// The end beads are sampled this often to see how far they are apart, in s.
 const SAMPLED_S: f64 = 5e-6;
 
-impl Target {
+impl ShotTarget {
     fn new(
         case: &'static str,
         experiment: &Experiment,
@@ -191,12 +191,12 @@ impl Target {
 
 /// Points of all targets, in order.
 fn shot_at(
-    targets: &[Target],
+    targets: &[ShotTarget],
     effort: Effort<'_>,
     cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Point>, ReproduceError> {
-    let known = |target: &Target| {
+    let known = |target: &ShotTarget| {
         let points = cache.and_then(|cache| cache.restored(&target.plan))?;
         // Two cases may share a plan of which only one asks for the way back without gaps.
         let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
@@ -205,7 +205,7 @@ fn shot_at(
     let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
     let new = || targets.iter().zip(&points).enumerate();
     let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
-    let new: Vec<(usize, &Target)> = new.collect();
+    let new: Vec<(usize, &ShotTarget)> = new.collect();
     let fresh = match effort {
         Effort::Checked => checked_points(&new, done)?,
         Effort::Lean(_) => lean_points(&new, done)?,
@@ -223,10 +223,10 @@ fn shot_at(
 }
 
 fn checked_points(
-    targets: &[(usize, &Target)],
+    targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Point>>, ReproduceError> {
-    let one = |(_, target): &(usize, &Target)| {
+    let one = |(_, target): &(usize, &ShotTarget)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
         point
@@ -239,7 +239,7 @@ fn checked_points(
 /// Shots that are followed to their end run in the wave loop, the others side by
 /// side in the ensemble loop.
 fn lean_points(
-    targets: &[(usize, &Target)],
+    targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Point>>, ReproduceError> {
     let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
@@ -248,7 +248,7 @@ fn lean_points(
     let control = Control::PerShot { checked: false };
     let mut passing = run_plans(&plans, control, set, done).into_iter();
     let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
-    let one = |(_, target): &&(usize, &Target)| {
+    let one = |(_, target): &&(usize, &ShotTarget)| {
         let points = target.points(shoot(&target.plan));
         done();
         points

@@ -7,9 +7,9 @@ use hertzchain_chain::{Chain, Pair};
 use std::fmt::Write as _;
 
 /// A table as CSV.
-struct Csv(String);
+struct TableText(String);
 
-impl Csv {
+impl TableText {
     fn new(header: &str) -> Self {
         Self(format!("{header}\n"))
     }
@@ -35,7 +35,7 @@ fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
 /// Times of flight and peaks, one row a shot.
 #[must_use]
 pub fn tof_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new(
+    let mut csv = TableText::new(
         "case,speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,\
          returning_peak_n,striker_rebound_m_s,accuracy_reached",
     );
@@ -62,7 +62,7 @@ fn tof_row(p: &Point) -> [f64; 7] {
 /// Wet over dry times of flight.
 #[must_use]
 pub(super) fn ratios_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
+    let mut csv = TableText::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
     for case in OILS {
         for r in evidence.ratios(case) {
             let numbers = [r.incident, r.reflected, r.accuracy_reached];
@@ -77,7 +77,7 @@ pub(super) fn ratios_csv(evidence: &Evidence) -> String {
 /// standard errors of the paper's 20-shot means, from a fit weighted by these.
 #[must_use]
 pub(super) fn power_laws_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new(
+    let mut csv = TableText::new(
         "case,branch,prefactor_s,prefactor_error_s,exponent,exponent_error,r_squared,\
          residual_rms,residual_largest,weighted_residual_largest_in_standard_errors",
     );
@@ -115,7 +115,7 @@ fn power_law_row(curve: &Curve, branch: Branch) -> Option<[f64; 8]> {
 /// relative standard error that the paper's 20-shot mean would have.
 #[must_use]
 pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new("case,branch,speed_m_s,tof_s,residual,standard_error");
+    let mut csv = TableText::new("case,branch,speed_m_s,tof_s,residual,standard_error");
     for curve in curves(evidence) {
         for branch in Branch::BOTH {
             let Ok(fit) = curve.power_law(branch) else {
@@ -137,7 +137,7 @@ pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
 /// # Errors
 /// A chain that can't be set up.
 pub fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
-    let mut csv = Csv::new(
+    let mut csv = TableText::new(
         "case,speed_m_s,kinematic_viscosity_m2_s,density_kg_m3,dynamic_viscosity_pa_s,\
          effective_young_modulus_pa,effective_poisson_ratio,effective_viscosity_pa_s,\
          effective_stiffness_n_m3_2,effective_relaxation_time_s",

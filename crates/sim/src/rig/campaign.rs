@@ -425,10 +425,7 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
                 "low_pass_order".to_owned(),
                 amplifier.order.name().to_owned(),
             ),
-            (
-                "low_pass_kind".to_owned(),
-                amplifier.kind.name().to_owned(),
-            ),
+            ("low_pass_kind".to_owned(), amplifier.kind.name().to_owned()),
         ],
     }
 }

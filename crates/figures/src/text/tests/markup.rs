@@ -1,7 +1,7 @@
 use super::*;
 
-fn run(text: &str, style: Face, script: Script) -> Run {
-    Run {
+fn run(text: &str, style: Face, script: Script) -> TextRun {
+    TextRun {
         text: text.into(),
         style,
         script,

@@ -1,7 +1,7 @@
 //! Predicates on power laws, and on how the ratios of different liquids go together.
 
 use super::{branches, curves, missing};
-use crate::claims::evidence::Ratio;
+use crate::claims::evidence::TofRatio;
 use crate::claims::finding::{Comparisons, Finding};
 use crate::claims::{Branch, Claim, Curve, Evidence};
 use hertzchain_measure::signal::PowerLaw;
@@ -141,8 +141,8 @@ pub(super) fn exponents_differ(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// Two ratio curves at the speeds that both have, each speed with its weight.
 struct RatioPair {
-    one: Vec<Ratio>,
-    other: Vec<Ratio>,
+    one: Vec<TofRatio>,
+    other: Vec<TofRatio>,
     weights: Vec<f64>,
 }
 
@@ -151,9 +151,9 @@ impl RatioPair {
     /// does not matter where speeds lie close together; `None` with fewer than three.
     fn of(evidence: &Evidence, one: &str, other: &str) -> Option<Self> {
         let (a, b) = (evidence.ratios(one), evidence.ratios(other));
-        let partner = |r: &Ratio| b.iter().find(|s| s.speed_m_s == r.speed_m_s).copied();
+        let partner = |r: &TofRatio| b.iter().find(|s| s.speed_m_s == r.speed_m_s).copied();
         let pairs = a.iter().filter_map(|r| Some((*r, partner(r)?)));
-        let (one, other): (Vec<Ratio>, Vec<Ratio>) = pairs.unzip();
+        let (one, other): (Vec<TofRatio>, Vec<TofRatio>) = pairs.unzip();
         let speeds: Vec<f64> = one.iter().map(|r| r.speed_m_s.ln()).collect();
         (one.len() > 2).then(|| Self {
             one,
@@ -193,11 +193,11 @@ impl RatioPair {
         sum
     }
 
-    fn one(&mut self) -> &mut Vec<Ratio> {
+    fn one(&mut self) -> &mut Vec<TofRatio> {
         &mut self.one
     }
 
-    fn other(&mut self) -> &mut Vec<Ratio> {
+    fn other(&mut self) -> &mut Vec<TofRatio> {
         &mut self.other
     }
 }
@@ -278,7 +278,7 @@ pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence
         .map_or(Vec::new(), |(_, ratios)| ratios.clone());
     let mut comparisons = Comparisons::default();
     for (i, first) in speeds.iter().enumerate() {
-        let row: Vec<&Ratio> = oils.iter().filter_map(|(_, r)| r.get(i)).collect();
+        let row: Vec<&TofRatio> = oils.iter().filter_map(|(_, r)| r.get(i)).collect();
         let steps: Vec<f64> = row
             .windows(2)
             .filter_map(|w| Some(w.last()?.incident - w.first()?.incident))

@@ -1,7 +1,7 @@
 //! Predicates on wet over dry incident ToFs, and on where they pass 1.
 
 use super::missing;
-use crate::claims::evidence::Ratio;
+use crate::claims::evidence::TofRatio;
 use crate::claims::finding::{Comparisons, Distance, Finding, Verdict};
 use crate::claims::{Claim, Evidence};
 
@@ -22,7 +22,7 @@ fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> Finding {
         if ratios.is_empty() {
             return missing();
         }
-        let inside = |r: &&Ratio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
+        let inside = |r: &&TofRatio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
         for r in ratios.iter().filter(inside) {
             let margin = sign * (r.incident - claim.threshold);
             let accuracy = r.accuracy();
@@ -82,7 +82,7 @@ fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> Finding {
 }
 
 /// How far the step between two ratios is from 0.
-fn distance_from_flat(pair: &[Ratio]) -> Option<Distance> {
+fn distance_from_flat(pair: &[TofRatio]) -> Option<Distance> {
     let (low, high) = (pair.first()?, pair.last()?);
     Some(Distance {
         margin: (high.incident - low.incident).abs(),
@@ -158,7 +158,7 @@ fn turn_accuracy(three: [&Placed; 3], at_exact: f64) -> f64 {
 }
 
 /// Absolute accuracy of the difference of two ratios.
-fn step_accuracy(low: &Ratio, high: &Ratio) -> f64 {
+fn step_accuracy(low: &TofRatio, high: &TofRatio) -> f64 {
     low.accuracy() + high.accuracy()
 }
 
@@ -209,16 +209,16 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
 /// is most, and of the oil with most of it over its speeds. The number is the smaller
 /// of the two; negative where all lie on one side.
 pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
-    let oils: Vec<Vec<Ratio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
+    let oils: Vec<Vec<TofRatio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
     let Some(first) = oils.first().filter(|_| oils.iter().all(|o| !o.is_empty())) else {
         return missing();
     };
-    let at_speed = |r: &Ratio| {
-        let same = |other: &&Ratio| other.speed_m_s == r.speed_m_s;
+    let at_speed = |r: &TofRatio| {
+        let same = |other: &&TofRatio| other.speed_m_s == r.speed_m_s;
         let row = oils.iter().filter_map(|oil| oil.iter().find(same));
         both_sides(row, || format!("between oils at {} m/s", r.speed_m_s))
     };
-    let of_oil = |(case, oil): (&String, &Vec<Ratio>)| {
+    let of_oil = |(case, oil): (&String, &Vec<TofRatio>)| {
         both_sides(oil.iter(), || format!("between speeds with {case}"))
     };
     let farther = |a: &(f64, String), b: &(f64, String)| a.0.total_cmp(&b.0);
@@ -238,7 +238,7 @@ pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// The smaller of the distances that ratios reach below and above 1.
 fn both_sides<'a>(
-    ratios: impl Iterator<Item = &'a Ratio>,
+    ratios: impl Iterator<Item = &'a TofRatio>,
     place: impl Fn() -> String,
 ) -> (f64, String) {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
@@ -251,7 +251,7 @@ fn both_sides<'a>(
 /// Speed at which a ratio passes 1, and its accuracy: linear in ln v between
 /// the two speeds around it. Δv/v is the error of the ratios over their slope in
 /// ln v, and what the chord may leave out.
-fn crossing(low: &Ratio, high: &Ratio) -> (f64, f64) {
+fn crossing(low: &TofRatio, high: &TofRatio) -> (f64, f64) {
     let (before, after) = (low.incident - 1.0, high.incident - 1.0);
     let span = (high.speed_m_s / low.speed_m_s).ln();
     let part = before / (before - after);
@@ -268,7 +268,7 @@ fn crossing(low: &Ratio, high: &Ratio) -> (f64, f64) {
 type Crossings = Vec<(f64, f64)>;
 
 /// All crossings of 1, the upward ones first.
-fn crossings(ratios: &[Ratio]) -> (Crossings, Crossings) {
+fn crossings(ratios: &[TofRatio]) -> (Crossings, Crossings) {
     let (mut up, mut down) = (Vec::new(), Vec::new());
     for pair in ratios.windows(2) {
         if let [low, high] = pair {
@@ -283,7 +283,7 @@ fn crossings(ratios: &[Ratio]) -> (Crossings, Crossings) {
 }
 
 /// The ratios of a claim's first case.
-fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<Ratio> {
+fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<TofRatio> {
     let case = claim.cases.first();
     case.map_or(Vec::new(), |case| evidence.ratios(case))
 }
@@ -294,26 +294,26 @@ const UPWARD: f64 = 1.0;
 const DOWNWARD: f64 = -2.0;
 
 /// Upward passages less twice the downward ones.
-fn count(ratios: &[Ratio]) -> f64 {
+fn count(ratios: &[TofRatio]) -> f64 {
     let (up, down) = crossings(ratios);
     up.len() as f64 * UPWARD + down.len() as f64 * DOWNWARD
 }
 
 /// Whether a ratio is 1 within its accuracy.
-fn is_open(ratio: &Ratio) -> bool {
+fn is_open(ratio: &TofRatio) -> bool {
     (ratio.incident - 1.0).abs() <= ratio.accuracy()
 }
 
 /// The smallest or largest count when every ratio that is 1 within its accuracy
 /// may lie below or above it: of all ways to end below and above 1, the best
 /// is carried from ratio to ratio.
-fn extreme_count(ratios: &[Ratio], pick: fn(f64, f64) -> f64) -> f64 {
+fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
     // What is impossible is not a number, which `pick` passes over.
-    let possible = |r: &Ratio, below: bool| match is_open(r) || (r.incident < 1.0) == below {
+    let possible = |r: &TofRatio, below: bool| match is_open(r) || (r.incident < 1.0) == below {
         true => 0.0,
         false => f64::NAN,
     };
-    let sides = |r: &Ratio| (possible(r, true), possible(r, false));
+    let sides = |r: &TofRatio| (possible(r, true), possible(r, false));
     let mut all = ratios.iter().map(sides);
     let first = all.next().unwrap_or_default();
     let (below, above) = all.fold(first, |(was_below, was_above), (below, above)| {
@@ -327,7 +327,7 @@ fn extreme_count(ratios: &[Ratio], pick: fn(f64, f64) -> f64) -> f64 {
 
 /// By how much the count may be wrong. 0 when no ratio is so near to 1 that its
 /// side matters, for then the count is that of the exact ratios.
-fn count_accuracy(ratios: &[Ratio]) -> f64 {
+fn count_accuracy(ratios: &[TofRatio]) -> f64 {
     let value = count(ratios);
     let (least, most) = (
         extreme_count(ratios, f64::min),
@@ -337,9 +337,9 @@ fn count_accuracy(ratios: &[Ratio]) -> f64 {
 }
 
 /// The ratio that is nearest to 1, by its accuracies.
-fn nearest_to_1(ratios: &[Ratio]) -> Option<&Ratio> {
-    let by_accuracy = |r: &&Ratio| (r.incident - 1.0).abs() / r.accuracy();
-    let near = |a: &&Ratio, b: &&Ratio| by_accuracy(a).total_cmp(&by_accuracy(b));
+fn nearest_to_1(ratios: &[TofRatio]) -> Option<&TofRatio> {
+    let by_accuracy = |r: &&TofRatio| (r.incident - 1.0).abs() / r.accuracy();
+    let near = |a: &&TofRatio, b: &&TofRatio| by_accuracy(a).total_cmp(&by_accuracy(b));
     ratios.iter().min_by(near)
 }
 
@@ -366,9 +366,9 @@ pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> Finding
 }
 
 /// The passages of 1, and the ratio nearest to it, in words.
-fn passages(ratios: &[Ratio], nearest: &Ratio) -> String {
+fn passages(ratios: &[TofRatio], nearest: &TofRatio) -> String {
     let (up, down) = crossings(ratios);
-    let end = |r: Option<&Ratio>| {
+    let end = |r: Option<&TofRatio>| {
         r.map_or(String::new(), |r| {
             format!("{:.5} at {} m/s", r.incident, r.speed_m_s)
         })
