@@ -68,7 +68,7 @@ impl Panel {
 #[derive(Debug, Clone)]
 pub struct Figure {
     width_mm: f64,
-    height_mm: f64,
+    pub(crate) height_mm: f64,
     columns: usize,
     panels: Vec<Panel>,
     letters: bool,
