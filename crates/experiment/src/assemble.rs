@@ -1,116 +1,98 @@
 //! From what a file says to a chain for one impact speed.
+//!
+//! K or A of one contact may stand for a section. Sphere on plane is √2 stiffer than sphere on
+//! like sphere, and unlike beads or materials make each contact another. A number that materials
+//! and radii would give is therefore that of a reference contact: value at contact c = number ·
+//! own value at c / own value at the reference contact.
 
-use crate::finding::Problem;
-use crate::keys::ranges::SPEED;
-use crate::reference;
-use crate::spec::{Far, Near, Shape, Spec};
+use crate::bodies::sphere_mass_kg;
+use crate::contacts::{self, CONTACT, LawSpec, SectionSpec};
+use crate::experiment::Experiment;
+use crate::keys::SPEED;
+use crate::report::{FileProblem, short};
+use crate::settings::{BodyShape, Far, Near};
+use crate::spec::Spec;
 use crate::validity;
-use crate::value::short;
-use hertzchain_chain::{Bead, Chain, FarEnd, Gap, Initial, Material, Section, Start};
+use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
+use std::ops::RangeInclusive;
 
-/// A chain and its warnings.
-pub(crate) type Assembled = (Chain, Vec<Problem>);
-
-/// The chain of an experiment, hit at this speed.
-pub(crate) fn chain(spec: &Spec, speed_m_s: Option<f64>) -> Result<Assembled, Problem> {
+/// The chain of an experiment, hit at this speed, and warnings about it.
+pub(crate) fn chain(
+    spec: &Spec,
+    speed_m_s: Option<f64>,
+) -> Result<(Chain, Vec<FileProblem>), FileProblem> {
     let speed_m_s = striker_speed(spec, speed_m_s)?;
     let (materials, mut warnings) = materials(spec, speed_m_s)?;
-    let beads = beads(spec, &materials)?;
+    let mut beads = Vec::new();
+    spec.groups
+        .iter()
+        .for_each(|group| group.append(&materials, &mut beads));
+    beads.truncate(spec.bead_count());
     let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
-        return Err(Problem::new(
+        return Err(FileProblem::new(
             &(0..0),
             "the chain has no beads",
             "expected at least one",
         ));
     };
-    let start = start(spec, speed_m_s, first, &materials)?;
-    let far = far(&spec.far, last, &materials);
     warnings.extend(inelastic(spec));
     warnings.extend(closed_gaps(spec));
     let mut chain = Chain {
-        start,
-        far,
-        initial: initial(spec),
+        start: start(spec, speed_m_s, first, &materials)?,
+        far: far(&spec.far, last, &materials),
+        initial: spec.initial.iter().map(|(initial, _)| *initial).collect(),
         push: spec.push,
         sections: sections(spec, &materials, beads.len())?,
-        gaps: gaps(spec),
+        gaps: spec.gaps.iter().map(|(gap, _)| *gap).collect(),
         incline_rad: spec.incline_rad,
         gravity_m_s2: spec.gravity_m_s2,
         suspension_m: spec.suspension_m,
         tension: spec.tension,
         beads,
     };
-    chain.sections = reference::parted(spec, &chain)?;
+    chain.sections = scaled_sections(spec, &chain)?;
     warnings.extend(validity::warnings(spec, &chain));
     Ok((chain, warnings))
 }
 
 /// The speed of the shot: the one asked for, else the file's.
-fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Problem> {
+fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, FileProblem> {
     let limits = SPEED.within(spec.units, "m/s");
-    match (&spec.near, asked_m_s) {
-        (Near::Striker { .. }, Some(speed)) if limits.hold(speed) => Ok(Some(speed)),
-        (Near::Striker { .. }, Some(speed)) => {
-            let message = format!(
-                "a shot at {} was asked for",
-                spec.units.with_unit(&short(speed), "m/s")
-            );
+    let asked = |speed| {
+        let speed = spec.units.with_unit(&short(speed), "m/s");
+        format!("a shot at {speed} was asked for")
+    };
+    match (spec.near.speed_m_s(), asked_m_s) {
+        (Some(_), Some(speed)) if limits.hold(speed) => Ok(Some(speed)),
+        (Some(_), Some(speed)) => {
             let label = format!("expected a positive, finite speed, {}", limits.words);
-            Err(Problem::new(&spec.near_span(), message, label))
+            Err(FileProblem::new(&spec.near.span(), asked(speed), label))
         }
-        (Near::Striker { speed_m_s, .. }, None) => Ok(Some(*speed_m_s)),
-        (_, Some(speed)) => {
-            let asked = spec.units.with_unit(&short(speed), "m/s");
-            let message = format!("a shot at {asked} was asked for, but there is no striker");
-            Err(no_striker(spec, message))
-        }
-        (_, None) => Ok(None),
+        (None, Some(speed)) => Err(no_striker(
+            spec,
+            format!("{}, but there is no striker", asked(speed)),
+        )),
+        (own, None) => Ok(own),
     }
 }
 
-/// What else sets the chain in motion, where a striker is needed.
-pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> Problem {
-    Problem::new(&spec.near_span(), message, "this sets the chain in motion")
+/// A problem where a striker is needed and something else sets the chain in motion.
+pub(crate) fn no_striker(spec: &Spec, message: impl Into<String>) -> FileProblem {
+    FileProblem::new(&spec.near.span(), message, "this sets the chain in motion")
         .help("put a [striker] with a `speed` in its place")
 }
 
-impl Spec {
-    /// Where the file says what sets the chain in motion.
-    fn near_span(&self) -> std::ops::Range<usize> {
-        match &self.near {
-            Near::Striker { shape, .. } | Near::Driven { shape, .. } => shape.span.clone(),
-            Near::Free { span } => span.clone(),
-        }
-    }
-
-    /// Where the file says how fast it is set in motion.
-    pub(crate) fn speed_span(&self) -> std::ops::Range<usize> {
-        match &self.near {
-            Near::Striker { speed_span, .. } => speed_span.clone(),
-            Near::Driven { .. } | Near::Free { .. } => self.near_span(),
-        }
-    }
-
-    /// Whether a case of the campaign names a material.
-    fn case_uses(&self, index: usize) -> bool {
-        let sections = self.cases.iter().filter_map(|case| case.sections.as_ref());
-        let mut materials = sections.flatten().map(|section| section.material);
-        materials.any(|material| material == Some(index))
-    }
-
-    /// Indices of the materials that bodies or contacts of the chain have.
-    pub(crate) fn used_materials(&self) -> Vec<usize> {
-        let parts = self.groups.iter().flat_map(|group| &group.cell);
-        let sections = self.sections.iter().map(|section| section.material);
-        let used = parts.map(|part| part.material).chain(sections);
-        let ends = [self.near.material(), self.far.material()];
-        used.chain(ends).flatten().collect()
-    }
-}
-
 /// Every material at this speed; those without use only cost a warning.
-fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Problem>), Problem> {
+fn materials(
+    spec: &Spec,
+    speed: Option<f64>,
+) -> Result<(Vec<Material>, Vec<FileProblem>), FileProblem> {
     let used = spec.used_materials();
+    let sections = spec.cases.iter().filter_map(|case| case.sections.as_ref());
+    let of_cases: Vec<usize> = sections
+        .flatten()
+        .filter_map(|section| section.material)
+        .collect();
     let mut materials = Vec::new();
     let mut warnings = Vec::new();
     for (index, material) in spec.materials.0.iter().enumerate() {
@@ -118,13 +100,12 @@ fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Prob
             let (values, warning) = material.at(speed)?;
             materials.push(values);
             warnings.extend(warning);
-        } else {
-            materials.push(Material::RIGID);
-            if spec.case_uses(index) {
-                continue;
-            }
+            continue;
+        }
+        materials.push(Material::RIGID);
+        if !of_cases.contains(&index) {
             let message = format!("nothing is made of `{}`", material.name);
-            warnings.push(Problem::new(
+            warnings.push(FileProblem::new(
                 &material.span,
                 message,
                 "this material is not used",
@@ -134,24 +115,15 @@ fn materials(spec: &Spec, speed: Option<f64>) -> Result<(Vec<Material>, Vec<Prob
     Ok((materials, warnings))
 }
 
-fn beads(spec: &Spec, materials: &[Material]) -> Result<Vec<Bead>, Problem> {
-    let mut beads = Vec::new();
-    for group in &spec.groups {
-        group.append(materials, &mut beads);
-    }
-    beads.truncate(spec.bead_count());
-    Ok(beads)
-}
-
 fn start(
     spec: &Spec,
     speed_m_s: Option<f64>,
     first: &Bead,
     materials: &[Material],
-) -> Result<Start, Problem> {
+) -> Result<Start, FileProblem> {
     match (&spec.near, speed_m_s) {
         (Near::Striker { shape, .. }, Some(speed_m_s)) => Ok(Start::Striker {
-            bead: body_0(spec, shape, first, materials)?,
+            bead: striker(spec, shape, first, materials)?,
             speed_m_s,
         }),
         (Near::Driven { shape, motion }, _) => Ok(Start::Driven {
@@ -166,75 +138,68 @@ fn start(
     }
 }
 
-fn material_of(shape: &Shape, materials: &[Material]) -> Option<Material> {
+fn material_of(shape: &BodyShape, materials: &[Material]) -> Option<Material> {
     materials.get(shape.material?).copied()
 }
 
 /// The striker: what the file leaves out is as in bead 1; another size or
 /// material has another mass, which then needs a density.
-fn body_0(
+fn striker(
     spec: &Spec,
-    shape: &Shape,
+    shape: &BodyShape,
     first: &Bead,
     materials: &[Material],
-) -> Result<Bead, Problem> {
+) -> Result<Bead, FileProblem> {
     let radius_m = shape.radius_m.unwrap_or(first.radius_m);
-    let like_bead_1 =
-        shape.radius_m.is_none_or(|r| r == first.radius_m) && shape.material.is_none();
-    let index = shape
-        .material
-        .or_else(|| spec.groups.first()?.cell.first()?.material);
-    let density = index.and_then(|i| spec.materials.0.get(i)?.density_kg_m3);
-    let mass_kg = match (shape.mass_kg, density) {
-        (Some(mass), _) => mass,
-        (None, _) if like_bead_1 => first.mass_kg,
-        (None, Some(density)) => crate::spec::sphere_mass_kg(radius_m, density),
-        (None, None) => {
-            let message = "the striker has no mass";
-            let label = "it differs from bead 1: expected `mass = \"8.54 g\"`, or a density in its \
-                         material";
-            return Err(Problem::new(&shape.span, message, label));
-        }
-    };
+    let like_bead_1 = radius_m == first.radius_m && shape.material.is_none();
+    let of_bead_1 = || spec.groups.first()?.cell.first()?.material;
+    let density = spec
+        .materials
+        .density_kg_m3(shape.material.or_else(of_bead_1));
+    let own = like_bead_1.then_some(first.mass_kg);
+    let full = density.map(|density| sphere_mass_kg(radius_m, density));
+    let label =
+        "it differs from bead 1: expected `mass = \"8.54 g\"`, or a density in its material";
+    let missing = || FileProblem::new(&shape.span, "the striker has no mass", label);
     Ok(Bead {
         radius_m,
-        mass_kg,
+        mass_kg: shape.mass_kg.or(own).or(full).ok_or_else(missing)?,
         material: material_of(shape, materials).unwrap_or(first.material),
     })
 }
 
 fn far(far: &Far, last: &Bead, materials: &[Material]) -> FarEnd {
-    let material = |shape: &Shape| material_of(shape, materials).unwrap_or(last.material);
-    let radius_m = |shape: &Shape| shape.radius_m.unwrap_or(last.radius_m);
     match far {
-        Far::HalfBead { shape, stop_kg } => match stop_kg {
-            None => FarEnd::HalfBead {
-                radius_m: radius_m(shape),
-                material: material(shape),
-            },
-            Some(mass_kg) => FarEnd::Stop {
-                radius_m: radius_m(shape),
-                material: material(shape),
-                mass_kg: *mass_kg,
-            },
-        },
-        Far::Plane { shape, stop_kg } => match stop_kg {
-            None => FarEnd::Plane {
-                material: material(shape),
-            },
-            Some(mass_kg) => FarEnd::PlaneStop {
-                material: material(shape),
-                mass_kg: *mass_kg,
-            },
-        },
+        Far::Wall {
+            is_plane,
+            shape,
+            stop_kg,
+        } => {
+            let material = material_of(shape, materials).unwrap_or(last.material);
+            let radius_m = shape.radius_m.unwrap_or(last.radius_m);
+            match (is_plane, *stop_kg) {
+                (false, None) => FarEnd::HalfBead { radius_m, material },
+                (false, Some(mass_kg)) => FarEnd::Stop {
+                    radius_m,
+                    material,
+                    mass_kg,
+                },
+                (true, None) => FarEnd::Plane { material },
+                (true, Some(mass_kg)) => FarEnd::PlaneStop { material, mass_kg },
+            }
+        }
         Far::Periodic { force_n } => FarEnd::Periodic { force_n: *force_n },
         Far::Free => FarEnd::Free,
     }
 }
 
-fn sections(spec: &Spec, materials: &[Material], beads: usize) -> Result<Vec<Section>, Problem> {
-    let section = |section: &crate::spec::SectionSpec| {
-        let laws = section.laws.iter().map(|law| law.build());
+fn sections(
+    spec: &Spec,
+    materials: &[Material],
+    beads: usize,
+) -> Result<Vec<Section>, FileProblem> {
+    let section = |section: &SectionSpec| {
+        let laws = section.laws.iter().map(|law| law.build(&law.given));
         Ok(Section {
             contacts: section.from..=section.last(beads),
             laws: laws.collect::<Result<_, _>>()?,
@@ -245,33 +210,179 @@ fn sections(spec: &Spec, materials: &[Material], beads: usize) -> Result<Vec<Sec
 }
 
 /// A warning for sections that nothing pushes apart.
-fn inelastic(spec: &Spec) -> impl Iterator<Item = Problem> {
+fn inelastic(spec: &Spec) -> impl Iterator<Item = FileProblem> {
     let inelastic = spec.sections.iter().filter(|section| !section.is_elastic());
     inelastic.map(|section| {
         let message = "no law of these contacts pushes the beads apart";
-        Problem::new(&section.laws_span, message, "an elastic law is missing")
+        FileProblem::new(&section.laws_span, message, "an elastic law is missing")
             .help("add \"elastic_hertz\" to `laws`")
     })
 }
 
 /// A warning for gaps in contacts that are pressed together at rest.
-fn closed_gaps(spec: &Spec) -> impl Iterator<Item = Problem> {
+fn closed_gaps(spec: &Spec) -> impl Iterator<Item = FileProblem> {
     let ring = matches!(spec.far, Far::Periodic { force_n } if force_n > 0.0);
     let weighs = spec.incline_rad > 0.0 && spec.gravity_m_s2 > 0.0;
     let pressed = ring || weighs || spec.push.force_n() > 0.0;
-    let closed = (spec.gaps.iter()).filter(move |(gap, _)| pressed && gap.contact > 0);
-    closed
-        .filter(|(gap, _)| gap.gap_m > 0.0)
-        .map(|(gap, span)| {
-            let message = format!("contact {} is pressed together at rest", gap.contact);
-            Problem::new(span, message, "this gap closes and has no effect")
-        })
+    let gaps = spec.gaps.iter().filter(move |_| pressed);
+    let closed = gaps.filter(|(gap, _)| gap.contact > 0 && gap.gap_m > 0.0);
+    closed.map(|(gap, span)| {
+        let message = format!("contact {} is pressed together at rest", gap.contact);
+        FileProblem::new(span, message, "this gap closes and has no effect")
+    })
 }
 
-fn gaps(spec: &Spec) -> Vec<Gap> {
-    spec.gaps.iter().map(|(gap, _)| *gap).collect()
+/// The contacts that a number of a contact law holds for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// The contact whose value the number is; `None` where it is that of all contacts.
+    pub contact: Option<usize>,
+    /// Contacts of the section.
+    pub contacts: RangeInclusive<usize>,
+    /// The reference contact's value by materials and radii, in SI.
+    pub own_value: Option<f64>,
+    /// Least and largest value of the section's contacts over the reference contact's.
+    pub ratios: [f64; 2],
 }
 
-fn initial(spec: &Spec) -> Vec<Initial> {
-    spec.initial.iter().map(|(initial, _)| *initial).collect()
+impl Experiment {
+    /// The contacts that the number at a path holds for, at the experiment's own speed;
+    /// `None` where materials and radii would not give it.
+    pub fn reference(&self, path: &str) -> Option<Reference> {
+        let (section, rest) = path.strip_prefix("contacts[")?.split_once("].laws.")?;
+        let (law, parameter) = rest.split_once('.')?;
+        let at: usize = section.parse().ok()?;
+        let span = &self.tree().list("contacts").get(at)?.span;
+        let (chain, _) = self.chain(None).ok()?;
+        let section = self.sections().iter().find(|own| own.span == *span)?;
+        let law = section.laws.iter().find(|own| own.name() == law)?;
+        let mut parameters = law.row.info.parameters.iter();
+        let derived = parameters.any(|p| p.name == parameter && contacts::is_derived(p));
+        derived.then(|| Reference::of(section, law, parameter, &chain))
+    }
+}
+
+impl Reference {
+    fn of(section: &SectionSpec, law: &LawSpec, parameter: &str, chain: &Chain) -> Self {
+        let mut sections = chain.sections.iter();
+        let own = sections.find(|own| own.contacts.contains(&section.from));
+        let bodies = of_one_material(chain, own.and_then(|own| own.material));
+        let value = |contact: usize| own_value(law.name(), parameter, &bodies.pair(contact)?);
+        let (first, last) = (section.from, section.last(chain.beads.len()));
+        let contact = law.reference(parameter).or_else(|| {
+            // A contact between beads stands for the section, not that at either end.
+            let mut inner_first = (first.max(1)..last).chain([first, last]);
+            let is_given = law.value(parameter).is_some();
+            let stands = |contact: &usize| value(*contact).is_some_and(|own| own > 0.0);
+            inner_first.find(|contact| !is_given && stands(contact))
+        });
+        let own_value = contact.and_then(value);
+        let ratio = |contact: usize| Some(value(contact)? / own_value?);
+        let [least, most] = (first..=last).filter_map(ratio).fold(
+            [f64::INFINITY, f64::NEG_INFINITY],
+            |[least, most], ratio| [least.min(ratio), most.max(ratio)],
+        );
+        Self {
+            contact,
+            contacts: first..=last,
+            own_value,
+            ratios: if least <= most {
+                [least, most]
+            } else {
+                [1.0; 2]
+            },
+        }
+    }
+}
+
+/// A parameter's value by materials and radii of a contact; `None` where they give none.
+fn own_value(law: &str, parameter: &str, pair: &Pair) -> Option<f64> {
+    let value = match (law, parameter) {
+        (_, "stiffness") => pair.hertz_stiffness(),
+        ("damping_brilliantov_1996", _) => {
+            pair.mean_relaxation_time_s(Material::relaxation_time_1996_s)
+        }
+        (_, "relaxation_time") => pair.mean_relaxation_time_s(Material::relaxation_time_s),
+        _ => return None,
+    };
+    (value.is_finite() && value >= 0.0).then_some(value)
+}
+
+/// The chain with all contacts of one material, or each of its bodies' own.
+fn of_one_material(chain: &Chain, material: Option<Material>) -> Chain {
+    let section = Section {
+        contacts: 0..=chain.beads.len(),
+        laws: Vec::new(),
+        material,
+    };
+    Chain {
+        sections: vec![section],
+        ..chain.clone()
+    }
+}
+
+/// Sections in which each contact has its own values of what belongs to a reference
+/// contact: those of a chain, divided where values change.
+fn scaled_sections(spec: &Spec, chain: &Chain) -> Result<Vec<Section>, FileProblem> {
+    let mut all = Vec::new();
+    for (of, section) in spec.sections.iter().zip(&chain.sections) {
+        if of.laws.iter().all(|law| law.references.is_empty()) {
+            all.push(section.clone());
+            continue;
+        }
+        let bodies = of_one_material(chain, section.material);
+        let mut before = None;
+        for contact in section.contacts.clone() {
+            let values = of.laws.iter().map(|law| scaled(law, &bodies, contact));
+            let values: Vec<Given> = values.collect::<Result<_, _>>()?;
+            match all.last_mut() {
+                Some(Section { contacts, .. }) if before.as_ref() == Some(&values) => {
+                    *contacts = *contacts.start()..=contact;
+                }
+                _ => {
+                    let laws = of
+                        .laws
+                        .iter()
+                        .zip(&values)
+                        .map(|(law, given)| law.build(given));
+                    all.push(Section {
+                        contacts: contact..=contact,
+                        laws: laws.collect::<Result<_, _>>()?,
+                        material: section.material,
+                    });
+                }
+            }
+            before = Some(values);
+        }
+    }
+    Ok(all)
+}
+
+/// Values of a law's parameters.
+type Given = Vec<(&'static str, f64)>;
+
+/// Values of a law at a contact, by the ratios of the bodies' own values.
+fn scaled(law: &LawSpec, bodies: &Chain, contact: usize) -> Result<Given, FileProblem> {
+    let value = |(name, value): &(&'static str, f64)| {
+        let Some(reference) = law.reference(name) else {
+            return Ok((*name, *value));
+        };
+        let of = |contact: usize| own_value(law.name(), name, &bodies.pair(contact)?);
+        match (of(contact), of(reference)) {
+            (Some(own), Some(base)) if base > 0.0 => Ok((*name, value * (own / base))),
+            // No pair: a law of no contact.
+            (None, _) if bodies.pair(contact).is_none() => Ok((*name, *value)),
+            _ => {
+                let message = format!(
+                    "materials and radii give no `{name}` at contact {contact} or {reference}, so that no ratio \
+                     of both is known"
+                );
+                let label = format!(
+                    "leave `{CONTACT}` out to give all contacts of the section one `{name}`"
+                );
+                Err(FileProblem::new(&law.span, message, label))
+            }
+        }
+    };
+    law.given.iter().map(value).collect()
 }

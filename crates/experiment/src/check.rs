@@ -1,101 +1,96 @@
 //! A document against the declared keys: every mistake of form at once.
 
-use crate::document::{Entry, Node, Value};
-use crate::finding::Problem;
-use crate::keys::{self, Fields, Key, Kind, Limits, Need, ROOT, Variants, advice};
-use crate::known::Known;
-use crate::laws;
-use crate::nearest;
-use crate::value::{Expected, HAS_NONE, HAS_ONE, Units, short};
+use crate::bodies::expected_material;
+use crate::contacts;
+use crate::document::{Node, TableEntry, Value};
+use crate::keys::{self, Fields, Key, Kind, Need, ROOT, ValueLimits, Variants};
+use crate::report::{FileProblem, nearest_word};
+use crate::spec::BEADS;
+use crate::units;
+use crate::values::{ExpectedQuantity, HAS_NONE, HAS_ONE, POWER_LAW, Units, whole};
 
-/// Checks tables and collects what is wrong.
-#[derive(Debug)]
-pub(crate) struct Check {
-    pub(crate) units: Units,
-    pub(crate) problems: Vec<Problem>,
-    /// Quantities with a dimension that suit the unit system.
-    pub(crate) fitting: usize,
-    known: Known,
+/// Checks a whole document.
+pub(crate) fn check(tree: &Node, units: Units) -> Result<(), Vec<FileProblem>> {
+    let mut check = FormCheck {
+        tree,
+        units,
+        problems: Vec::new(),
+        fitting: 0,
+    };
+    check.table(tree, &ROOT, None);
+    match check.problems.is_empty() {
+        true => Ok(()),
+        false => Err(merge_unit_slips(check)),
+    }
 }
 
-/// The keys of a power law of the striker's speed.
-pub(crate) const POWER_LAW: [&str; 2] = ["prefactor", "exponent"];
+/// A check of tables that collects what is wrong.
+struct FormCheck<'a> {
+    tree: &'a Node,
+    units: Units,
+    problems: Vec<FileProblem>,
+    /// Quantities with a dimension that suit the unit system.
+    fitting: usize,
+}
 
-impl Check {
-    /// A check of this document.
-    pub(crate) fn new(units: Units, tree: &Node) -> Self {
-        Self {
-            units,
-            problems: Vec::new(),
-            fitting: 0,
-            known: Known::of(tree),
-        }
-    }
-
+impl FormCheck<'_> {
     /// Checks a table against its keys; `tag` is a deciding key already read.
-    pub(crate) fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
-        if !matches!(node.value, Value::Table(_)) {
+    fn table(&mut self, node: &Node, fields: &'static Fields, tag: Option<&str>) {
+        if !node.is_table() {
             let message = format!("{} is {}", fields.title, node.kind());
             let label = format!("expected a table, written {}", written(fields));
-            self.add(Problem::new(&node.span, message, label));
-            return;
+            return self.add(&node.span, message, label);
         }
+        let mut misspelt = Vec::new();
         for entry in node.entries() {
             match fields.key(&entry.key) {
                 Some(key) => self.value(key, &entry.node),
                 None if tag == Some(entry.key.as_str()) => {}
-                None => self.unknown(entry, fields, tag),
+                None => {
+                    misspelt.extend(fields.slip_of(&entry.key));
+                    self.unknown(entry, fields, tag);
+                }
             }
         }
-        // A misspelt key is one mistake, and has been reported.
-        let strange = |entry: &&Entry| fields.key(&entry.key).is_none();
-        let strange = node.entries().iter().filter(strange);
-        let misspelt: Vec<&str> = strange.filter_map(|e| slip_of(&e.key, fields)).collect();
-        let missing = |key: &&Key| !misspelt.contains(&key.name);
-        for key in fields.keys.iter().filter(missing) {
-            self.needed(key, node, fields);
-        }
-    }
-
-    pub(crate) fn add(&mut self, problem: Problem) {
-        self.problems.push(problem);
-    }
-
-    fn unknown(&mut self, entry: &Entry, fields: &Fields, tag: Option<&str>) {
-        let known: Vec<&str> = fields.keys.iter().map(|key| key.name).chain(tag).collect();
-        let message = format!("{} has no key `{}`", fields.title, entry.key);
-        let label = format!("expected one of: {}", known.join(", "));
-        let label = if known.is_empty() {
-            "expected nothing here".to_owned()
-        } else {
-            label
-        };
-        let near = slip_of(&entry.key, fields).or_else(|| nearest::of(&entry.key, tag));
-        let problem = Problem::new(&entry.key_span, message, label);
-        let problem = match keys::home(&entry.key) {
-            Some(place) => problem.help(format!("`{}` belongs {place}", entry.key)),
-            None => problem,
-        };
-        self.add(match advice::about(fields.title, &entry.key) {
-            Some(advice) => problem.help(advice),
-            None if fields.title == ROOT.title && is_material(&entry.node) => {
-                problem.help(format!("a material is written [materials.{}]", entry.key))
+        for key in fields.keys {
+            let needed = match key.need {
+                Need::Always => true,
+                Need::InSi => self.units == Units::Si,
+                Need::Never => false,
+            };
+            // A misspelt key is one mistake, and has been reported.
+            if needed && node.get(key.name).is_none() && !misspelt.contains(&key.name) {
+                let message = format!("{} has no `{}`", fields.title, key.name);
+                let label = format!("expected {}: {}", example(key), key.about);
+                self.add(&node.span, message, label);
             }
-            None => problem.nearest(near),
-        });
+        }
     }
 
-    fn needed(&mut self, key: &Key, node: &Node, fields: &Fields) {
-        let needed = match key.need {
-            Need::Always => true,
-            Need::InSi => self.units == Units::Si,
-            Need::Never => false,
+    fn add(&mut self, span: &std::ops::Range<usize>, message: String, label: impl Into<String>) {
+        self.problems.push(FileProblem::new(span, message, label));
+    }
+
+    fn unknown(&mut self, entry: &TableEntry, fields: &Fields, tag: Option<&str>) {
+        let key = &entry.key;
+        let names: Vec<&str> = fields.names().into_iter().chain(tag).collect();
+        let label = match names.is_empty() {
+            true => "expected nothing here".to_owned(),
+            false => format!("expected one of: {}", names.join(", ")),
         };
-        if needed && node.get(key.name).is_none() {
-            let message = format!("{} has no `{}`", fields.title, key.name);
-            let label = format!("expected {}: {}", example(key), key.about);
-            self.add(Problem::new(&node.span, message, label));
+        let message = format!("{} has no key `{key}`", fields.title);
+        let mut problem = FileProblem::new(&entry.key_span, message, label);
+        if let Some(place) = keys::home(key) {
+            problem = problem.help(format!("`{key}` belongs {place}"));
         }
+        self.problems
+            .push(match keys::advice_on_key(fields.title, key) {
+                Some(advice) => problem.help(advice),
+                None if fields.title == ROOT.title && is_material(&entry.node) => {
+                    problem.help(format!("a material is written [materials.{key}]"))
+                }
+                None => problem.nearest(fields.slip_of(key).or_else(|| nearest_word(key, tag))),
+            });
     }
 
     fn value(&mut self, key: &'static Key, node: &Node) {
@@ -105,11 +100,11 @@ impl Check {
             Kind::Quantities(unit) => {
                 let before = self.problems.len();
                 self.each(key, node, |check, member| {
-                    check.quantity(key.name, unit, Limits::ANY, member);
+                    check.quantity(key.name, unit, ValueLimits::ANY, member);
                 });
                 // A slip that all members share is one mistake.
                 let mut own = self.problems.split_off(before);
-                own.dedup_by(|next, first| next.same_message(first));
+                own.dedup_by(|next, first| next.message == first.message);
                 self.problems.append(&mut own);
             }
             Kind::Count { least, most } => self.count(key.name, *least, *most, node),
@@ -124,14 +119,15 @@ impl Check {
                 self.kind(key, node, "true or false", fits);
             }
             Kind::Table(fields) => self.table(node, fields, None),
-            Kind::Tables(fields) => self.each(key, node, |check, member| {
-                check.table(member, fields, None);
-            }),
+            Kind::Tables(fields) => {
+                self.each(key, node, |check, member| check.table(member, fields, None));
+            }
             Kind::Named(fields) => self.named(key, node, fields),
             Kind::Variants(variants) => self.variants(node, variants),
             Kind::Laws => self.each(key, node, |check, member| {
-                let mut problems = laws::check(member, check.units);
-                check.problems.append(&mut problems);
+                check
+                    .problems
+                    .extend(contacts::check_law(member, check.units));
             }),
         }
     }
@@ -139,11 +135,7 @@ impl Check {
     fn kind(&mut self, key: &Key, node: &Node, expected: &str, fits: bool) {
         if !fits {
             let message = format!("`{}` is {}", key.name, node.kind());
-            self.add(Problem::new(
-                &node.span,
-                message,
-                format!("expected {expected}"),
-            ));
+            self.add(&node.span, message, format!("expected {expected}"));
         }
     }
 
@@ -153,236 +145,206 @@ impl Check {
             return;
         }
         let message = format!("`material` is {}, not a name in quotes", node.kind());
-        let problem = Problem::new(&node.span, message, self.known.expected_material());
-        self.add(match node.value {
-            Value::Table(_) => problem.help("write it as a table of its own, [materials.NAME]"),
-            _ => problem,
+        let materials = self.tree.get("materials").map_or(&[][..], Node::entries);
+        let names: Vec<&str> = materials.iter().map(|entry| entry.key.as_str()).collect();
+        let problem = FileProblem::new(&node.span, message, expected_material(&names));
+        self.problems.push(match node.is_table() {
+            true => problem.help("write it as a table of its own, [materials.NAME]"),
+            false => problem,
         });
     }
 
     fn each(&mut self, key: &Key, node: &Node, mut check: impl FnMut(&mut Self, &Node)) {
-        match &node.value {
-            Value::List(members) if members.is_empty() && !matches!(key.kind, Kind::Counts) => {
+        match (&node.value, &key.kind) {
+            (Value::List(members), Kind::Counts) => members.iter().for_each(|m| check(self, m)),
+            (Value::List(members), _) if members.is_empty() => {
                 let message = format!("`{}` is empty", key.name);
-                self.add(Problem::new(
-                    &node.span,
-                    message,
-                    "expected at least one member",
-                ));
+                self.add(&node.span, message, "expected at least one member");
             }
-            Value::List(members) => members.iter().for_each(|member| check(self, member)),
-            _ => {
-                let expected = match key.kind {
-                    Kind::Tables(fields) => {
-                        format!("a list of tables, written {}", written(fields))
-                    }
-                    _ => "a list in [ ]".to_owned(),
-                };
+            (Value::List(members), _) => members.iter().for_each(|m| check(self, m)),
+            (_, Kind::Tables(fields)) => {
+                let expected = format!("a list of tables, written {}", written(fields));
                 self.kind(key, node, &expected, false);
             }
+            _ => self.kind(key, node, "a list in [ ]", false),
         }
     }
 
-    fn quantity(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
-        let expected = Expected {
+    fn quantity(&mut self, name: &str, unit: &str, limits: ValueLimits, node: &Node) {
+        let units = self.units;
+        match (ExpectedQuantity {
             name,
             unit,
             limits,
-            units: self.units,
-        };
-        match expected.read(node) {
+            units,
+        })
+        .read(node)
+        {
             Ok(_) => self.fitting += usize::from(unit != "1"),
-            Err(problem) => self.add(problem),
+            Err(problem) => self.problems.push(problem),
         }
     }
 
-    fn scaled(&mut self, name: &str, unit: &str, limits: Limits, node: &Node) {
-        if !matches!(node.value, Value::Table(_)) {
+    fn scaled(&mut self, name: &str, unit: &str, limits: ValueLimits, node: &Node) {
+        if !node.is_table() {
             return self.quantity(name, unit, limits, node);
+        }
+        let mut misspelt = Vec::new();
+        for entry in node.entries() {
+            if !POWER_LAW.contains(&entry.key.as_str()) {
+                let near = nearest_word(&entry.key, POWER_LAW);
+                misspelt.extend(near);
+                let message = format!("a power law has no key `{}`", entry.key);
+                let problem =
+                    FileProblem::new(&entry.key_span, message, "expected prefactor, exponent");
+                self.problems.push(problem.nearest(near));
+            }
         }
         for (part, unit) in POWER_LAW.into_iter().zip([unit, "1"]) {
             match node.get(part) {
-                Some(value) => self.quantity(part, unit, Limits::ANY, value),
-                None if is_slip_of(part, node) => {}
+                Some(value) => self.quantity(part, unit, ValueLimits::ANY, value),
+                None if misspelt.contains(&part) => {}
                 None => {
-                    let message = format!("`{name}` has no `{part}`");
                     let label = "expected { prefactor = …, exponent = … }, a power law of the \
                                  striker's speed in m/s";
-                    self.add(Problem::new(&node.span, message, label));
+                    self.add(&node.span, format!("`{name}` has no `{part}`"), label);
                 }
-            }
-        }
-        for entry in node.entries() {
-            if !POWER_LAW.contains(&entry.key.as_str()) {
-                let message = format!("a power law has no key `{}`", entry.key);
-                let problem =
-                    Problem::new(&entry.key_span, message, "expected prefactor, exponent");
-                self.add(problem.nearest(nearest::of(&entry.key, POWER_LAW)));
             }
         }
     }
 
     fn count(&mut self, name: &str, least: i64, most: i64, node: &Node) {
-        if let Err(problem) = whole(name, least, most, node) {
-            // The same, with what this chain has.
-            let problem = match self.known.range(name) {
-                Some((least, most)) => whole(name, least, most, node).err().unwrap_or(problem),
-                None => problem,
-            };
-            self.add(match Known::counting(name) {
-                Some(help) => problem.help(help),
-                None => problem,
-            });
-        }
+        let Err(problem) = whole(name, least, most, node) else {
+            return;
+        };
+        let (first, help) = match name {
+            "bead" | "beads" => (1, BEADS),
+            "from" | "to" | "contact" | "contacts" => (
+                0,
+                "contact 0 lies before bead 1, contact c between beads c and c + 1, the last one \
+                 between the last bead and the wall",
+            ),
+            "positions" | "velocities" => (0, "body 0 is the striker, beads are counted from 1"),
+            _ => return self.problems.push(problem),
+        };
+        // The same, with the length of this chain.
+        let own = bead_count(self.tree).and_then(|beads| whole(name, first, beads, node).err());
+        self.problems.push(own.unwrap_or(problem).help(help));
     }
 
     fn choice(&mut self, name: &str, options: &[&str], node: &Node) {
-        if node.text().is_some_and(|text| options.contains(&text)) {
-            return;
-        }
+        let text = node.text().unwrap_or_default();
         let message = match node.text() {
+            Some(text) if options.contains(&text) => return,
             Some(text) => format!("`{name}` has no option \"{text}\""),
             None => format!("`{name}` is {}", node.kind()),
         };
         let label = format!("expected one of: \"{}\"", options.join("\", \""));
-        let problem = Problem::new(&node.span, message, label);
-        let text = node.text().unwrap_or_default();
-        self.add(match advice::option(name, text) {
-            Some(advice) => problem.help(advice),
-            None => problem.nearest(nearest::of(text, options.iter().copied())),
-        });
+        let problem = FileProblem::new(&node.span, message, label);
+        self.problems
+            .push(match keys::advice_on_option(name, text) {
+                Some(advice) => problem.help(advice),
+                None => problem.nearest(nearest_word(text, options.iter().copied())),
+            });
     }
 
     fn named(&mut self, key: &Key, node: &Node, fields: &'static Fields) {
-        self.kind(
-            key,
-            node,
-            &format!("tables with names, such as [{}.steel]", key.name),
-            matches!(node.value, Value::Table(_)),
-        );
-        let bare = |entry: &&Entry| !matches!(entry.node.value, Value::Table(_));
-        if let Some(entry) = node.entries().iter().find(bare) {
-            let message = format!("`{}` stands in [{}] itself", entry.key, key.name);
+        let name = key.name;
+        let expected = format!("tables with names, such as [{name}.steel]");
+        self.kind(key, node, &expected, node.is_table());
+        if let Some(entry) = node.entries().iter().find(|entry| !entry.node.is_table()) {
             let label = match entry.node.value {
-                Value::List(_) => format!("expected a table, written [{}.{}]", key.name, entry.key),
-                _ => format!(
-                    "expected it in a table with a name, such as [{}.steel]",
-                    key.name
-                ),
+                Value::List(_) => format!("expected a table, written [{name}.{}]", entry.key),
+                _ => format!("expected it in a table with a name, such as [{name}.steel]"),
             };
-            return self.add(Problem::new(&entry.key_span, message, label));
+            let message = format!("`{}` stands in [{name}] itself", entry.key);
+            return self.add(&entry.key_span, message, label);
         }
         for entry in node.entries() {
-            match inner_material(entry) {
-                Some(inner) => self.add(name_with_point(key, entry, inner)),
+            // A material inside another table of materials, for want of quotes.
+            let mut inner = entry.node.entries().iter();
+            match inner.find(|inner| is_material(&inner.node) && !is_material(&entry.node)) {
+                Some(inner) => {
+                    let (outer, inner_key) = (&entry.key, &inner.key);
+                    let message =
+                        format!("a point parts the name `{outer}.{inner_key}` in two tables");
+                    let label = format!(
+                        "expected one name: [{name}.{inner_key}] or [{name}.\"{outer}.{inner_key}\"]"
+                    );
+                    self.add(&inner.key_span, message, label);
+                }
                 None => self.table(&entry.node, fields, None),
             }
         }
     }
 
     fn variants(&mut self, node: &Node, variants: &'static Variants) {
-        let options: Vec<&str> = variants.options.iter().map(|(name, _)| *name).collect();
-        let Some(tag) = node.get(variants.tag) else {
-            return self.untagged(node, variants, &options);
-        };
-        self.choice(variants.tag, &options, tag);
-        if let Some(fields) = tag.text().and_then(|tag| variants.fields(tag)) {
-            self.table(node, fields, Some(variants.tag));
-        }
-    }
-
-    /// A table without its deciding key, at the key that may stand for it.
-    fn untagged(&mut self, node: &Node, variants: &Variants, options: &[&str]) {
-        if !matches!(node.value, Value::Table(_)) {
-            let message = format!("{} is {}", variants.title, node.kind());
-            return self.add(Problem::new(&node.span, message, "expected a table"));
-        }
         let (title, tag) = (variants.title, variants.tag);
+        let options: Vec<&str> = variants.options.iter().map(|(name, _)| *name).collect();
+        if let Some(option) = node.get(tag) {
+            self.choice(tag, &options, option);
+            if let Some(fields) = option.text().and_then(|option| variants.fields(option)) {
+                self.table(node, fields, Some(tag));
+            }
+            return;
+        }
+        if !node.is_table() {
+            let message = format!("{title} is {}", node.kind());
+            return self.add(&node.span, message, "expected a table");
+        }
+        // Without its deciding key, the problem is at a key that may stand for it.
         let label = format!("expected {tag} = \"{}\"", options.join("\" or \""));
         let known = |key: &str| variants.options.iter().any(|(_, f)| f.key(key).is_some());
-        let mut entries = node.entries().iter();
-        self.add(match entries.find(|entry| !known(&entry.key)) {
-            Some(entry) => {
-                let message = format!("{title} has no key `{}`, and needs `{tag}`", entry.key);
-                let advice = entry.node.text().and_then(|text| advice::option(tag, text));
-                let problem = Problem::new(&entry.key_span, message, label);
-                match advice {
-                    Some(advice) => problem.help(advice),
-                    None => problem,
-                }
-            }
-            None => Problem::new(&node.span, format!("{title} has no `{tag}`"), label),
+        let Some(entry) = node.entries().iter().find(|entry| !known(&entry.key)) else {
+            return self.add(&node.span, format!("{title} has no `{tag}`"), label);
+        };
+        let message = format!("{title} has no key `{}`, and needs `{tag}`", entry.key);
+        let advice = entry
+            .node
+            .text()
+            .and_then(|text| keys::advice_on_option(tag, text));
+        let problem = FileProblem::new(&entry.key_span, message, label);
+        self.problems.push(match advice {
+            Some(advice) => problem.help(advice),
+            None => problem,
         });
     }
 }
 
-/// A whole number within limits.
-pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i64, Problem> {
-    let words = match most {
-        i64::MAX => format!("expected a whole number from {least}"),
-        _ => format!("expected a whole number from {least} to {most}"),
+/// Number of beads N of a file not yet checked; `None` where a group has no valid count.
+fn bead_count(tree: &Node) -> Option<i64> {
+    let count = |table: &Node, key: &str| match table.get(key).map(|node| &node.value) {
+        None => Some(1),
+        // A chain has at most some millions of beads.
+        Some(Value::Number(number)) if (1.0..1e9).contains(&number.value) => {
+            Some(number.value as i64)
+        }
+        Some(_) => None,
     };
-    let problem = |message: String| Problem::new(&node.span, message, words.clone());
-    let Value::Number(number) = &node.value else {
-        return Err(problem(format!("`{name}` is {}", node.kind())));
+    let group = |table: &Node| match table.get("cell") {
+        None => count(table, "count"),
+        Some(cell) => {
+            let parts = cell.members().iter().map(|part| count(part, "count"));
+            parts
+                .sum::<Option<i64>>()?
+                .checked_mul(count(table, "repeat")?)
+        }
     };
-    let value = number.value;
-    // Whole numbers beyond 2^53 are not distinguished by a double.
-    if value.fract() != 0.0 || value.abs() > 9e15 || !value.is_finite() {
-        let message = match value.fract() == 0.0 {
-            true => format!("`{name}` = {} is too large", short(value)),
-            false => format!("`{name}` = {} is not a whole number", short(value)),
-        };
-        return Err(problem(message));
-    }
-    let found = value as i64;
-    if (least..=most).contains(&found) {
-        Ok(found)
-    } else {
-        Err(problem(format!("`{name}` = {found} is out of range")))
-    }
+    let beads: i64 = tree.list("beads").iter().map(group).sum::<Option<i64>>()?;
+    (beads > 0).then_some(beads)
 }
 
-/// Whether a table says what only materials say.
+/// Whether a table has keys that only materials have.
 fn is_material(node: &Node) -> bool {
     node.get("young_modulus").is_some() || node.get("poisson_ratio").is_some()
 }
 
-/// A material inside another table of materials, for want of quotes.
-fn inner_material(entry: &Entry) -> Option<&Entry> {
-    let mut inner = entry.node.entries().iter();
-    let inner = inner.find(|inner| is_material(&inner.node));
-    inner.filter(|_| !is_material(&entry.node))
-}
-
-fn name_with_point(key: &Key, outer: &Entry, inner: &Entry) -> Problem {
-    let name = format!("{}.{}", outer.key, inner.key);
-    let message = format!("a point parts the name `{name}` in two tables");
-    let label = format!(
-        "expected one name: [{0}.{1}] or [{0}.\"{name}\"]",
-        key.name, inner.key
-    );
-    Problem::new(&inner.key_span, message, label)
-}
-
-/// Whether a key that a power law does not know is a slip of this one.
-fn is_slip_of(part: &str, node: &Node) -> bool {
-    let mut strange = (node.entries().iter()).filter(|e| !POWER_LAW.contains(&e.key.as_str()));
-    strange.any(|entry| nearest::of(&entry.key, POWER_LAW) == Some(part))
-}
-
-/// How a table is written in a file.
+/// The form of a table in a file.
 fn written(fields: &Fields) -> &'static str {
     match fields.title.starts_with('[') {
         true => fields.title,
         false => "{ key = value, … }",
     }
-}
-
-/// The key of a table that another word was probably meant for.
-fn slip_of(word: &str, fields: &Fields) -> Option<&'static str> {
-    let known: Vec<&'static str> = fields.keys.iter().map(|key| key.name).collect();
-    advice::meant(word, &known).or_else(|| nearest::of(word, known))
 }
 
 /// A key with a value, as an example of what is missing.
@@ -391,9 +353,8 @@ fn example(key: &Key) -> String {
     match &key.kind {
         Kind::Quantity("1", _) | Kind::Scaled("1", _) => format!("`{name} = 0.3`"),
         Kind::Quantity(unit, _) | Kind::Scaled(unit, _) => {
-            let dimension = crate::units::parse_unit(unit).map(|unit| unit.dimension);
-            let example = dimension.map_or_else(|_| String::new(), |d| d.example());
-            format!("`{name} = \"{example}\"`")
+            let example = units::parse_unit(unit).map(|unit| unit.dimension.example());
+            format!("`{name} = \"{}\"`", example.unwrap_or_default())
         }
         Kind::Tables(_) => format!("a table [[{name}]]"),
         Kind::Count { .. } => format!("`{name} = 1`"),
@@ -404,48 +365,35 @@ fn example(key: &Key) -> String {
 
 /// The problems of a file, with one in place of all about units where no
 /// quantity at all suits the file's unit system.
-pub(crate) fn merge_unit_slips(
-    problems: Vec<Problem>,
-    fitting: usize,
-    units: Units,
-    tree: &Node,
-) -> Vec<Problem> {
-    let about_units = |problem: &Problem| match units {
-        Units::Si => problem.says(HAS_NONE),
-        Units::Dimensionless => problem.says(HAS_ONE),
+fn merge_unit_slips(check: FormCheck<'_>) -> Vec<FileProblem> {
+    let end = match check.units {
+        Units::Si => HAS_NONE,
+        Units::Dimensionless => HAS_ONE,
     };
-    let (slips, mut others): (Vec<Problem>, Vec<Problem>) =
-        problems.into_iter().partition(about_units);
-    match slips.first() {
-        Some(first) if fitting == 0 && slips.len() > 1 => {
-            others.insert(0, unit_slip(first, slips.len(), units, tree));
-            others
+    let (slips, mut others): (Vec<FileProblem>, Vec<FileProblem>) =
+        (check.problems.into_iter()).partition(|problem| problem.message.ends_with(end));
+    match &slips[..] {
+        [first, _, ..] if check.fitting == 0 => {
+            let count = slips.len();
+            others.insert(0, match (check.units, check.tree.get("units")) {
+                (Units::Dimensionless, Some(node)) => {
+                    let message = format!("this file is dimensionless, but its {count} quantities have units");
+                    let label = "expected \"SI\", or plain numbers throughout";
+                    FileProblem::new(&node.span, message, label)
+                        .also(&first.span, "the first quantity with a unit")
+                }
+                _ => {
+                    let message = format!("none of the {count} quantities of this file has a unit");
+                    let label = "the first: expected a unit, as in \"6.35 mm\"";
+                    FileProblem::new(&first.span, message, label)
+                        .help("where plain numbers are meant, write units = \"dimensionless\" at the top")
+                }
+            });
         }
         _ => {
             others.extend(slips);
-            others.sort_by_key(Problem::start);
-            others
+            others.sort_by_key(|problem| problem.span.start);
         }
     }
-}
-
-fn unit_slip(first: &Problem, count: usize, units: Units, tree: &Node) -> Problem {
-    match (units, tree.get("units")) {
-        (Units::Dimensionless, Some(node)) => {
-            let message =
-                format!("this file is dimensionless, but its {count} quantities have units");
-            Problem::new(
-                &node.span,
-                message,
-                "expected \"SI\", or plain numbers throughout",
-            )
-            .beside(first.place(), "the first quantity with a unit")
-        }
-        _ => {
-            let message = format!("none of the {count} quantities of this file has a unit");
-            let label = "the first: expected a unit, as in \"6.35 mm\"";
-            Problem::new(first.place(), message, label)
-                .help("where plain numbers are meant, write units = \"dimensionless\" at the top")
-        }
-    }
+    others
 }

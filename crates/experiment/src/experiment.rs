@@ -1,22 +1,21 @@
-//! An experiment: a file that has been read, checked and understood.
+//! An experiment: a file that has been read and checked; and those that come with the program.
 
-use crate::apply::apply;
 use crate::assemble;
-use crate::check::{self, Check};
-use crate::document::{self, Entry, Node, Value};
-use crate::effort;
-use crate::file;
-use crate::finding::{Mistakes, Problem, Source, Warning};
+use crate::check::check;
+use crate::contacts::SectionSpec;
+use crate::document::{self, Node, Number, Value};
 use crate::keys::ROOT;
-use crate::locate;
 use crate::reading::{Pick, Reading};
-use crate::spec::{Campaign, Liquid, MaterialSpec, Rig, SectionSpec, Solver, Spec};
+use crate::report::{FileProblem, Mistakes, Source, Warning, nearest_word};
+use crate::rig::{Campaign, Rig};
+use crate::settings::{Liquid, Solver};
+use crate::spec::Spec;
 use crate::validity;
-use crate::value::Units;
-use crate::view::View;
+use crate::values::{Units, View};
 use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -26,9 +25,9 @@ pub struct Experiment {
     source: Source,
     folder: PathBuf,
     tree: Node,
-    /// What the file says, before any reading.
+    /// As the file says, before any reading.
     written: Spec,
-    /// What holds in the reading.
+    /// As it holds in the reading.
     spec: Spec,
 }
 
@@ -55,7 +54,7 @@ impl Experiment {
     /// An unreadable file, or every mistake found in it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let text = file::read(path).map_err(|error| OpenError::Unreadable {
+        let text = document::read_text(path).map_err(|error| OpenError::Unreadable {
             path: path.display().to_string(),
             error,
         })?;
@@ -75,37 +74,42 @@ impl Experiment {
     }
 
     /// The experiment of a tree, in a reading or the tree's own.
-    pub(crate) fn from_tree(
+    fn from_tree(
         source: Source,
         folder: PathBuf,
         tree: Node,
         reading: Option<&Reading>,
     ) -> Result<Self, Mistakes> {
+        let refused = |problem| Mistakes::new(vec![problem], &source);
         if tree.entries().is_empty() {
-            let problem = Problem::new(&(0..0), "this experiment is empty", "expected keys here");
+            let problem =
+                FileProblem::new(&(0..0), "this experiment is empty", "expected keys here");
             let help = "`hertzchain presets dry` prints an experiment to start from";
-            return Err(Mistakes::one(problem.help(help), &source));
+            return Err(refused(problem.help(help)));
         }
-        let units = units(&tree);
-        let mut check = Check::new(units, &tree);
-        check.table(&tree, &ROOT, None);
-        if !check.problems.is_empty() {
-            let problems = check::merge_unit_slips(check.problems, check.fitting, units, &tree);
-            return Err(Mistakes::new(problems, &source));
-        }
-        let root = View {
-            node: &tree,
-            fields: &ROOT,
-            units,
+        let units = match tree.get("units").and_then(Node::text) {
+            Some("dimensionless") => Units::Dimensionless,
+            _ => Units::Si,
         };
-        let written = Spec::read(&root, &folder).map_err(|p| Mistakes::one(p, &source))?;
+        check(&tree, units).map_err(|problems| Mistakes::new(problems, &source))?;
+        let (node, fields) = (&tree, &ROOT);
+        let written = Spec::read(
+            &View {
+                node,
+                fields,
+                units,
+            },
+            &folder,
+        )
+        .map_err(refused)?;
         let reading = *reading.unwrap_or(&written.reading);
+        let spec = written.clone();
         let experiment = Self {
-            spec: written.clone(),
             source,
             folder,
             tree,
             written,
+            spec,
         };
         experiment.with_reading(&reading)
     }
@@ -115,7 +119,7 @@ impl Experiment {
     /// # Errors
     /// When the reading leaves something outside the chain.
     pub fn with_reading(&self, reading: &Reading) -> Result<Self, Mistakes> {
-        let spec = apply(&self.written, reading);
+        let spec = reading.apply(&self.written);
         spec.check_layout().map_err(|p| self.mistake(p))?;
         let experiment = Self {
             spec,
@@ -160,31 +164,31 @@ impl Experiment {
         speed_m_s: Option<f64>,
     ) -> Result<(Chain, System, Vec<Warning>), Mistakes> {
         let (chain, warnings) = self.chain(speed_m_s)?;
-        let refused = |error| self.mistake(locate::problem(&self.spec, &error));
+        let refused = |error| self.mistake(self.spec.chain_problem(&error));
         let system = System::new(&chain).map_err(refused)?;
         let problem = validity::overlapped_at_start(&self.spec, &chain, &system)
             .or_else(|| validity::refusal(&self.spec, &chain))
-            .or_else(|| effort::problem(&self.spec, &chain, &system));
+            .or_else(|| validity::effort_problem(&self.spec, &chain, &system));
         match problem {
             Some(problem) => Err(self.mistake(problem)),
             None => Ok((chain, system, warnings)),
         }
     }
 
-    /// What a solver says of this experiment's motion, at the laws of the
-    /// contact where it ended, or at the solver's settings.
+    /// The error of a solver, at the laws of the contact where the motion ended, or at the
+    /// solver's settings.
     pub fn unsolved(&self, error: &SolveError) -> Mistakes {
-        self.mistake(locate::unsolved(&self.spec, error))
+        self.mistake(self.spec.solver_problem(error))
     }
 
-    /// Why a solver does not reach what it was asked for, at its settings.
+    /// The reason why a solver does not reach what it was asked for, at its settings.
     pub fn unreached(&self, why: &str) -> Mistakes {
-        self.mistake(locate::unreached(&self.spec, why))
+        self.mistake(self.spec.unreached(why))
     }
 
     /// Whether chains at different speeds of the striker differ in nothing else.
     pub fn is_same_at_all_speeds(&self) -> bool {
-        self.spec.materials.0.iter().all(MaterialSpec::is_constant)
+        self.spec.materials.is_constant()
     }
 
     /// Refuses an experiment without a striker where a speed is asked for,
@@ -199,19 +203,14 @@ impl Experiment {
         }
     }
 
-    fn mistake(&self, problem: Problem) -> Mistakes {
-        Mistakes::one(problem, &self.source)
+    fn mistake(&self, problem: FileProblem) -> Mistakes {
+        Mistakes::new(vec![problem], &self.source)
     }
 
     /// The experiment of a changed tree, in the present reading.
     pub(crate) fn with_tree(&self, tree: Node) -> Result<Self, Mistakes> {
-        let reading = self.spec.reading;
-        Self::from_tree(
-            self.source.clone(),
-            self.folder.clone(),
-            tree,
-            Some(&reading),
-        )
+        let (source, folder) = (self.source.clone(), self.folder.clone());
+        Self::from_tree(source, folder, tree, Some(&self.spec.reading))
     }
 
     pub(crate) fn tree(&self) -> &Node {
@@ -263,22 +262,22 @@ impl Experiment {
     pub fn sensors(&self) -> Vec<Sensor> {
         let sensors = &self.spec.sensors;
         let wall = self.has_wall().then(|| Sensor::Contact(self.beads()));
-        let channel = sensors
-            .channel
-            .as_ref()
-            .map(|_| Sensor::BeadPlusWall(sensors.bead));
-        let first = [Some(Sensor::Bead(sensors.bead)), wall, channel];
-        let mut all: Vec<Sensor> = first.into_iter().flatten().collect();
-        let lists = [
+        let channel = sensors.channel.as_ref();
+        let channel = channel.map(|_| Sensor::BeadPlusWall(sensors.bead));
+        let listed = [
             (&sensors.beads, Sensor::Bead as fn(usize) -> Sensor),
             (&sensors.contacts, Sensor::Contact),
             (&sensors.positions, Sensor::Position),
             (&sensors.velocities, Sensor::Velocity),
         ];
-        for (list, sensor) in lists {
-            let more = list.iter().map(|(index, _)| sensor(*index));
-            let fresh: Vec<Sensor> = more.filter(|s| !all.contains(s)).collect();
-            all.extend(fresh);
+        let listed = listed.into_iter();
+        let listed = listed.flat_map(|(list, sensor)| list.iter().map(move |(at, _)| sensor(*at)));
+        let first = [Some(Sensor::Bead(sensors.bead)), wall, channel];
+        let mut all: Vec<Sensor> = Vec::new();
+        for sensor in first.into_iter().flatten().chain(listed) {
+            if !all.contains(&sensor) {
+                all.push(sensor);
+            }
         }
         all
     }
@@ -317,11 +316,8 @@ impl Experiment {
     /// Names of the chains that a campaign measures, in the file's order;
     /// none where the file's one chain is all.
     pub fn cases(&self) -> Vec<&str> {
-        self.spec
-            .cases
-            .iter()
-            .map(|case| case.name.as_str())
-            .collect()
+        let cases = self.spec.cases.iter();
+        cases.map(|case| case.name.as_str()).collect()
     }
 
     /// This experiment with the contacts and the liquid of one of its cases;
@@ -338,33 +334,27 @@ impl Experiment {
         if case.liquid.is_some() {
             written.liquid.clone_from(&case.liquid);
         }
+        // The case's own in the places of the file's, so that paths lead to them and setting a
+        // number keeps them.
+        let mut tree = self.tree.clone();
+        let all = self
+            .tree
+            .get("campaign")
+            .map_or(&[][..], |table| table.list("cases"));
+        let own = all
+            .iter()
+            .find(|case| case.get("name").and_then(Node::text) == Some(name));
+        for key in ["contacts", "liquid"] {
+            if let Some(node) = own.and_then(|case| case.get(key)) {
+                *tree.entry_mut(key) = node.clone();
+            }
+        }
         let chosen = Self {
             written,
-            tree: self.tree_of_case(name),
+            tree,
             ..self.clone()
         };
         Some(chosen.with_reading(&self.spec.reading))
-    }
-
-    /// The file with the contacts and the liquid of a case in the places of its
-    /// own, so that paths lead to them and setting a number keeps them.
-    fn tree_of_case(&self, name: &str) -> Node {
-        let mut tree = self.tree.clone();
-        let cases = self
-            .tree
-            .get("campaign")
-            .and_then(|table| table.get("cases"));
-        let is_named = |case: &&Node| {
-            let own = case.get("name").map(|node| &node.value);
-            matches!(own, Some(Value::Text(own)) if own == name)
-        };
-        let case = cases.and_then(|cases| cases.members().iter().find(is_named));
-        for key in ["contacts", "liquid"] {
-            if let Some(node) = case.and_then(|case| case.get(key)) {
-                put(&mut tree, key, node);
-            }
-        }
-        tree
     }
 
     /// Coefficient of dry friction between beads and track, which acts
@@ -392,27 +382,159 @@ impl Experiment {
     pub fn sections(&self) -> &[SectionSpec] {
         &self.spec.sections
     }
+
+    /// One text that two experiments share if the same results follow from them: keys and values
+    /// with the numbers that a program has set, the reading, and the contacts of the chosen case.
+    ///
+    /// Comments, blanks, and where the file lies do not matter; a number is its
+    /// bits. For fingerprints: not for reading.
+    pub fn canonical_text(&self) -> String {
+        let mut text = format!("{:?}\n", self.reading());
+        for SectionSpec {
+            from,
+            to,
+            wet,
+            material,
+            laws,
+            ..
+        } in self.sections()
+        {
+            text += &format!("{from} {to:?} {wet} {material:?}");
+            for law in laws {
+                let given = law.given.iter();
+                let given = given.map(|(name, value)| format!(" {name}={:016x}", value.to_bits()));
+                text += &format!(" {}{};", law.name(), given.collect::<String>());
+            }
+            text.push('\n');
+        }
+        // Files that the text names are read by what needs them; a chain whose
+        // end they move has no striker, and is neither swept nor shot at by a rig.
+        append_canonical(&self.tree.value, &mut text);
+        text
+    }
 }
 
-/// Puts a value in the place of a table's entry, or behind all others.
-fn put(table: &mut Node, key: &str, node: &Node) {
-    let Value::Table(entries) = &mut table.value else {
-        return;
+fn append_canonical(value: &Value, text: &mut String) {
+    // A text takes whatever is written into it.
+    let _ = match value {
+        Value::Text(words) => writeln!(text, "{words:?}"),
+        Value::Number(Number { value, .. }) => writeln!(text, "{:016x}", value.to_bits()),
+        Value::Flag(flag) => writeln!(text, "{flag}"),
+        Value::Date => writeln!(text, "a date or time"),
+        Value::List(items) => {
+            text.push_str("[\n");
+            items
+                .iter()
+                .for_each(|item| append_canonical(&item.value, text));
+            writeln!(text, "]")
+        }
+        Value::Table(entries) => {
+            text.push_str("{\n");
+            for entry in entries {
+                text.push_str(&format!("{:?}=\n", entry.key));
+                append_canonical(&entry.node.value, text);
+            }
+            writeln!(text, "}}")
+        }
     };
-    match entries.iter_mut().find(|entry| entry.key == key) {
-        Some(entry) => entry.node = node.clone(),
-        None => entries.push(Entry {
-            key: key.to_owned(),
-            key_span: node.span.clone(),
-            node: node.clone(),
-        }),
+}
+
+/// An experiment file compiled in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Name, the file's without its ending.
+    pub name: &'static str,
+    /// The file.
+    pub text: &'static str,
+}
+
+impl Preset {
+    /// The file's title.
+    pub fn title(&self) -> &'static str {
+        let line = self.text.lines().find(|line| line.starts_with("title"));
+        line.and_then(|line| line.split('"').nth(1))
+            .unwrap_or(self.name)
     }
 }
 
-/// The unit system, before anything else is read.
-fn units(tree: &Node) -> Units {
-    match tree.get("units").map(|node| &node.value) {
-        Some(Value::Text(text)) if text == "dimensionless" => Units::Dimensionless,
-        _ => Units::Si,
-    }
+/// A name that is neither a preset nor an example nor a campaign.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no preset `{name}`; expected one of: {}{}", .known.join(", "), hint(.nearest))]
+pub struct UnknownPreset {
+    /// The name.
+    pub name: String,
+    /// The name probably meant.
+    pub nearest: Option<&'static str>,
+    /// All names.
+    pub known: Vec<&'static str>,
 }
+
+fn hint(nearest: &Option<&'static str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean `{name}`?"))
+}
+
+macro_rules! files {
+    ($($name:literal),+ $(,)?) => {
+        &[$(Preset {
+            name: $name,
+            text: include_str!(concat!("../../../experiments/", $name, ".toml")),
+        }),+]
+    };
+}
+
+static PRESETS: &[Preset] = files![
+    "dry",
+    "hertz",
+    "hertz-viscoelastic",
+    "pump",
+    "gear",
+    "motor"
+];
+
+static EXAMPLES: &[Preset] = files![
+    "dimer-steel-ptfe",
+    "tapered",
+    "light-intruder",
+    "precompressed",
+    "heavy-striker",
+    "exponent-section",
+    "vertical-on-specimen",
+    "newtons-cradle",
+];
+
+static CAMPAIGNS: &[Preset] = files!["paper"];
+
+/// The paper's chains.
+pub const fn presets() -> &'static [Preset] {
+    PRESETS
+}
+
+/// Chains of other works, each with something to learn.
+pub const fn examples() -> &'static [Preset] {
+    EXAMPLES
+}
+
+/// Campaigns of a rig: chains, speeds, shots and instruments.
+pub const fn campaigns() -> &'static [Preset] {
+    CAMPAIGNS
+}
+
+/// A preset, example or campaign by its name.
+///
+/// # Errors
+/// An unknown name, with those that exist and the nearest of them.
+pub fn preset(name: &str) -> Result<Experiment, UnknownPreset> {
+    let all = || PRESETS.iter().chain(EXAMPLES).chain(CAMPAIGNS);
+    let found = all().find(|preset| preset.name == name);
+    let open = |p: &Preset| Experiment::from_text(&format!("{}.toml", p.name), p.text).ok();
+    let experiment = found.and_then(open);
+    experiment.ok_or_else(|| UnknownPreset {
+        name: name.to_owned(),
+        nearest: nearest_word(name, all().map(|preset| preset.name)),
+        known: all().map(|preset| preset.name).collect(),
+    })
+}
+
+#[cfg(test)]
+#[path = "tests/canonical.rs"]
+mod tests;

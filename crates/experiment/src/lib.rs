@@ -41,46 +41,38 @@
 //! and schema follow from them, and contact laws from the registry of
 //! `hertzchain_chain`.
 
-mod apply;
 mod assemble;
+mod bodies;
 mod check;
+mod contacts;
 mod document;
-mod effort;
 mod experiment;
-mod file;
-mod finding;
 mod keys;
-mod known;
-mod laws;
-mod locate;
-mod meeting;
-mod motion_file;
-mod nearest;
 mod paths;
-mod presets;
-mod reference;
+mod report;
+mod rig;
 mod schema;
+mod settings;
 mod spec;
-mod syntax;
-mod understood;
 mod validity;
-mod value;
-mod view;
+mod values;
 
 pub mod reading;
 pub mod units;
 
-pub use effort::longest_duration_s;
-pub use experiment::{Experiment, OpenError};
-pub use finding::{Finding, Mistakes, Source, Warning};
-pub use laws::LawSpec;
-pub use paths::{Named, PathError, Place};
-pub use presets::{Preset, UnknownPreset, campaigns, examples, preset, presets};
-pub use reading::{Pick, Reading, Switch, SwitchError};
-pub use reference::Reference;
-pub use schema::schema;
-pub use spec::{
-    Actuator, Amplifier, Campaign, Channels, Factor, KINDS, Laying, Liquid, LowPass, LowPassKind,
-    Method, ORDERS, Photogate, Recorder, Rig, RigPart, RigPartKind, SectionSpec, Solver, Trigger,
+pub use assemble::Reference;
+pub use contacts::{LawSpec, SectionSpec};
+pub use experiment::{
+    Experiment, OpenError, Preset, UnknownPreset, campaigns, examples, preset, presets,
 };
-pub use value::Units;
+pub use paths::{Named, PathError, Place};
+pub use reading::{Pick, Reading, Switch, SwitchError};
+pub use report::{Finding, Mistakes, Warning};
+pub use rig::{
+    Actuator, Amplifier, Campaign, Channels, Laying, LowPass, LowPassFactor, LowPassKind,
+    Photogate, Recorder, Rig, RigPart, RigPartKind, Trigger,
+};
+pub use schema::schema;
+pub use settings::{Liquid, Method, Solver};
+pub use validity::longest_duration_s;
+pub use values::Units;

@@ -1,10 +1,16 @@
-//! Readings: what the paper leaves open, one named switch each.
+//! Readings: what the paper leaves open, one named switch each, and what each changes.
 //!
 //! The first option of a switch is its default and changes nothing in the
 //! file; every other option changes what it says and nothing else.
 
-use crate::keys::{Key, Kind, Need};
-use crate::nearest;
+use crate::contacts::SectionSpec;
+use crate::keys::{Choice, Fields, choice, table};
+use crate::report::nearest_word;
+use crate::settings::Far;
+use crate::spec::Spec;
+use crate::values::View;
+use hertzchain_chain::laws::find;
+use hertzchain_chain::{Push, Tension};
 
 /// One switch and its options, the default first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,60 +25,28 @@ pub struct Switch {
 
 /// A switch or an option that does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no {what}; expected one of: {expected}{hint}")]
+#[error("there is no {what}; expected one of: {}{hint}", .known.join(", "))]
 pub struct SwitchError {
     what: String,
-    expected: String,
+    known: Vec<&'static str>,
     hint: String,
 }
 
 impl SwitchError {
-    fn new(what: String, given: &str, known: &[&str]) -> Self {
-        let near = nearest::of(given, known.iter().copied());
-        Self {
-            what,
-            expected: known.join(", "),
-            hint: near.map_or(String::new(), |word| format!("; did you mean `{word}`?")),
-        }
+    fn new(what: String, given: &str, known: Vec<&'static str>) -> Self {
+        let near = nearest_word(given, known.iter().copied());
+        let hint = near.map_or(String::new(), |word| format!("; did you mean `{word}`?"));
+        Self { what, known, hint }
     }
 }
 
 /// Declares all switches: the enums, the struct, the keys and their names.
 macro_rules! switches {
-    ($(
-        $about:literal
-        $field:ident: $Type:ident {
-            $first_text:literal => $First:ident: $first_doc:literal,
-            $($text:literal => $Option:ident: $doc:literal,)+
-        }
-    )+) => {
-        $(
+    ($($about:literal $field:ident: $Type:ident { $($options:tt)+ })+) => {
+        $(choice! {
             #[doc = concat!("Switch: ", $about, ".")]
-            #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-            pub enum $Type {
-                #[doc = $first_doc]
-                #[default]
-                $First,
-                $(#[doc = $doc] $Option,)+
-            }
-
-            impl $Type {
-                fn text(self) -> &'static str {
-                    match self {
-                        Self::$First => $first_text,
-                        $(Self::$Option => $text,)+
-                    }
-                }
-
-                fn from_text(text: &str) -> Option<Self> {
-                    match text {
-                        $first_text => Some(Self::$First),
-                        $($text => Some(Self::$Option),)+
-                        _ => None,
-                    }
-                }
-            }
-        )+
+            $Type { $($options)+ }
+        })+
 
         /// One choice of every switch.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -83,22 +57,18 @@ macro_rules! switches {
         const SWITCHES: &[Switch] = &[$(Switch {
             name: stringify!($field),
             about: $about,
-            options: &[$first_text, $($text,)+],
+            options: $Type::NAMES,
         },)+];
 
-        /// The keys of `[reading]`.
-        pub(crate) static KEYS: &[Key] = &[$(Key {
-            name: stringify!($field),
-            kind: Kind::Choice(&[$first_text, $($text,)+]),
-            need: Need::Never,
-            about: $about,
-        },)+];
+        pub(crate) static READING: Fields = table! { "[reading]";
+            $($field: Choice($Type::NAMES), $about;)+
+        };
 
         impl Reading {
             /// The option of a switch, as written in a file.
             pub fn get(&self, switch: &str) -> Option<&'static str> {
                 match switch {
-                    $(stringify!($field) => Some(self.$field.text()),)+
+                    $(stringify!($field) => Some(self.$field.name()),)+
                     _ => None,
                 }
             }
@@ -109,16 +79,13 @@ macro_rules! switches {
             /// An unknown switch or option, with those that exist.
             pub fn with(mut self, switch: &str, option: &str) -> Result<Self, SwitchError> {
                 match switch {
-                    $(stringify!($field) => {
-                        let options = [$first_text, $($text,)+];
-                        let what = || format!("option `{option}` of the switch `{switch}`");
-                        self.$field = $Type::from_text(option)
-                            .ok_or_else(|| SwitchError::new(what(), option, &options))?;
-                    })+
+                    $(stringify!($field) => self.$field = $Type::from_name(option).ok_or_else(|| {
+                        let what = format!("option `{option}` of the switch `{switch}`");
+                        SwitchError::new(what, option, $Type::NAMES.to_vec())
+                    })?,)+
                     _ => {
-                        let names = SWITCHES.iter().map(|s| s.name).collect::<Vec<_>>();
-                        let what = format!("switch `{switch}`");
-                        return Err(SwitchError::new(what, switch, &names));
+                        let names = SWITCHES.iter().map(|s| s.name).collect();
+                        return Err(SwitchError::new(format!("switch `{switch}`"), switch, names));
                     }
                 }
                 Ok(self)
@@ -219,10 +186,10 @@ pub const PRELOAD_N: f64 = 0.24;
 
 /// Stiffness of the preload spring in N/m. The paper prints none; this soft
 /// one loses a tenth of the force over 0.24 mm.
-pub const SPRING_STIFFNESS_N_M: f64 = 100.0;
+const SPRING_STIFFNESS_N_M: f64 = 100.0;
 
 /// Mass of the paper's end structure in kg.
-pub const STOP_MASS_KG: f64 = 4.5;
+const STOP_MASS_KG: f64 = 4.5;
 
 impl Reading {
     /// Every switch with its options, the default first.
@@ -236,17 +203,163 @@ impl Reading {
         let changed = |(name, option): &(&str, &str)| Self::default().get(name) != Some(option);
         SWITCHES.iter().filter_map(option).filter(changed).collect()
     }
+
+    /// The reading of a checked file.
+    pub(crate) fn read(root: &View<'_>) -> Self {
+        let table = root.table("reading");
+        let option = |switch: &Switch| Some((switch.name, table?.text(switch.name)?));
+        let given = SWITCHES.iter().filter_map(option);
+        given.fold(Self::default(), |reading, (name, option)| {
+            reading.with(name, option).unwrap_or(reading)
+        })
+    }
+
+    /// The experiment as written, in this reading.
+    pub(crate) fn apply(&self, written: &Spec) -> Spec {
+        let mut spec = Spec {
+            reading: *self,
+            ..written.clone()
+        };
+        self.apply_to_bodies(&mut spec);
+        self.apply_to_ends(&mut spec);
+        self.apply_to_sections(&mut spec);
+        self.apply_to_laws(&mut spec);
+        spec
+    }
+
+    /// Materials, and which bodies belong to the counted ones.
+    fn apply_to_bodies(&self, spec: &mut Spec) {
+        for material in &mut spec.materials.0 {
+            if self.poisson == PoissonReading::Bounded {
+                material.largest_poisson_ratio = 0.5;
+            }
+            material.without_bulk_viscosity = self.bulk_viscosity == BulkViscosityReading::Zero;
+        }
+        spec.beads_less = usize::from(self.striker == StrikerReading::Within)
+            + usize::from(self.half_bead == HalfBeadReading::Within);
+        if self.sensor_counted_from == SensorReading::Striker {
+            spec.sensors.bead = spec.sensors.bead.saturating_sub(1);
+        }
+    }
+
+    fn apply_to_ends(&self, spec: &mut Spec) {
+        let force_n = PRELOAD_N;
+        let stiffness_n_m = SPRING_STIFFNESS_N_M;
+        match self.preload {
+            PreloadReading::None => {}
+            PreloadReading::Spring => {
+                spec.push = Push::Spring {
+                    force_n,
+                    stiffness_n_m,
+                }
+            }
+            PreloadReading::Constant => spec.push = Push::Constant { force_n },
+        }
+        match self.incline {
+            InclineReading::Level => {}
+            InclineReading::Half => spec.incline_rad = 0.5f64.to_radians(),
+            InclineReading::One => spec.incline_rad = 1f64.to_radians(),
+        }
+        if self.tension == TensionReading::Clipped {
+            spec.tension = Tension::Clipped;
+        }
+        if let Far::Wall {
+            is_plane, stop_kg, ..
+        } = &mut spec.far
+        {
+            *is_plane |= self.wall_shape == WallShapeReading::Plane;
+            if self.stop == StopReading::Heavy {
+                *stop_kg = Some(STOP_MASS_KG);
+            }
+        }
+    }
+
+    fn apply_to_sections(&self, spec: &mut Spec) {
+        let Some(wet) = spec.sections.iter().position(|section| section.wet) else {
+            return;
+        };
+        let dry = spec.sections.iter().find(|section| !section.wet).cloned();
+        let earlier = usize::from(self.contact_6 == Contact6Reading::Wet)
+            + usize::from(self.sensor_counted_from == SensorReading::Striker);
+        begin_earlier(&mut spec.sections, wet, earlier);
+        if self.wet_everywhere == WetEverywhereReading::Yes
+            && let Some(section) = spec.sections.iter().find(|section| section.wet)
+        {
+            let (from, to) = (0, None);
+            spec.sections = vec![SectionSpec {
+                from,
+                to,
+                ..section.clone()
+            }];
+        }
+        if let (WallLiquidReading::Dry, Some(dry)) = (self.wall_liquid, dry) {
+            dry_wall(spec, dry);
+        }
+    }
+
+    fn apply_to_laws(&self, spec: &mut Spec) {
+        let some_wet = spec.sections.iter().any(|section| section.wet);
+        let without = some_wet && self.dry_cubic_beside_wet == DryCubicReading::Without;
+        let ungated = find("damping_cubic_ungated");
+        let is_cubic = |name| name == "damping_cubic" || name == "damping_cubic_ungated";
+        for section in &mut spec.sections {
+            if without && !section.wet {
+                section.laws.retain(|law| !is_cubic(law.name()));
+            }
+            let gated = section
+                .laws
+                .iter_mut()
+                .filter(|law| law.name() == "damping_cubic");
+            if let (CubicGateReading::Always, Some(row)) = (self.cubic_gate, ungated) {
+                gated.for_each(|law| law.row = row);
+            }
+        }
+    }
+}
+
+/// Moves the beginning of a section toward the striker.
+fn begin_earlier(sections: &mut Vec<SectionSpec>, at: usize, by: usize) {
+    let begin = sections[at].from.saturating_sub(by);
+    sections[at].from = begin;
+    for section in &mut sections[..at] {
+        section.to = section.to.map(|to| to.min(begin.saturating_sub(1)));
+    }
+    let mut index = 0;
+    sections.retain(|section| {
+        index += 1;
+        index > at || section.from < begin
+    });
+}
+
+/// The wall contact gets the laws of a dry section.
+fn dry_wall(spec: &mut Spec, dry: SectionSpec) {
+    let contact = spec.bead_count();
+    let Some(last) = spec.sections.last_mut().filter(|last| last.wet) else {
+        return;
+    };
+    if last.from >= contact {
+        spec.sections.pop();
+    } else {
+        last.to = Some(contact - 1);
+    }
+    spec.sections.push(SectionSpec {
+        from: contact,
+        to: None,
+        ..dry
+    });
 }
 
 impl std::fmt::Display for Reading {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let changes = self.changes();
-        if changes.is_empty() {
-            return f.write_str("default reading");
-        }
-        let texts = changes
-            .iter()
-            .map(|(name, option)| format!("{name} = {option}"));
-        f.write_str(&texts.collect::<Vec<_>>().join(", "))
+        let changes = self.changes().into_iter();
+        let texts: Vec<String> = changes
+            .map(|(name, option)| format!("{name} = {option}"))
+            .collect();
+        f.write_str(if texts.is_empty() {
+            "default reading"
+        } else {
+            ""
+        })?;
+        f.write_str(&texts.join(", "))
     }
 }

@@ -1,10 +1,10 @@
 //! JSON Schema of the experiment file, from the declared keys and the
 //! registry of contact laws, for editors.
 
-use crate::keys::{Fields, Key, Kind, Limits, Need, ROOT, Variants};
-use crate::laws;
+use crate::contacts::{CONTACT, is_derived};
+use crate::keys::{Fields, Key, Kind, Need, ROOT, ValueLimits, Variants};
 use crate::units;
-use crate::value::Units;
+use crate::values::Units;
 use hertzchain_chain::laws::{LAWS, Parameter, Row, Source};
 use serde_json::{Map, Value, json};
 
@@ -70,7 +70,7 @@ fn kind(kind: &Kind, units: Units) -> Value {
         Kind::Scaled(unit, limits) => {
             json!({ "anyOf": [quantity(unit, limits, units), power_law(unit, units)] })
         }
-        Kind::Quantities(unit) => list(quantity(unit, &Limits::ANY, units)),
+        Kind::Quantities(unit) => list(quantity(unit, &ValueLimits::ANY, units)),
         Kind::Count { least, most } => json!({
             "type": "integer", "minimum": least, "maximum": most,
         }),
@@ -102,7 +102,7 @@ fn types(unit: &str, units: Units) -> Value {
     }
 }
 
-fn quantity(unit: &str, limits: &Limits, units: Units) -> Value {
+fn quantity(unit: &str, limits: &ValueLimits, units: Units) -> Value {
     let mut schema = json!({ "type": types(unit, units), "pattern": QUANTITY });
     let (least, most) = match limits.closed {
         true => ("minimum", "maximum"),
@@ -111,7 +111,7 @@ fn quantity(unit: &str, limits: &Limits, units: Units) -> Value {
     let Some(object) = schema.as_object_mut() else {
         return schema;
     };
-    // Limits of quantities with a dimension are those of their SI values.
+    // ValueLimits of quantities with a dimension are those of their SI values.
     if unit != "1" && limits.least > 0.0 {
         object.insert("exclusiveMinimum".to_owned(), json!(0.0));
     }
@@ -134,8 +134,8 @@ fn power_law(unit: &str, units: Units) -> Value {
         "type": "object",
         "description": "prefactor · speed^exponent, speed of the striker in m/s",
         "properties": {
-            "prefactor": quantity(unit, &Limits::ANY, units),
-            "exponent": quantity("1", &Limits::ANY, units),
+            "prefactor": quantity(unit, &ValueLimits::ANY, units),
+            "exponent": quantity("1", &ValueLimits::ANY, units),
         },
         "required": ["prefactor", "exponent"],
         "additionalProperties": false,
@@ -177,11 +177,11 @@ fn law_table(row: &Row, units: Units) -> Value {
         });
         properties.insert(parameter.name.to_owned(), schema);
     }
-    if row.info.parameters.iter().any(laws::is_own) {
+    if row.info.parameters.iter().any(is_derived) {
         let about = "contact that K or A belongs to; the section's others keep their ratios to it, as materials and \
                      radii give them. All have the same without it";
         let schema = json!({ "type": "integer", "minimum": 0, "description": about });
-        properties.insert(laws::CONTACT.to_owned(), schema);
+        properties.insert(CONTACT.to_owned(), schema);
     }
     let needed = row.info.parameters.iter().filter(|p| is_required(p));
     let required: Vec<&str> = std::iter::once("law")

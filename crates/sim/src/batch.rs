@@ -211,7 +211,7 @@ impl Batch {
             // Plain numbers always have a form in JSON, from which their bits follow.
             let options = serde_json::to_string(&self.options).unwrap_or_default();
             let inputs = Inputs::of("sweep")
-                .text("experiment", &self.experiment.understood())
+                .text("experiment", &self.experiment.canonical_text())
                 .text("options", &options)
                 .text("set", self.options.set.name())
                 .numbers("speeds_m_s", &self.speeds_m_s);

@@ -407,11 +407,7 @@ fn animation() -> Animation {
 /// Six small panels with shared axes.
 fn panels() -> Figure {
     let v = log_grid(0.075, 1.23, 12);
-    let empty = Figure::double_column(88.0)
-        .columns(3)
-        .letters()
-        .share_x()
-        .share_y();
+    let empty = Figure::double_column(88.0).columns(3).letters().share_x();
     let names = [
         "pump, incident",
         "gear, incident",

@@ -1,8 +1,5 @@
 //! Axes: from a data range to positions, ticks and tick labels.
 
-mod label;
-mod linear;
-mod log;
 mod scale;
 
 pub(crate) use scale::{Extent, Scale};
@@ -26,6 +23,21 @@ pub(crate) struct Ticks {
 }
 
 impl Ticks {
+    /// Width of the widest label at a font size.
+    pub(crate) fn widest(&self, font: f64) -> f64 {
+        let widths = self
+            .major
+            .iter()
+            .map(|tick| TextLine::new(&tick.label, font).width());
+        widths.fold(0.0, f64::max)
+    }
+
+    /// `×10^n` at the end of an axis whose labels leave a power of ten out.
+    pub(crate) fn factor(&self, font: f64) -> Option<TextLine> {
+        let factor = |n| TextLine::new(&format!(r"$\times10^{{{n}}}$"), font);
+        self.exponent.map(factor)
+    }
+
     /// Those at whole numbers, for an axis that counts.
     pub(crate) fn whole(mut self) -> Self {
         self.minor.clear();
@@ -79,12 +91,269 @@ impl Room {
 /// The richest set of ticks whose labels have room.
 pub(crate) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     if scale.log {
-        log::ticks(scale, room)
+        log_ticks(scale, room)
     } else {
-        linear::ticks(scale, room)
+        linear_ticks(scale, room)
+    }
+}
+
+/// A tick distance of `mantissa * 10^exponent`.
+#[derive(Debug, Clone, Copy)]
+struct TickStep {
+    mantissa: u8,
+    exponent: i32,
+}
+
+impl TickStep {
+    /// The first step that cuts the span into no more than `parts`.
+    fn at_least(span: f64, parts: f64) -> Self {
+        let raw = span / parts;
+        let mut step = Self {
+            mantissa: 1,
+            exponent: raw.log10().floor() as i32,
+        };
+        // One, two or three changes lead from a power of ten to the next.
+        for _ in 0..4 {
+            if step.size() < raw * (1.0 - 1e-9) {
+                step = step.next();
+            }
+        }
+        step
+    }
+
+    fn next(self) -> Self {
+        let (mantissa, up) = match self.mantissa {
+            1 => (2, 0),
+            2 => (5, 0),
+            _ => (1, 1),
+        };
+        let exponent = self.exponent + up;
+        Self { mantissa, exponent }
+    }
+
+    fn before(self) -> Self {
+        let (mantissa, down) = match self.mantissa {
+            5 => (2, 0),
+            2 => (1, 0),
+            _ => (5, 1),
+        };
+        let exponent = self.exponent - down;
+        Self { mantissa, exponent }
+    }
+
+    fn size(self) -> f64 {
+        self.multiple(1.0)
+    }
+
+    fn multiple(self, n: f64) -> f64 {
+        times_power(n * f64::from(self.mantissa), self.exponent)
+    }
+
+    /// Small steps per labelled step.
+    fn subdivisions(self) -> f64 {
+        if self.mantissa == 2 { 4.0 } else { 5.0 }
+    }
+}
+
+/// More changes of step than any sound range needs.
+const TRIES: usize = 12;
+
+fn linear_ticks(scale: &Scale, room: &Room) -> Ticks {
+    let exponent = shared_exponent(scale);
+    let mut step = TickStep::at_least(scale.hi - scale.lo, room.most() as f64);
+    let mut major = labelled(scale, step, exponent);
+    for _ in 0..TRIES {
+        if major.len() <= 3 || room.fits(scale, &major) {
+            break;
+        }
+        step = step.next();
+        major = labelled(scale, step, exponent);
+    }
+    for _ in 0..TRIES {
+        if major.len() >= 2 {
+            break;
+        }
+        step = step.before();
+        major = labelled(scale, step, exponent);
+    }
+    Ticks {
+        minor: minor(scale, step),
+        major,
+        exponent,
+    }
+}
+
+/// Power of ten to take out of the labels of very large or small numbers.
+fn shared_exponent(scale: &Scale) -> Option<i32> {
+    let largest = scale.lo.abs().max(scale.hi.abs());
+    let exponent = largest.log10().floor() as i32;
+    (!(-2..5).contains(&exponent)).then_some(exponent)
+}
+
+fn labelled(scale: &Scale, step: TickStep, exponent: Option<i32>) -> Vec<Tick> {
+    let shift = exponent.unwrap_or(0);
+    let decimals = usize::try_from(shift - step.exponent).unwrap_or(0);
+    multiples(scale, step.size())
+        .map(|n| {
+            let value = step.multiple(n);
+            let label = fixed(scaled_down(value, shift), decimals);
+            Tick { value, label }
+        })
+        .collect()
+}
+
+/// `value / 10^exponent` where 10^exponent alone may not be a number.
+fn scaled_down(value: f64, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    value / 10f64.powi(half) / 10f64.powi(exponent - half)
+}
+
+/// Whole numbers `n` with `n * step` on the axis.
+fn multiples(scale: &Scale, step: f64) -> impl Iterator<Item = f64> {
+    let slack = 1e-9 * (scale.hi - scale.lo) / step;
+    let first = (scale.lo / step - slack).ceil();
+    let last = (scale.hi / step + slack).floor();
+    let count = (last - first).clamp(-1.0, 1000.0) as i32;
+    (0..=count).map(move |i| first + f64::from(i))
+}
+
+fn minor(scale: &Scale, step: TickStep) -> Vec<f64> {
+    let parts = step.subdivisions();
+    multiples(scale, step.size() / parts)
+        .filter(|n| n.rem_euclid(parts) != 0.0)
+        .map(|n| step.multiple(n / parts))
+        .collect()
+}
+
+/// Multiples of powers of ten that carry labels, richest choice first.
+const CHOICES: [(&[u32], i32); 8] = [
+    (&[1, 2, 3, 4, 5, 6, 7, 8, 9], 1),
+    (&[1, 2, 5], 1),
+    (&[1, 3], 1),
+    (&[1], 1),
+    (&[1], 2),
+    (&[1], 3),
+    (&[1], 5),
+    (&[1], 10),
+];
+
+/// Beyond this many decades, multiples of a power of ten say nothing.
+const MANY_DECADES: f64 = 3.0;
+
+fn log_ticks(scale: &Scale, room: &Room) -> Ticks {
+    let found = CHOICES
+        .iter()
+        .filter(|(mantissas, _)| mantissas.len() == 1 || scale.decades() <= MANY_DECADES)
+        .map(|(mantissas, every)| powers(scale, mantissas, *every))
+        .find(|major| major.len() <= room.most() && room.fits(scale, major))
+        .unwrap_or_else(|| powers(scale, &[1], sparse(scale)));
+    if found.len() < 3 && scale.decades() < 1.0 {
+        return even_steps(scale, room);
+    }
+    if found.len() < 2 {
+        return even_steps(scale, room);
+    }
+    Ticks {
+        minor: unlabelled(scale, &found),
+        major: found,
+        exponent: None,
+    }
+}
+
+/// Decades between labels so that about five remain.
+fn sparse(scale: &Scale) -> i32 {
+    ((scale.decades() / 5.0).ceil() as i32).max(1)
+}
+
+/// Within a small part of a decade a logarithmic axis is nearly linear.
+fn even_steps(scale: &Scale, room: &Room) -> Ticks {
+    let mut found = linear_ticks(scale, room);
+    if !room.fits(scale, &found.major) && found.major.len() > 3 {
+        let mut n = 0;
+        found.major.retain(|_| {
+            n += 1;
+            n % 2 == 1
+        });
+    }
+    found
+}
+
+fn powers(scale: &Scale, mantissas: &[u32], every: i32) -> Vec<Tick> {
+    let written_out = scale.lo >= 9.9e-4 && scale.hi <= 1.01e5;
+    let write = if written_out { plain } else { power };
+    exponents(scale)
+        .filter(|e| e.rem_euclid(every) == 0)
+        .flat_map(|e| mantissas.iter().map(move |m| (*m, e)))
+        .filter(|(m, e)| scale.holds(value(*m, *e)))
+        .map(|(m, e)| Tick {
+            value: value(m, e),
+            label: write(m, e),
+        })
+        .collect()
+}
+
+/// Ticks between the labels. Where powers of ten go without a label only they
+/// are marked, so that a short tick always means the same.
+fn unlabelled(scale: &Scale, major: &[Tick]) -> Vec<f64> {
+    let labels_missing = |p: &Tick| major.iter().all(|t| t.value != p.value);
+    let crowded = powers(scale, &[1], 1).iter().any(labels_missing);
+    let mantissas: &[u32] = if crowded { &[1] } else { CHOICES[0].0 };
+    let mut found: Vec<f64> = powers(scale, mantissas, 1)
+        .iter()
+        .map(|t| t.value)
+        .collect();
+    found.retain(|v| major.iter().all(|t| t.value != *v));
+    found
+}
+
+fn exponents(scale: &Scale) -> std::ops::RangeInclusive<i32> {
+    (scale.lo.log10().floor() as i32)..=(scale.hi.log10().ceil() as i32)
+}
+
+/// `mantissa * 10^exponent`, exact for the decimals a label shows.
+fn value(mantissa: u32, exponent: i32) -> f64 {
+    times_power(f64::from(mantissa), exponent)
+}
+
+/// `factor * 10^exponent`; dividing by an exact power of ten keeps 0.3 from becoming
+/// 0.30000000000000004.
+fn times_power(factor: f64, exponent: i32) -> f64 {
+    match exponent < 0 {
+        true => factor / 10f64.powi(-exponent),
+        false => factor * 10f64.powi(exponent),
+    }
+}
+
+/// A number with a fixed count of decimals and a true minus sign; no "-0".
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let digits = text.trim_start_matches('-');
+    let zero = digits.chars().all(|c| matches!(c, '0' | '.'));
+    if zero || !text.starts_with('-') {
+        digits.to_owned()
+    } else {
+        format!("−{digits}")
+    }
+}
+
+/// `mantissa * 10^exponent` in plain decimals.
+fn plain(mantissa: u32, exponent: i32) -> String {
+    let decimals = usize::try_from(-exponent).unwrap_or(0);
+    fixed(f64::from(mantissa) * 10f64.powi(exponent), decimals)
+}
+
+/// `mantissa * 10^exponent` as a power of ten.
+fn power(mantissa: u32, exponent: i32) -> String {
+    match mantissa {
+        1 => format!("$10^{{{exponent}}}$"),
+        m => format!(r"${m}\times10^{{{exponent}}}$"),
     }
 }
 
 #[cfg(test)]
 #[path = "tests/mod.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "tests/label.rs"]
+mod label_tests;

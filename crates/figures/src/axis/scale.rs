@@ -23,13 +23,17 @@ impl Extent {
     }
 
     /// Takes in a value unless the axis cannot show it.
-    pub(crate) fn add(&mut self, value: f64) {
+    fn add(&mut self, value: f64) {
         let value = if value.abs() < SMALLEST { 0.0 } else { value };
         let shown = value.is_finite() && value.abs() <= LARGEST && (!self.log || value >= SMALLEST);
         if shown {
             self.lo = self.lo.min(value);
             self.hi = self.hi.max(value);
         }
+    }
+
+    pub(crate) fn extend(&mut self, values: impl IntoIterator<Item = f64>) {
+        values.into_iter().for_each(|value| self.add(value));
     }
 
     /// The lowest and highest value, if any.

@@ -1,6 +1,6 @@
 //! A posterior, parameter by parameter and pair by pair.
 
-use super::smooth::{histogram, joint};
+use super::density::{histogram, joint};
 use crate::{Chart, Colour, Dash, Figure, Legend, Panel, Series};
 use std::f64::consts::TAU;
 

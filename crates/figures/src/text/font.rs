@@ -10,13 +10,13 @@ use skrifa::{FontRef, MetadataProvider};
 
 /// Which of the embedded faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Style {
+pub(crate) enum Face {
     Regular,
     Italic,
     Bold,
 }
 
-impl Style {
+impl Face {
     /// How a `tspan` asks for it.
     pub(crate) fn attribute(self) -> &'static str {
         match self {
@@ -28,23 +28,23 @@ impl Style {
 }
 
 /// Width of characters in em.
-pub(crate) fn width(style: Style, text: &str) -> f64 {
+pub(crate) fn width(style: Face, text: &str) -> f64 {
     text.chars().map(|c| GlyphId::of(style, c).advance()).sum()
 }
 
 /// One glyph of one face; also its name inside an SVG.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct GlyphId {
-    style: Style,
+    style: Face,
     index: u32,
 }
 
 impl fmt::Display for GlyphId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let letter = match self.style {
-            Style::Regular => 'r',
-            Style::Italic => 'i',
-            Style::Bold => 'h',
+            Face::Regular => 'r',
+            Face::Italic => 'i',
+            Face::Bold => 'h',
         };
         write!(f, "{letter}{}", self.index)
     }
@@ -58,11 +58,11 @@ fn parse(bytes: &'static [u8]) -> FontRef<'static> {
     FontRef::new(bytes).expect("the embedded font is a valid TrueType file")
 }
 
-fn face(style: Style) -> &'static FontRef<'static> {
+fn face(style: Face) -> &'static FontRef<'static> {
     match style {
-        Style::Regular => &REGULAR,
-        Style::Italic => &ITALIC,
-        Style::Bold => &BOLD,
+        Face::Regular => &REGULAR,
+        Face::Italic => &ITALIC,
+        Face::Bold => &BOLD,
     }
 }
 
@@ -74,7 +74,7 @@ pub(crate) fn units_per_em() -> f64 {
 
 impl GlyphId {
     /// The glyph of a character; an empty box if the face has none.
-    pub(crate) fn of(style: Style, c: char) -> Self {
+    pub(crate) fn of(style: Face, c: char) -> Self {
         let found = face(style).charmap().map(c);
         Self {
             style,

@@ -3,7 +3,7 @@
 use std::iter::Peekable;
 use std::str::Chars;
 
-use super::font::Style;
+use super::font::Face;
 
 /// Vertical place of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,60 +15,26 @@ pub(crate) enum Script {
 
 /// Characters of one style at one script level.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Run {
+pub(crate) struct TextRun {
     pub(crate) text: String,
-    pub(crate) style: Style,
+    pub(crate) style: Face,
     pub(crate) script: Script,
 }
 
 /// `\name` and the character it stands for.
+#[rustfmt::skip]
 pub(crate) const SYMBOLS: &[(&str, char)] = &[
-    ("alpha", 'α'),
-    ("beta", 'β'),
-    ("gamma", 'γ'),
-    ("delta", 'δ'),
-    ("epsilon", 'ε'),
-    ("eta", 'η'),
-    ("theta", 'θ'),
-    ("kappa", 'κ'),
-    ("lambda", 'λ'),
-    ("mu", 'μ'),
-    ("nu", 'ν'),
-    ("xi", 'ξ'),
-    ("pi", 'π'),
-    ("rho", 'ρ'),
-    ("sigma", 'σ'),
-    ("tau", 'τ'),
-    ("phi", 'φ'),
-    ("chi", 'χ'),
-    ("psi", 'ψ'),
-    ("omega", 'ω'),
-    ("Gamma", 'Γ'),
-    ("Delta", 'Δ'),
-    ("Theta", 'Θ'),
-    ("Lambda", 'Λ'),
-    ("Sigma", 'Σ'),
-    ("Phi", 'Φ'),
-    ("Psi", 'Ψ'),
-    ("Omega", 'Ω'),
-    ("times", '×'),
-    ("cdot", '·'),
-    ("pm", '±'),
-    ("leq", '≤'),
-    ("geq", '≥'),
-    ("approx", '≈'),
-    ("neq", '≠'),
-    ("infty", '∞'),
-    ("partial", '∂'),
-    ("sum", '∑'),
-    ("sqrt", '√'),
-    ("degree", '°'),
-    ("prime", '′'),
-    ("ell", 'ℓ'),
+    ("alpha", 'α'), ("beta", 'β'), ("gamma", 'γ'), ("delta", 'δ'), ("epsilon", 'ε'), ("eta", 'η'),
+    ("theta", 'θ'), ("kappa", 'κ'), ("lambda", 'λ'), ("mu", 'μ'), ("nu", 'ν'), ("xi", 'ξ'),
+    ("pi", 'π'), ("rho", 'ρ'), ("sigma", 'σ'), ("tau", 'τ'), ("phi", 'φ'), ("chi", 'χ'),
+    ("psi", 'ψ'), ("omega", 'ω'), ("Gamma", 'Γ'), ("Delta", 'Δ'), ("Theta", 'Θ'), ("Lambda", 'Λ'),
+    ("Sigma", 'Σ'), ("Phi", 'Φ'), ("Psi", 'Ψ'), ("Omega", 'Ω'), ("times", '×'), ("cdot", '·'),
+    ("pm", '±'), ("leq", '≤'), ("geq", '≥'), ("approx", '≈'), ("neq", '≠'), ("infty", '∞'),
+    ("partial", '∂'), ("sum", '∑'), ("sqrt", '√'), ("degree", '°'), ("prime", '′'), ("ell", 'ℓ'),
 ];
 
 /// Splits markup into runs; malformed markup is shown as it was typed.
-pub(crate) fn parse(source: &str) -> Vec<Run> {
+pub(crate) fn parse(source: &str) -> Vec<TextRun> {
     let mut parser = Parser {
         rest: source.chars().peekable(),
         math: false,
@@ -85,7 +51,7 @@ struct Parser<'a> {
     rest: Peekable<Chars<'a>>,
     math: bool,
     upright: bool,
-    runs: Vec<Run>,
+    runs: Vec<TextRun>,
 }
 
 impl Parser<'_> {
@@ -103,14 +69,10 @@ impl Parser<'_> {
 
     fn push(&mut self, c: char, script: Script) {
         let italic = self.math && !self.upright && is_variable(c);
-        let style = if italic {
-            Style::Italic
-        } else {
-            Style::Regular
-        };
+        let style = if italic { Face::Italic } else { Face::Regular };
         match self.runs.last_mut() {
             Some(run) if run.style == style && run.script == script => run.text.push(c),
-            _ => self.runs.push(Run {
+            _ => self.runs.push(TextRun {
                 text: c.to_string(),
                 style,
                 script,

@@ -99,7 +99,7 @@ impl Model {
     /// its free numbers, what is known of their parameters, accuracy and instruction set.
     pub(crate) fn inputs(&self, kind: &str, parameters: &[Parameter]) -> Inputs {
         Inputs::of(kind)
-            .text("experiment", &self.experiment.understood())
+            .text("experiment", &self.experiment.canonical_text())
             .text("free", &format!("{:?}", self.numbers))
             .text("parameters", &format!("{parameters:?}"))
             .text("set", self.set.name())

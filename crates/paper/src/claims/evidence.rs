@@ -198,7 +198,7 @@ impl Curve {
 
 /// Wet over dry incident ToF at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ratio {
+pub struct TofRatio {
     /// Speed of the striker in m/s.
     pub speed_m_s: f64,
     /// Ratio of the incident ToFs.
@@ -207,6 +207,13 @@ pub struct Ratio {
     pub reflected: f64,
     /// Relative accuracy of both.
     pub accuracy_reached: f64,
+}
+
+impl TofRatio {
+    /// Absolute accuracy of the incident ratio.
+    pub(crate) fn accuracy(&self) -> f64 {
+        self.accuracy_reached * self.incident
+    }
 }
 
 /// One liquid as printed.
@@ -282,13 +289,13 @@ impl Evidence {
 
     /// Wet over dry ToFs at the speeds that both curves have.
     #[must_use]
-    pub fn ratios(&self, case: &str) -> Vec<Ratio> {
+    pub fn ratios(&self, case: &str) -> Vec<TofRatio> {
         let (Some(wet), Some(dry)) = (self.curve(case), self.curve("dry")) else {
             return Vec::new();
         };
         let ratio = |w: &Point| {
             let d = dry.at(w.speed_m_s)?;
-            Some(Ratio {
+            Some(TofRatio {
                 speed_m_s: w.speed_m_s,
                 incident: w.tof_incident_s / d.tof_incident_s,
                 reflected: w.tof_reflected_s / d.tof_reflected_s,

@@ -1,4 +1,4 @@
-//! What was found about a claim.
+//! The answer to a claim: a verdict and the number behind it.
 
 /// The answer to "does the model show what the paper says?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,7 +29,7 @@ impl Verdict {
         }
     }
 
-    /// How much of the claim is met, for ranking readings: 1, 1/2 or 0.
+    /// Share of the claim that is met, for ranking readings: 1, 1/2 or 0.
     #[must_use]
     pub const fn score(self) -> f64 {
         match self {
@@ -101,6 +101,30 @@ impl Finding {
         }
     }
 
+    /// Of a claim that one comparison decides.
+    pub(crate) fn of_one(margin: f64, value: f64, accuracy: f64, detail: String) -> Self {
+        let mut comparisons = Comparisons::default();
+        comparisons.add(margin, value, accuracy, String::new);
+        Self {
+            detail,
+            ..comparisons.finding()
+        }
+    }
+
+    /// The finding at the threshold, or in part where only the weaker one is met.
+    pub(crate) fn or_in_part(self, weaker: Option<&Self>) -> Self {
+        let or_in_part = |verdict, weaker: Option<Verdict>| match (verdict, weaker) {
+            (Verdict::Fails, Some(Verdict::Holds)) => Verdict::InPart,
+            (Verdict::Fails, Some(Verdict::NotDecidable)) => Verdict::NotDecidable,
+            (verdict, _) => verdict,
+        };
+        Self {
+            verdict: or_in_part(self.verdict, weaker.map(|weaker| weaker.verdict)),
+            leaning: or_in_part(self.leaning, weaker.map(|weaker| weaker.leaning)),
+            ..self
+        }
+    }
+
     /// Whether more accurate numbers could say more.
     #[must_use]
     pub fn is_open(&self) -> bool {
@@ -108,13 +132,7 @@ impl Finding {
     }
 }
 
-/// Counts single comparisons and makes a verdict of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    seen: Counts,
-    leaning: Counts,
-}
-
+/// Counts single comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Counts {
     yes: usize,
@@ -123,6 +141,8 @@ struct Counts {
 }
 
 impl Counts {
+    /// Counts a comparison: met when the margin exceeds its accuracy, not met
+    /// when it is below minus that, open in between or when not a number.
     fn margin(&mut self, margin: f64, accuracy: f64) {
         if margin > accuracy {
             self.yes += 1;
@@ -133,11 +153,22 @@ impl Counts {
         }
     }
 
-    /// The verdict that stands whichever way the open comparisons go.
+    const fn all(self) -> usize {
+        self.yes + self.no + self.open
+    }
+
+    /// The verdict that stands whichever way the open comparisons go: holds when all are met, in
+    /// part when at least [`IN_PART`] of them are, else fails.
     fn verdict(self) -> Verdict {
-        let all = self.yes + self.no + self.open;
+        let all = self.all();
+        let when_met = |met: usize| match met {
+            _ if all == 0 => Verdict::NotDecidable,
+            met if met == all => Verdict::Holds,
+            met if met as f64 >= IN_PART * all as f64 => Verdict::InPart,
+            _ => Verdict::Fails,
+        };
         // More comparisons met never make a verdict worse: the extremes decide.
-        let (least, most) = (sure(self.yes, all), sure(self.yes + self.open, all));
+        let (least, most) = (when_met(self.yes), when_met(self.yes + self.open));
         if least == most {
             least
         } else {
@@ -146,103 +177,74 @@ impl Counts {
     }
 }
 
-/// The verdict when so many of all comparisons are met.
-fn sure(met: usize, all: usize) -> Verdict {
-    if all == 0 {
-        Verdict::NotDecidable
-    } else if met == all {
-        Verdict::Holds
-    } else if met as f64 >= IN_PART * all as f64 {
-        Verdict::InPart
-    } else {
-        Verdict::Fails
-    }
-}
-
-impl Tally {
-    /// Counts a comparison: met when the margin exceeds its accuracy, not met
-    /// when it is below minus that, open in between or when not a number.
-    pub fn margin(&mut self, margin: f64, accuracy: f64) {
-        self.seen.margin(margin, accuracy);
-        self.leaning.margin(margin, 0.0);
-    }
-
-    /// Counts a plain yes or no.
-    pub fn answer(&mut self, yes: bool) {
-        self.margin(if yes { 1.0 } else { -1.0 }, 0.0);
-    }
-
-    /// Holds when all are met, in part when at least [`IN_PART`] of them are, else
-    /// fails; not decidable when open ones could change that.
-    #[must_use]
-    pub fn verdict(self) -> Verdict {
-        self.seen.verdict()
-    }
-
-    /// The same by the signs of the margins alone.
-    #[must_use]
-    pub fn leaning(self) -> Verdict {
-        self.leaning.verdict()
-    }
-
-    /// How many were met, and of how many.
-    #[must_use]
-    pub fn counts(self) -> (usize, usize) {
-        let Counts { yes, no, open } = self.seen;
-        (yes, yes + no + open)
-    }
-}
-
-impl std::fmt::Display for Tally {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (met, all) = self.counts();
-        write!(f, "{met} of {all}")
-    }
-}
-
-/// The number whose margin is smallest, kept with its accuracy and place.
-#[derive(Debug)]
-pub struct Worst {
+/// The comparisons of a claim: how many are met, and the one with the smallest margin.
+#[derive(Clone, Debug)]
+pub(crate) struct Comparisons {
+    seen: Counts,
+    /// By the signs of the margins alone.
+    leaning: Counts,
     margin: f64,
     value: f64,
     accuracy: f64,
     place: String,
 }
 
-impl Worst {
-    /// None seen yet.
-    #[must_use]
-    pub fn none() -> Self {
+impl Default for Comparisons {
+    fn default() -> Self {
         Self {
+            seen: Counts::default(),
+            leaning: Counts::default(),
             margin: f64::INFINITY,
             value: f64::NAN,
             accuracy: f64::NAN,
             place: String::new(),
         }
     }
+}
 
-    /// Keeps this one if its margin is the smallest so far.
-    pub fn see(&mut self, margin: f64, value: f64, accuracy: f64, place: impl FnOnce() -> String) {
+impl Comparisons {
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.seen.all() == 0
+    }
+
+    /// Adds the comparison of a value that has the accuracy of its margin.
+    pub(crate) fn add(
+        &mut self,
+        margin: f64,
+        value: f64,
+        accuracy: f64,
+        place: impl FnOnce() -> String,
+    ) {
+        self.compare(margin, accuracy, value, accuracy, place);
+    }
+
+    /// Adds the comparison of a value whose margin has an accuracy of its own.
+    pub(crate) fn compare(
+        &mut self,
+        margin: f64,
+        margin_accuracy: f64,
+        value: f64,
+        accuracy: f64,
+        place: impl FnOnce() -> String,
+    ) {
+        self.seen.margin(margin, margin_accuracy);
+        self.leaning.margin(margin, 0.0);
         if margin < self.margin || margin.is_nan() {
-            *self = Self {
-                margin,
-                value,
-                accuracy,
-                place: place(),
-            };
+            (self.margin, self.value, self.accuracy) = (margin, value, accuracy);
+            self.place = place();
         }
     }
 
-    /// The finding with the tally's verdict.
-    #[must_use]
-    pub fn finding(self, tally: Tally) -> Finding {
-        let detail = match self.place.is_empty() {
-            true => format!("{tally} comparisons met"),
-            false => format!("{tally} comparisons met; nearest or worst: {}", self.place),
-        };
+    /// The finding with the number whose margin is smallest.
+    pub(crate) fn finding(self) -> Finding {
+        let (met, all) = (self.seen.yes, self.seen.all());
+        let mut detail = format!("{met} of {all} comparisons met");
+        if !self.place.is_empty() {
+            detail += &format!("; nearest or worst: {}", self.place);
+        }
         Finding {
-            verdict: tally.verdict(),
-            leaning: tally.leaning(),
+            verdict: self.seen.verdict(),
+            leaning: self.leaning.verdict(),
             value: self.value,
             accuracy: self.accuracy,
             expected: None,

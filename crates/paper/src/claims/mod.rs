@@ -1,4 +1,4 @@
-//! What the paper says, held against what the model shows.
+//! The paper's statements, compared with the model's numbers.
 //!
 //! Claims are rows of a data file; each names a predicate, which is code on
 //! plain numbers. No verdict is written down anywhere: change the numbers and
@@ -9,15 +9,16 @@ mod evidence;
 mod finding;
 mod predicates;
 mod report;
-mod rounded;
 
-pub use claim::{Claim, ClaimError, Evaluator, Needs, Predicate, claims, read};
-pub use evidence::{
-    Branch, Curve, Digitised, Evidence, Measured, Oil, Point, Ratio, SHOTS_PER_POINT,
-    SPEED_SCATTER_M_S,
+pub(crate) use claim::Predicate;
+pub use claim::{
+    Claim, ClaimError, EvaluatedClaim, Evaluator, Needs, Rounded, claims, evaluate_all,
+    evaluate_all_rounded, read,
 };
-pub use finding::{Distance, Finding, IN_PART, Tally, Verdict, Worst};
+pub use evidence::{Branch, Curve, Digitised, Evidence, Measured, Oil, Point};
+pub(crate) use evidence::{SHOTS_PER_POINT, SPEED_SCATTER_M_S};
+pub(crate) use finding::{Comparisons, IN_PART};
+pub use finding::{Distance, Finding, Verdict};
 pub use predicates::find as predicate;
 pub use report::{MEANING, claims_json, claims_markdown, computed_text};
 pub(crate) use report::{rounded_text, verdicts_text, with_unit};
-pub use rounded::{EvaluatedClaim, Rounded, evaluate_all, evaluate_all_rounded};

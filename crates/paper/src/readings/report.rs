@@ -1,6 +1,6 @@
 //! A scan over readings as a table and a page.
 
-use super::scan::{Factor, Row, Scan};
+use super::scan::{Row, Scan, SwitchOptions};
 use crate::claims::{Claim, EvaluatedClaim, Verdict, rounded_text, verdicts_text, with_unit};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
@@ -8,14 +8,13 @@ use std::fmt::Write as _;
 
 /// Marks a claim whose verdict in the default reading rounding of the printed
 /// constants alone flips.
-pub const FLIPPED: &str = "†";
+pub(crate) const FLIPPED: &str = "†";
 
 /// The same in the closest reading.
 const FLIPPED_IN_CLOSEST: &str = "‡";
 
 /// One row a reading: its switches, its score, the verdict of each claim.
-#[must_use]
-pub fn scan_csv(scan: &Scan) -> String {
+pub(crate) fn scan_csv(scan: &Scan) -> String {
     let switches = Reading::switches().iter().map(|switch| switch.name);
     let claims = scan.claims.iter().map(|claim| claim.id.as_str());
     let header: Vec<&str> = switches.chain(["score"]).chain(claims).collect();
@@ -35,8 +34,7 @@ pub fn scan_csv(scan: &Scan) -> String {
 }
 
 /// What the scan shows, for people.
-#[must_use]
-pub fn scan_markdown(scan: &Scan) -> String {
+pub(crate) fn scan_markdown(scan: &Scan) -> String {
     let mut page = String::from("# Which claims hold in which reading\n\n");
     page.push_str(
         "The paper leaves open what these switches decide. The score counts a claim that holds as \
@@ -131,7 +129,7 @@ fn product(page: &mut String, scan: &Scan) {
 }
 
 /// Switches with the number of their options.
-fn factors(factors: &[Factor]) -> String {
+fn factors(factors: &[SwitchOptions]) -> String {
     let texts = factors
         .iter()
         .map(|(name, options)| format!("{name} ({})", options.len()));
@@ -241,8 +239,10 @@ fn prices(page: &mut String, scan: &Scan) {
 
 /// What rounding does when the dry balls' Poisson ratio is 0.3 to one digit
 /// instead of two: the claims whose verdict then differs.
-#[must_use]
-pub fn two_digits_markdown(one_digit: &[EvaluatedClaim], two_digits: &[EvaluatedClaim]) -> String {
+pub(crate) fn two_digits_markdown(
+    one_digit: &[EvaluatedClaim],
+    two_digits: &[EvaluatedClaim],
+) -> String {
     let mut page = String::from(
         "\n## If steel's 0.3 means the handbooks' 0.30\n\nThe verdicts of claims.md let the printed Poisson \
          ratio of steel, 0.3, lie between 0.25 and 0.35, as its one digit says. Taken for the handbooks' \

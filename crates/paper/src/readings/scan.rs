@@ -1,8 +1,8 @@
 //! Which claims hold in which reading.
 
-use super::sharpened::sharpened;
+use super::rounding::sharpened;
 use crate::claims::{Claim, Evaluator, Verdict, claims};
-use crate::reproduce::{Effort, Gathering, Memory, Progress, ReproduceError, gather_remembering};
+use crate::reproduce::{Effort, Gathering, Progress, ReproduceError, ShotCache, gather_cached};
 use hertzchain_experiment::Reading;
 use std::time::Instant;
 
@@ -27,8 +27,8 @@ impl Row {
     /// The same without claims that rounding of the printed constants leaves open.
     #[must_use]
     pub fn score_without(&self, flipped: &[usize]) -> f64 {
-        let lost = flipped.iter().filter_map(|&claim| self.verdicts.get(claim));
-        self.score() - lost.map(|verdict| verdict.score()).sum::<f64>()
+        let open = flipped.iter().filter_map(|&claim| self.verdicts.get(claim));
+        self.score() - open.map(|verdict| verdict.score()).sum::<f64>()
     }
 
     /// Claims met better, and worse, than in another reading, by index.
@@ -49,9 +49,9 @@ impl Row {
     }
 }
 
-/// What a claim that the default reading does not meet costs elsewhere.
+/// Cost of a claim that the default reading does not meet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Price {
+pub(crate) struct Price {
     /// The claim, by index.
     pub claim: usize,
     /// The best reading in which it is met better than in the default one;
@@ -69,10 +69,10 @@ pub struct Scan {
     /// One switch changed at a time.
     pub single: Vec<Row>,
     /// Switches of the full product with their options, the default first.
-    pub product_of: Vec<Factor>,
+    pub product_of: Vec<SwitchOptions>,
     /// Switches that move a verdict but would have made the product larger
     /// than asked; the search for the closest reading still tries them.
-    pub left_out: Vec<Factor>,
+    pub left_out: Vec<SwitchOptions>,
     /// The product.
     pub product: Vec<Row>,
     /// Readings tried on the way from the best of the product to the closest.
@@ -100,7 +100,7 @@ pub fn scan(
     let start = Instant::now();
     let scanner = Scanner {
         evaluators: claims()?,
-        memory: Memory::default(),
+        cache: ShotCache::default(),
         speeds_m_s,
         accuracy,
         progress,
@@ -180,7 +180,7 @@ impl Scan {
     /// For each claim that the default reading does not fully meet, the best
     /// reading that meets it better.
     #[must_use]
-    pub fn prices(&self) -> Vec<Price> {
+    pub(crate) fn prices(&self) -> Vec<Price> {
         let open = self.default.verdicts.iter().enumerate();
         let open = open.filter(|(_, verdict)| **verdict != Verdict::Holds);
         open.map(|(claim, verdict)| self.price(claim, *verdict))
@@ -225,12 +225,12 @@ fn singles(from: &Reading) -> Vec<Reading> {
 }
 
 /// A switch with the options that move a verdict, the default first.
-pub type Factor = (&'static str, Vec<&'static str>);
+pub type SwitchOptions = (&'static str, Vec<&'static str>);
 
 /// Switches of the product, those that move most verdicts first, until the
 /// product would be too large; and those for which there was no room.
-fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<Factor>) {
-    let mut moving: Vec<(usize, Factor)> = Vec::new();
+fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<SwitchOptions>, Vec<SwitchOptions>) {
+    let mut moving: Vec<(usize, SwitchOptions)> = Vec::new();
     for switch in Reading::switches() {
         let mut options: Vec<&'static str> = switch.options.first().copied().into_iter().collect();
         let mut moved = 0;
@@ -262,7 +262,7 @@ fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<Factor>, Vec<Fact
 }
 
 /// All combinations of the options.
-fn product(factors: &[Factor]) -> Vec<Reading> {
+fn product(factors: &[SwitchOptions]) -> Vec<Reading> {
     let start = vec![Reading::default()];
     factors.iter().fold(start, |readings, (switch, options)| {
         let with = |reading: &Reading| {
@@ -277,7 +277,7 @@ fn product(factors: &[Factor]) -> Vec<Reading> {
 
 struct Scanner<'a> {
     evaluators: Vec<Evaluator>,
-    memory: Memory,
+    cache: ShotCache,
     speeds_m_s: &'a [f64],
     accuracy: f64,
     progress: &'a dyn Progress,
@@ -293,7 +293,7 @@ impl Scanner<'_> {
                 accuracy,
                 effort: Effort::Lean(&self.evaluators),
             };
-            gather_remembering(&how, &self.memory)
+            gather_cached(&how, &self.cache)
         })?;
         let findings = self
             .evaluators

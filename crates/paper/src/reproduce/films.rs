@@ -1,15 +1,15 @@
-//! Shots looked at over time, for pictures.
+//! Shots over time, for pictures.
 
-use super::cases::Cases;
+use super::ReproduceError;
+use super::cases::{Cases, failed};
 use super::gather::plan;
-use super::{ReproduceError, failed};
 use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::Budget;
 use hertzchain_sim::shoot;
 use rayon::prelude::*;
 
 /// Case and speed in m/s of the four panels of the paper's Fig. 2.
-pub const SIGNAL_SHOTS: [(&str, f64); 4] = [
+const SIGNAL_SHOTS: [(&str, f64); 4] = [
     ("dry", 0.1368),
     ("pump", 1.152),
     ("gear", 0.1396),
@@ -18,7 +18,7 @@ pub const SIGNAL_SHOTS: [(&str, f64); 4] = [
 
 /// One dry and one wet shot that are followed bead by bead, at the same
 /// speed: that of the split pulse of the paper's Fig. 2 (d).
-pub const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
+const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
 
 /// The paper's channel, bead sensor plus wall, of one shot.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +63,7 @@ const FILM_ACCURACY: f64 = 1e-9;
 ///
 /// # Errors
 /// The first shot that can't be computed.
-pub fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
+pub(super) fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
     SIGNAL_SHOTS
         .par_iter()
         .map(|(case, speed)| signal(cases, case, *speed, accuracy))
@@ -102,7 +102,7 @@ fn signal(
 ///
 /// # Errors
 /// The first shot that can't be computed.
-pub fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
+pub(super) fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
     FILM_SHOTS
         .par_iter()
         .map(|(case, speed)| film(cases, case, *speed))

@@ -1,14 +1,16 @@
 //! From shots to the numbers that claims are evaluated on.
 
-use super::cases::Cases;
-use super::memory::Memory;
+use super::ReproduceError;
+use super::cases::{Cases, failed};
 use super::point::{checked, excess_s, read_off_all};
-use super::{ReproduceError, failed};
 use crate::claims::{Curve, Evaluator, Evidence, Point};
 use hertzchain_chain::{Chain, Sensor};
 use hertzchain_experiment::{Experiment, Reading};
 use hertzchain_sim::{Control, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot};
 use rayon::prelude::*;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How the paper's chains are shot.
 #[derive(Clone, Debug)]
@@ -50,21 +52,21 @@ pub fn gather(
     gathered(how, change, None, done)
 }
 
-/// The same without changes, looking into a memory before shooting.
+/// The same without changes, with a cache of shots.
 ///
 /// # Errors
 /// As [`gather`].
-pub fn gather_remembering(
+pub(crate) fn gather_cached(
     how: &Gathering<'_>,
-    memory: &Memory,
+    cache: &ShotCache,
 ) -> Result<Evidence, ReproduceError> {
-    gathered(how, &|_, _, _| {}, Some(memory), &|| {})
+    gathered(how, &|_, _, _| {}, Some(cache), &|| {})
 }
 
 fn gathered(
     how: &Gathering<'_>,
     change: Change<'_>,
-    memory: Option<&Memory>,
+    cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Evidence, ReproduceError> {
     let cases = Cases::new(&how.reading)?;
@@ -72,15 +74,15 @@ fn gathered(
     let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
     let jobs: Vec<_> = jobs.collect();
     let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
-        let target = Target::new(case, experiment, speed, how, change)?;
-        // What is remembered serves every pick.
-        Ok::<_, ReproduceError>(match memory {
+        let target = ShotTarget::new(case, experiment, speed, how, change)?;
+        // What is cached serves every pick.
+        Ok::<_, ReproduceError>(match cache {
             Some(_) => target.comparing_picks(),
             None => target,
         })
     };
-    let targets: Vec<Target> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
-    let points = shot_at(&targets, how.effort, memory, done)?;
+    let targets: Vec<ShotTarget> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
+    let points = shot_at(&targets, how.effort, cache, done)?;
     let curves = points.chunks(how.speeds_m_s.len().max(1));
     let curves = cases
         .all()
@@ -110,7 +112,7 @@ fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, Repr
 }
 
 /// A shot to be computed.
-struct Target {
+struct ShotTarget {
     case: &'static str,
     speed_m_s: f64,
     plan: Plan,
@@ -123,7 +125,7 @@ struct Target {
 /// The end beads are sampled this often to see how far they are apart, in s.
 const SAMPLED_S: f64 = 5e-6;
 
-impl Target {
+impl ShotTarget {
     fn new(
         case: &'static str,
         experiment: &Experiment,
@@ -189,13 +191,13 @@ impl Target {
 
 /// Points of all targets, in order.
 fn shot_at(
-    targets: &[Target],
+    targets: &[ShotTarget],
     effort: Effort<'_>,
-    memory: Option<&Memory>,
+    cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Point>, ReproduceError> {
-    let known = |target: &Target| {
-        let points = memory.and_then(|memory| memory.recall(&target.plan))?;
+    let known = |target: &ShotTarget| {
+        let points = cache.and_then(|cache| cache.restored(&target.plan))?;
         // Two cases may share a plan of which only one asks for the way back without gaps.
         let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
         has_all.then_some(points)
@@ -203,14 +205,14 @@ fn shot_at(
     let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
     let new = || targets.iter().zip(&points).enumerate();
     let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
-    let new: Vec<(usize, &Target)> = new.collect();
+    let new: Vec<(usize, &ShotTarget)> = new.collect();
     let fresh = match effort {
         Effort::Checked => checked_points(&new, done)?,
         Effort::Lean(_) => lean_points(&new, done)?,
     };
     for ((at, target), fresh) in new.into_iter().zip(fresh) {
-        if let Some(memory) = memory {
-            memory.keep(&target.plan, &fresh);
+        if let Some(cache) = cache {
+            cache.store(&target.plan, &fresh);
         }
         points[at] = Some(fresh);
     }
@@ -221,10 +223,10 @@ fn shot_at(
 }
 
 fn checked_points(
-    targets: &[(usize, &Target)],
+    targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Point>>, ReproduceError> {
-    let one = |(_, target): &(usize, &Target)| {
+    let one = |(_, target): &(usize, &ShotTarget)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
         point
@@ -237,7 +239,7 @@ fn checked_points(
 /// Shots that are followed to their end run in the wave loop, the others side by
 /// side in the ensemble loop.
 fn lean_points(
-    targets: &[(usize, &Target)],
+    targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Point>>, ReproduceError> {
     let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
@@ -246,7 +248,7 @@ fn lean_points(
     let control = Control::PerShot { checked: false };
     let mut passing = run_plans(&plans, control, set, done).into_iter();
     let followed: Vec<_> = targets.iter().filter(|(_, t)| t.plan.rebound).collect();
-    let one = |(_, target): &&(usize, &Target)| {
+    let one = |(_, target): &&(usize, &ShotTarget)| {
         let points = target.points(shoot(&target.plan));
         done();
         points
@@ -274,4 +276,40 @@ pub(super) fn plan(
     change(case, speed_m_s, &mut plan.chain);
     plan.accuracy = accuracy;
     Ok(plan)
+}
+
+/// Cache of shots by everything that decides them, each as every pick times it:
+/// many readings leave many of the paper's chains as they are.
+#[derive(Debug, Default)]
+pub(crate) struct ShotCache(Mutex<HashMap<[u64; 2], Vec<Point>>>);
+
+impl ShotCache {
+    /// The stored points of a plan, one a pick.
+    fn restored(&self, plan: &Plan) -> Option<Vec<Point>> {
+        let key = key(plan);
+        self.lock().get(&key).cloned()
+    }
+
+    /// Stores the points of a plan.
+    fn store(&self, plan: &Plan, points: &[Point]) {
+        let key = key(plan);
+        self.lock().insert(key, points.to_vec());
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<[u64; 2], Vec<Point>>> {
+        // A panic elsewhere leaves whole points behind.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Two independent hashes of a plan as written out, numbers to the last bit:
+/// among the thousands of plans of a scan no two share both.
+fn key(plan: &Plan) -> [u64; 2] {
+    let text = format!("{plan:?}");
+    [0_u8, 1].map(|salt| {
+        let mut hasher = DefaultHasher::new();
+        salt.hash(&mut hasher);
+        text.hash(&mut hasher);
+        hasher.finish()
+    })
 }

@@ -1,28 +1,18 @@
 //! Everything in the paper, computed anew.
 
 mod cases;
-mod closing;
-mod error;
 mod films;
 mod gather;
-mod memory;
 mod point;
-mod progress;
 mod provenance;
 mod reproduction;
-mod speeds;
-mod stale_files;
 mod tables;
 
-pub use cases::{CASES, Cases, OILS};
-pub use error::ReproduceError;
-pub(crate) use error::failed;
-pub use films::{FILM_SHOTS, Film, SIGNAL_SHOTS, SignalShot, films, signals};
-pub use gather::{Change, Effort, Gathering, gather, gather_remembering};
-pub use memory::Memory;
-pub use progress::{Progress, Silent};
-pub use provenance::{PROVENANCE, Provenance};
+pub(crate) use cases::OILS;
+pub use cases::{CASES, Cases, ReproduceError, SPEEDS_M_S};
+pub(crate) use films::{Film, SignalShot};
+pub use gather::{Change, Effort, Gathering, gather};
+pub(crate) use gather::{ShotCache, gather_cached};
+pub use provenance::{PROVENANCE, Progress, Provenance, Silent, remove_stale_files};
 pub use reproduction::{Options, Reproduction, reproduce};
-pub use speeds::SPEEDS_M_S;
-pub use stale_files::remove_stale_files;
-pub use tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};
+pub use tables::{oils_csv, tof_csv};

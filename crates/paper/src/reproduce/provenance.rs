@@ -1,14 +1,17 @@
-//! Where numbers come from.
+//! The provenance of the numbers of a folder, the removal of what an earlier run left there, and
+//! the progress of a long computation.
 
+use super::ReproduceError;
 use serde_json::{Value, json};
 use std::fs;
+use std::path::{Component, Path};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Name of the file.
+/// Name of the file with the provenance.
 pub const PROVENANCE: &str = "provenance.json";
 
-/// What the file says wrote it.
-pub(super) const PROGRAM: &str = "hertzchain";
+/// Name of the program in the file.
+const PROGRAM: &str = "hertzchain";
 
 /// Where the numbers of a reproduction come from.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,3 +72,68 @@ pub(super) fn machine() -> String {
     let model = model.map_or(String::new(), |model| format!(", {model}"));
     format!("{arch}, {os}{model}, {threads} threads")
 }
+
+/// Removes what the folder's provenance lists, but for the names to keep: tables
+/// of an earlier run next to those of this one would seem to belong together.
+/// Without a provenance of this program nothing is removed.
+///
+/// # Errors
+/// The first file that can't be removed.
+pub fn remove_stale_files(folder: &Path, keep: &[&str]) -> Result<(), ReproduceError> {
+    let old = listed(&folder.join(PROVENANCE));
+    for name in old.iter().filter(|name| !keep.contains(&name.as_str())) {
+        let path = folder.join(name);
+        let is_file = fs::symlink_metadata(&path).is_ok_and(|about| about.is_file());
+        if is_file && is_plain(name) {
+            fs::remove_file(&path).map_err(|error| ReproduceError::Remove {
+                path: path.display().to_string(),
+                error,
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// The files that a provenance lists; none if it is not one of this program.
+fn listed(provenance: &Path) -> Vec<String> {
+    let text = fs::read(provenance).unwrap_or_default();
+    let value: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let ours = value.get("program").and_then(Value::as_str) == Some(PROGRAM);
+    let files = value.get("files").filter(|_| ours);
+    let names = files.and_then(Value::as_array).into_iter().flatten();
+    names
+        .filter_map(|name| Some(name.as_str()?.to_owned()))
+        .collect()
+}
+
+/// Whether a name is that of a file in the folder itself, not a way out of it.
+fn is_plain(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    matches!(
+        (parts.next(), parts.next()),
+        (Some(Component::Normal(_)), None)
+    )
+}
+
+/// Receives the progress of a long computation; may be called from any thread.
+pub trait Progress: Sync {
+    /// A stage of so many steps begins.
+    fn begin(&self, stage: &str, steps: u64);
+    /// One step of the stage is done.
+    fn advance(&self);
+    /// A note before a stage begins.
+    fn note(&self, _text: &str) {}
+}
+
+/// Reports nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _stage: &str, _steps: u64) {}
+    fn advance(&self) {}
+}
+
+#[cfg(test)]
+#[path = "tests/stale_files.rs"]
+mod tests;

@@ -1,13 +1,11 @@
 //! The whole of a reproduction, from shots to verdicts.
 
-use super::cases::{CASES, Cases};
+use super::cases::{CASES, Cases, SPEEDS_M_S, failed};
 use super::films::{Film, SignalShot, films, signals};
 use super::gather::{Effort, Gathering, gather};
 use super::provenance::machine;
-use super::{
-    Progress, Provenance, ReproduceError, SPEEDS_M_S, oils_csv, power_law_residuals_csv,
-    power_laws_csv, ratios_csv, tof_csv,
-};
+use super::tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};
+use super::{Progress, Provenance, ReproduceError};
 use crate::claims::{
     EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all_rounded,
 };
@@ -174,7 +172,7 @@ fn provenance(
     let hertz = cases.get("hertz").ok_or_else(no_case)?;
     let (plan, _warnings) = Plan::from_experiment(hertz, None)?;
     let shot = shoot(&plan.with_accuracy(options.accuracy))
-        .map_err(|error| super::failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
+        .map_err(|error| failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
     let points = evidence.curves.iter().flat_map(|curve| &curve.points);
     Ok(Provenance {
         version: env!("CARGO_PKG_VERSION"),

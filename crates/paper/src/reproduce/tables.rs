@@ -1,15 +1,15 @@
 //! Tables of a reproduction as CSV.
 
-use super::cases::{CASES, Cases, OILS};
-use super::{ReproduceError, SPEEDS_M_S};
+use super::ReproduceError;
+use super::cases::{CASES, Cases, OILS, SPEEDS_M_S};
 use crate::claims::{Branch, Curve, Evidence, Point};
 use hertzchain_chain::{Chain, Pair};
 use std::fmt::Write as _;
 
 /// A table as CSV.
-struct Csv(String);
+struct TableText(String);
 
-impl Csv {
+impl TableText {
     fn new(header: &str) -> Self {
         Self(format!("{header}\n"))
     }
@@ -18,12 +18,9 @@ impl Csv {
     fn row(&mut self, names: &[&str], speed_m_s: Option<f64>, numbers: &[f64]) {
         let mut fields: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         fields.extend(speed_m_s.map(|speed| speed.to_string()));
-        let number = |n: &f64| {
-            if n.is_finite() {
-                format!("{n:.12e}")
-            } else {
-                String::new()
-            }
+        let number = |n: &f64| match n.is_finite() {
+            true => format!("{n:.12e}"),
+            false => String::new(),
         };
         fields.extend(numbers.iter().map(number));
         let _ = writeln!(self.0, "{}", fields.join(","));
@@ -38,7 +35,7 @@ fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
 /// Times of flight and peaks, one row a shot.
 #[must_use]
 pub fn tof_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new(
+    let mut csv = TableText::new(
         "case,speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,\
          returning_peak_n,striker_rebound_m_s,accuracy_reached",
     );
@@ -64,8 +61,8 @@ fn tof_row(p: &Point) -> [f64; 7] {
 
 /// Wet over dry times of flight.
 #[must_use]
-pub fn ratios_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
+pub(super) fn ratios_csv(evidence: &Evidence) -> String {
+    let mut csv = TableText::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
     for case in OILS {
         for r in evidence.ratios(case) {
             let numbers = [r.incident, r.reflected, r.accuracy_reached];
@@ -79,8 +76,8 @@ pub fn ratios_csv(evidence: &Evidence) -> String {
 /// weigh the same. Residuals are relative; in the last column they are in
 /// standard errors of the paper's 20-shot means, from a fit weighted by these.
 #[must_use]
-pub fn power_laws_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new(
+pub(super) fn power_laws_csv(evidence: &Evidence) -> String {
+    let mut csv = TableText::new(
         "case,branch,prefactor_s,prefactor_error_s,exponent,exponent_error,r_squared,\
          residual_rms,residual_largest,weighted_residual_largest_in_standard_errors",
     );
@@ -114,11 +111,11 @@ fn power_law_row(curve: &Curve, branch: Branch) -> Option<[f64; 8]> {
     ])
 }
 
-/// The residual of every point from its power law, relative, beside the
+/// The residual of every point from its power law, relative, and the
 /// relative standard error that the paper's 20-shot mean would have.
 #[must_use]
-pub fn power_law_residuals_csv(evidence: &Evidence) -> String {
-    let mut csv = Csv::new("case,branch,speed_m_s,tof_s,residual,standard_error");
+pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
+    let mut csv = TableText::new("case,branch,speed_m_s,tof_s,residual,standard_error");
     for curve in curves(evidence) {
         for branch in Branch::BOTH {
             let Ok(fit) = curve.power_law(branch) else {
@@ -140,7 +137,7 @@ pub fn power_law_residuals_csv(evidence: &Evidence) -> String {
 /// # Errors
 /// A chain that can't be set up.
 pub fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
-    let mut csv = Csv::new(
+    let mut csv = TableText::new(
         "case,speed_m_s,kinematic_viscosity_m2_s,density_kg_m3,dynamic_viscosity_pa_s,\
          effective_young_modulus_pa,effective_poisson_ratio,effective_viscosity_pa_s,\
          effective_stiffness_n_m3_2,effective_relaxation_time_s",

@@ -1,4 +1,4 @@
-//! What the paper says of its rig, held against virtual ones.
+//! The paper's statements on its rig, compared with virtual ones.
 //!
 //! The paper does not say how its beads rub, how they are laid, how unlike
 //! they are, nor how its spring presses; so a [`Design`] of rigs is tried. Each runs
@@ -7,16 +7,13 @@
 
 mod design;
 mod evidence;
-mod observe;
 mod predicates;
 mod report;
-mod spread;
 
 pub use design::{Design, FACTORS, Factor, Rig};
-pub use evidence::{AtSpeed, Evidence, Observed, mean, rebound_m_s, spread_s};
-pub use observe::observe;
+pub use evidence::{AtSpeed, Estimate, Evidence, Observed, observe, root_mean_square, typical};
+pub(crate) use evidence::{mean, rebound_m_s, spread_s};
 pub use report::{MEANING, RigClaims, series_csv};
-pub use spread::{Estimate, root_mean_square, typical};
 
 use crate::claims::{ClaimError, Evaluator, read};
 

@@ -1,8 +1,10 @@
 //! Predicates: code that decides a claim on what rigs have shown, by name.
 
-use super::evidence::{AtSpeed, Evidence, Observed, each, largest_m, rebound_m_s, spread_s, tof_s};
-use super::spread::{Estimate, deviation, mean_of, root_mean_square, typical};
-use crate::claims::{Branch, Claim, Finding, Needs, Predicate, Tally, Worst};
+use super::evidence::{
+    AtSpeed, Estimate, Evidence, Observed, deviation, each, largest_m, mean_of, rebound_m_s,
+    root_mean_square, spread_s, tof_s, typical,
+};
+use crate::claims::{Branch, Claim, Comparisons, Finding, Needs, Predicate};
 use hertzchain_sim::rig::Shot;
 
 static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
@@ -126,17 +128,15 @@ fn a_rig_each(
     evidence: &Evidence,
     log_of: impl Fn(&Observed) -> Estimate,
 ) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for observed in &evidence.rigs {
         let log = log_of(observed);
-        let margin = log.value - claim.threshold.ln();
-        tally.margin(margin, log.error);
-        let value = log.value.exp();
-        worst.see(margin, value, value * log.error, || {
+        let (margin, value) = (log.value - claim.threshold.ln(), log.value.exp());
+        comparisons.compare(margin, log.error, value, value * log.error, || {
             observed.rig.name.clone()
         });
     }
-    worst.finding(tally)
+    comparisons.finding()
 }
 
 /// One comparison a series.
@@ -150,16 +150,15 @@ fn a_series_each(
         Needs::Below => -1.0,
         Needs::Above | Needs::Within => 1.0,
     };
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for observed in &evidence.rigs {
         for at in within(claim, observed) {
             let Estimate { value, error } = of_series(at);
             let margin = (side * (value - claim.threshold)).min(most - value);
-            tally.margin(margin, error);
-            worst.see(margin, value, error, || {
+            comparisons.add(margin, value, error, || {
                 format!("{}, {:.3} m/s", observed.rig.name, at.speed_m_s)
             });
         }
     }
-    worst.finding(tally)
+    comparisons.finding()
 }

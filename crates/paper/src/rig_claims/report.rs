@@ -2,8 +2,9 @@
 
 use super::claims;
 use super::design::{Design, FACTORS, Rig};
-use super::evidence::{AtSpeed, Evidence, Observed, each, largest_m, mean, rebound_m_s, tof_s};
-use super::spread::deviation;
+use super::evidence::{
+    AtSpeed, Evidence, Observed, deviation, each, largest_m, mean, rebound_m_s, tof_s,
+};
 use crate::claims::{
     Branch, ClaimError, EvaluatedClaim, claims_json, claims_markdown, computed_text, evaluate_all,
 };

@@ -204,7 +204,7 @@ struct Folder {
 fn fingerprint(plan: &Plan) -> Fingerprint {
     let inputs = Inputs::of("campaign").count("seed", plan.seed);
     inputs
-        .text("experiment", &plan.experiment.understood())
+        .text("experiment", &plan.experiment.canonical_text())
         .fingerprint()
 }
 
@@ -423,12 +423,9 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
             text("low_pass_hz", amplifier.low_pass_hz),
             (
                 "low_pass_order".to_owned(),
-                experiment::ORDERS[amplifier.order as usize].to_owned(),
+                amplifier.order.name().to_owned(),
             ),
-            (
-                "low_pass_kind".to_owned(),
-                experiment::KINDS[amplifier.kind as usize].to_owned(),
-            ),
+            ("low_pass_kind".to_owned(), amplifier.kind.name().to_owned()),
         ],
     }
 }

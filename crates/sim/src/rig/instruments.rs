@@ -2,7 +2,7 @@
 //! the random streams that they draw from.
 
 use crate::rig::RigError;
-use hertzchain_experiment::{Actuator, Amplifier as Settings, Factor, Photogate, Recorder};
+use hertzchain_experiment::{Actuator, Amplifier as Settings, LowPassFactor, Photogate, Recorder};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
@@ -168,7 +168,7 @@ const MANY: usize = 5;
 /// Charge amplifier of two piezo discs on a sampling grid.
 ///
 /// v = G (S₇ F₇ + S_w F_w), then a high-pass of first order, H(s) = s/(s + ω_h), then a
-/// low-pass, a product of [factors](Factor) of first and second order.
+/// low-pass, a product of [factors](LowPassFactor) of first and second order.
 #[derive(Clone, Copy, Debug)]
 pub struct Amplifier {
     filter: Filter,
@@ -248,8 +248,8 @@ fn system<const N: usize>(settings: &Settings) -> ([[f64; N]; N], [f64; N], usiz
     let (mut output, mut next) = (0, 1);
     for factor in settings.factors() {
         let (rate, driven, damping) = match *factor {
-            Factor::One { frequency } => (frequency, next, None),
-            Factor::Two { frequency, damping } => (frequency, next + 1, Some(damping)),
+            LowPassFactor::One { frequency } => (frequency, next, None),
+            LowPassFactor::Two { frequency, damping } => (frequency, next + 1, Some(damping)),
         };
         let rate = TAU * settings.low_pass_hz * rate;
         // Of the state that the input drives.

@@ -16,7 +16,7 @@ fn a_table_grows_with_its_rows() {
     let table = |rows: usize| {
         let empty = VerdictMatrix::new(&["a", "b"]);
         let full = (0..rows).fold(empty, |m, _| m.row("claim", &[Verdict::Holds]));
-        full.figure().size_mm().1
+        full.figure().height_mm
     };
     assert!(table(20) > table(10));
 }

@@ -3,7 +3,7 @@ use super::*;
 #[test]
 fn digits_have_equal_width_so_tick_labels_line_up() {
     let widths: Vec<f64> = ('0'..='9')
-        .map(|c| GlyphId::of(Style::Regular, c).advance())
+        .map(|c| GlyphId::of(Face::Regular, c).advance())
         .collect();
     assert!(widths.iter().all(|w| *w == widths[0]));
 }
@@ -11,7 +11,7 @@ fn digits_have_equal_width_so_tick_labels_line_up() {
 #[test]
 fn every_character_of_the_markup_table_is_in_the_font() {
     for (name, c) in super::super::markup::SYMBOLS {
-        for style in [Style::Regular, Style::Italic] {
+        for style in [Face::Regular, Face::Italic] {
             assert_ne!(GlyphId::of(style, *c).index, 0, "\\{name}");
         }
     }

@@ -1,7 +1,7 @@
 use super::*;
 
-fn run(text: &str, style: Style, script: Script) -> Run {
-    Run {
+fn run(text: &str, style: Face, script: Script) -> TextRun {
+    TextRun {
         text: text.into(),
         style,
         script,
@@ -12,11 +12,11 @@ fn run(text: &str, style: Style, script: Script) -> Run {
 fn subscripts_are_italic_unless_marked_upright() {
     let runs = parse(r"$K_{\mathrm{eff}}$ of $v_0$");
     let expected = vec![
-        run("K", Style::Italic, Script::Base),
-        run("eff", Style::Regular, Script::Sub),
-        run(" of ", Style::Regular, Script::Base),
-        run("v", Style::Italic, Script::Base),
-        run("0", Style::Regular, Script::Sub),
+        run("K", Face::Italic, Script::Base),
+        run("eff", Face::Regular, Script::Sub),
+        run(" of ", Face::Regular, Script::Base),
+        run("v", Face::Italic, Script::Base),
+        run("0", Face::Regular, Script::Sub),
     ];
     assert_eq!(runs, expected);
 }
@@ -24,14 +24,14 @@ fn subscripts_are_italic_unless_marked_upright() {
 #[test]
 fn powers_of_ten_have_a_true_minus_sign() {
     let runs = parse("$10^{-5}$");
-    assert_eq!(runs[1], run("−5", Style::Regular, Script::Super));
+    assert_eq!(runs[1], run("−5", Face::Regular, Script::Super));
 }
 
 #[test]
 fn file_names_outside_dollars_are_literal() {
     assert_eq!(
         parse("hertz_x^2-{a}"),
-        vec![run("hertz_x^2-{a}", Style::Regular, Script::Base)]
+        vec![run("hertz_x^2-{a}", Face::Regular, Script::Base)]
     );
 }
 
@@ -39,11 +39,11 @@ fn file_names_outside_dollars_are_literal() {
 fn greek_commands_become_letters() {
     assert_eq!(
         parse(r"$\alpha$"),
-        vec![run("α", Style::Italic, Script::Base)]
+        vec![run("α", Face::Italic, Script::Base)]
     );
     assert_eq!(
         parse(r"$\Delta$"),
-        vec![run("Δ", Style::Regular, Script::Base)]
+        vec![run("Δ", Face::Regular, Script::Base)]
     );
 }
 

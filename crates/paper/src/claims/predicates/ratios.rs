@@ -1,7 +1,9 @@
-//! Predicates on wet over dry incident ToFs.
+//! Predicates on wet over dry incident ToFs, and on where they pass 1.
 
-use super::{Worst, missing};
-use crate::claims::{Claim, Distance, Evidence, Finding, Ratio, Tally};
+use super::missing;
+use crate::claims::evidence::TofRatio;
+use crate::claims::finding::{Comparisons, Distance, Finding, Verdict};
+use crate::claims::{Claim, Evidence};
 
 /// Every ratio at the claim's speeds lies below the threshold.
 pub(super) fn below(claim: &Claim, evidence: &Evidence) -> Finding {
@@ -14,27 +16,26 @@ pub(super) fn above(claim: &Claim, evidence: &Evidence) -> Finding {
 }
 
 fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
         if ratios.is_empty() {
             return missing();
         }
-        let inside = |r: &&Ratio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
+        let inside = |r: &&TofRatio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
         for r in ratios.iter().filter(inside) {
             let margin = sign * (r.incident - claim.threshold);
-            let accuracy = r.accuracy_reached * r.incident;
-            tally.margin(margin, accuracy);
-            worst.see(margin, r.incident, accuracy, || {
+            let accuracy = r.accuracy();
+            comparisons.add(margin, r.incident, accuracy, || {
                 format!("{case} at {} m/s", r.speed_m_s)
             });
         }
     }
-    worst.finding(tally)
+    comparisons.finding()
 }
 
-/// How a speed is drawn along an axis.
-type Axis = fn(f64) -> f64;
+/// The place of a speed along an axis.
+type SpeedAxis = fn(f64) -> f64;
 
 /// In every case the ratio rises over more than the threshold's share of the
 /// range of v.
@@ -49,8 +50,8 @@ pub(super) fn mainly_rises_log(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// A share without turns is exact as long as no step between neighbouring speeds
 /// could be one of the other sign.
-fn rises_along(claim: &Claim, evidence: &Evidence, axis: Axis) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> Finding {
+    let mut comparisons = Comparisons::default();
     let mut steps: Vec<Distance> = Vec::new();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
@@ -64,25 +65,24 @@ fn rises_along(claim: &Claim, evidence: &Evidence, axis: Axis) -> Finding {
             .map(|r| Placed {
                 at: axis(r.speed_m_s),
                 ratio: r.incident,
-                unsure: r.accuracy_reached * r.incident,
+                unsure: r.accuracy(),
             })
             .collect();
         let (rising, accuracy) = rising(&at);
         let (value, accuracy) = (rising / all, accuracy / all);
         let margin = value - claim.threshold;
-        tally.margin(margin, accuracy);
-        worst.see(margin, value, accuracy, || case.clone());
+        comparisons.add(margin, value, accuracy, || case.clone());
     }
     let in_accuracies = |step: &Distance| step.margin / step.accuracy;
     let nearest = |a: &Distance, b: &Distance| in_accuracies(a).total_cmp(&in_accuracies(b));
     Finding {
         nearest_change: steps.into_iter().min_by(nearest),
-        ..worst.finding(tally)
+        ..comparisons.finding()
     }
 }
 
 /// How far the step between two ratios is from 0.
-fn distance_from_flat(pair: &[Ratio]) -> Option<Distance> {
+fn distance_from_flat(pair: &[TofRatio]) -> Option<Distance> {
     let (low, high) = (pair.first()?, pair.last()?);
     Some(Distance {
         margin: (high.incident - low.incident).abs(),
@@ -158,14 +158,14 @@ fn turn_accuracy(three: [&Placed; 3], at_exact: f64) -> f64 {
 }
 
 /// Absolute accuracy of the difference of two ratios.
-fn step_accuracy(low: &Ratio, high: &Ratio) -> f64 {
-    low.accuracy_reached * low.incident + high.accuracy_reached * high.incident
+fn step_accuracy(low: &TofRatio, high: &TofRatio) -> f64 {
+    low.accuracy() + high.accuracy()
 }
 
 /// In every case the ratio at the highest speed exceeds the one at the lowest
 /// by more than the threshold.
 pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
         let (Some(first), Some(last)) = (ratios.first(), ratios.last()) else {
@@ -173,27 +173,23 @@ pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> Finding {
         };
         let value = last.incident - first.incident;
         let accuracy = step_accuracy(first, last);
-        tally.margin(value - claim.threshold, accuracy);
-        worst.see(value - claim.threshold, value, accuracy, || {
+        comparisons.add(value - claim.threshold, value, accuracy, || {
             format!("{case} from {} to {} m/s", first.speed_m_s, last.speed_m_s)
         });
     }
-    worst.finding(tally)
+    comparisons.finding()
 }
 
 /// Every case has a speed range in which the ratio falls from a maximum by
 /// more than the threshold.
 pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
         if ratios.is_empty() {
             return missing();
         }
-        let accuracy = ratios
-            .iter()
-            .map(|r| r.accuracy_reached * r.incident)
-            .fold(0.0, f64::max);
+        let accuracy = ratios.iter().map(|r| r.accuracy()).fold(0.0, f64::max);
         // Negative where the ratio rises throughout: the smallest rise.
         let (mut highest, mut fall, mut at) = (f64::NAN, f64::NEG_INFINITY, f64::NAN);
         for r in &ratios {
@@ -202,28 +198,27 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
             }
             highest = r.incident.max(highest);
         }
-        tally.margin(fall - claim.threshold, 2.0 * accuracy);
-        worst.see(fall - claim.threshold, fall, 2.0 * accuracy, || {
+        comparisons.add(fall - claim.threshold, fall, 2.0 * accuracy, || {
             format!("{case} at {at} m/s")
         });
     }
-    worst.finding(tally)
+    comparisons.finding()
 }
 
 /// How far ratios reach to both sides of 1: of two oils at the speed where that
 /// is most, and of the oil with most of it over its speeds. The number is the smaller
 /// of the two; negative where all lie on one side.
 pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
-    let oils: Vec<Vec<Ratio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
+    let oils: Vec<Vec<TofRatio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
     let Some(first) = oils.first().filter(|_| oils.iter().all(|o| !o.is_empty())) else {
         return missing();
     };
-    let at_speed = |r: &Ratio| {
-        let same = |other: &&Ratio| other.speed_m_s == r.speed_m_s;
+    let at_speed = |r: &TofRatio| {
+        let same = |other: &&TofRatio| other.speed_m_s == r.speed_m_s;
         let row = oils.iter().filter_map(|oil| oil.iter().find(same));
         both_sides(row, || format!("between oils at {} m/s", r.speed_m_s))
     };
-    let of_oil = |(case, oil): (&String, &Vec<Ratio>)| {
+    let of_oil = |(case, oil): (&String, &Vec<TofRatio>)| {
         both_sides(oil.iter(), || format!("between speeds with {case}"))
     };
     let farther = |a: &(f64, String), b: &(f64, String)| a.0.total_cmp(&b.0);
@@ -232,19 +227,18 @@ pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
         claim.cases.iter().zip(&oils).map(of_oil).max_by(farther),
     ];
     let unsure = oils.iter().flatten();
-    let unsure = unsure.map(|r| r.accuracy_reached * r.incident);
+    let unsure = unsure.map(|r| r.accuracy());
     let accuracy = unsure.fold(0.0, f64::max);
-    let (mut tally, mut worst) = (Tally::default(), Worst::none());
+    let mut comparisons = Comparisons::default();
     for (value, place) in most.into_iter().flatten() {
-        tally.margin(value - claim.threshold, accuracy);
-        worst.see(value - claim.threshold, value, accuracy, || place);
+        comparisons.add(value - claim.threshold, value, accuracy, || place);
     }
-    worst.finding(tally)
+    comparisons.finding()
 }
 
 /// The smaller of the distances that ratios reach below and above 1.
 fn both_sides<'a>(
-    ratios: impl Iterator<Item = &'a Ratio>,
+    ratios: impl Iterator<Item = &'a TofRatio>,
     place: impl Fn() -> String,
 ) -> (f64, String) {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
@@ -252,4 +246,175 @@ fn both_sides<'a>(
         (low.min(r.incident), high.max(r.incident))
     });
     ((1.0 - low).min(high - 1.0), place())
+}
+
+/// Speed at which a ratio passes 1, and its accuracy: linear in ln v between
+/// the two speeds around it. Δv/v is the error of the ratios over their slope in
+/// ln v, and what the chord may leave out.
+fn crossing(low: &TofRatio, high: &TofRatio) -> (f64, f64) {
+    let (before, after) = (low.incident - 1.0, high.incident - 1.0);
+    let span = (high.speed_m_s / low.speed_m_s).ln();
+    let part = before / (before - after);
+    let speed = low.speed_m_s * (part * span).exp();
+    let slope = (after - before) / span;
+    let from_tofs = low.accuracy().max(high.accuracy()) / slope.abs();
+    // A smooth curve leaves its chord by at most an eighth of the change of
+    // slope over the interval; slopes here change by less than themselves.
+    let from_chord = part * (1.0 - part) * span;
+    (speed, speed * (from_tofs + 0.5 * from_chord))
+}
+
+/// Speeds of crossings with their accuracy.
+type Crossings = Vec<(f64, f64)>;
+
+/// All crossings of 1, the upward ones first.
+fn crossings(ratios: &[TofRatio]) -> (Crossings, Crossings) {
+    let (mut up, mut down) = (Vec::new(), Vec::new());
+    for pair in ratios.windows(2) {
+        if let [low, high] = pair {
+            match (low.incident < 1.0, high.incident < 1.0) {
+                (true, false) => up.push(crossing(low, high)),
+                (false, true) => down.push(crossing(low, high)),
+                _ => {}
+            }
+        }
+    }
+    (up, down)
+}
+
+/// The ratios of a claim's first case.
+fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<TofRatio> {
+    let case = claim.cases.first();
+    case.map_or(Vec::new(), |case| evidence.ratios(case))
+}
+
+/// An upward passage counts 1, a downward one −2: the sum is 1 for one upward
+/// passage alone.
+const UPWARD: f64 = 1.0;
+const DOWNWARD: f64 = -2.0;
+
+/// Upward passages less twice the downward ones.
+fn count(ratios: &[TofRatio]) -> f64 {
+    let (up, down) = crossings(ratios);
+    up.len() as f64 * UPWARD + down.len() as f64 * DOWNWARD
+}
+
+/// Whether a ratio is 1 within its accuracy.
+fn is_open(ratio: &TofRatio) -> bool {
+    (ratio.incident - 1.0).abs() <= ratio.accuracy()
+}
+
+/// The smallest or largest count when every ratio that is 1 within its accuracy
+/// may lie below or above it: of all ways to end below and above 1, the best
+/// is carried from ratio to ratio.
+fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
+    // What is impossible is not a number, which `pick` passes over.
+    let possible = |r: &TofRatio, below: bool| match is_open(r) || (r.incident < 1.0) == below {
+        true => 0.0,
+        false => f64::NAN,
+    };
+    let sides = |r: &TofRatio| (possible(r, true), possible(r, false));
+    let mut all = ratios.iter().map(sides);
+    let first = all.next().unwrap_or_default();
+    let (below, above) = all.fold(first, |(was_below, was_above), (below, above)| {
+        (
+            below + pick(was_below, was_above + DOWNWARD),
+            above + pick(was_above, was_below + UPWARD),
+        )
+    });
+    pick(below, above)
+}
+
+/// By how much the count may be wrong. 0 when no ratio is so near to 1 that its
+/// side matters, for then the count is that of the exact ratios.
+fn count_accuracy(ratios: &[TofRatio]) -> f64 {
+    let value = count(ratios);
+    let (least, most) = (
+        extreme_count(ratios, f64::min),
+        extreme_count(ratios, f64::max),
+    );
+    (value - least).max(most - value)
+}
+
+/// The ratio that is nearest to 1, by its accuracies.
+fn nearest_to_1(ratios: &[TofRatio]) -> Option<&TofRatio> {
+    let by_accuracy = |r: &&TofRatio| (r.incident - 1.0).abs() / r.accuracy();
+    let near = |a: &&TofRatio, b: &&TofRatio| by_accuracy(a).total_cmp(&by_accuracy(b));
+    ratios.iter().min_by(near)
+}
+
+/// The ratio passes 1 once, upward. The number is that of upward passages less
+/// twice that of downward ones, which is 1 in no other case; not decidable where
+/// ratios that are 1 within their accuracy could change it. A passage is one
+/// between neighbouring speeds.
+pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> Finding {
+    let ratios = ratios(claim, evidence);
+    let (Some(nearest), Some(expected)) = (nearest_to_1(&ratios), claim.expected.first()) else {
+        return missing();
+    };
+    let (value, accuracy) = (count(&ratios), count_accuracy(&ratios));
+    let margin = claim.threshold - (value - expected).abs();
+    let detail = passages(&ratios, nearest);
+    Finding {
+        expected: Some(*expected),
+        nearest_change: Some(Distance {
+            margin: (nearest.incident - 1.0).abs(),
+            accuracy: nearest.accuracy(),
+        }),
+        ..Finding::of_one(margin, value, accuracy, detail)
+    }
+}
+
+/// The passages of 1, and the ratio nearest to it, in words.
+fn passages(ratios: &[TofRatio], nearest: &TofRatio) -> String {
+    let (up, down) = crossings(ratios);
+    let end = |r: Option<&TofRatio>| {
+        r.map_or(String::new(), |r| {
+            format!("{:.5} at {} m/s", r.incident, r.speed_m_s)
+        })
+    };
+    format!(
+        "{} upward and {} downward; from {} to {}; the ratio nearest to 1 is off by {:.1e} ± {:.0e}, at {} m/s",
+        up.len(),
+        down.len(),
+        end(ratios.first()),
+        end(ratios.last()),
+        (nearest.incident - 1.0).abs(),
+        nearest.accuracy(),
+        nearest.speed_m_s
+    )
+}
+
+/// The upward passage of 1 that is nearest to the printed speed lies within the
+/// threshold of it; fails without one.
+pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> Finding {
+    let ratios = ratios(claim, evidence);
+    let (false, Some(expected)) = (ratios.is_empty(), claim.expected.first()) else {
+        return missing();
+    };
+    let (up, _) = crossings(&ratios);
+    let off = |speed: f64| (speed - expected).abs();
+    let nearest = up.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+    let Some(&(value, accuracy)) = nearest else {
+        return nowhere(*expected, ratios.iter().any(is_open));
+    };
+    let detail = format!("the nearest of {} upward passages", up.len());
+    Finding {
+        expected: Some(*expected),
+        ..Finding::of_one(claim.threshold - off(value), value, accuracy, detail)
+    }
+}
+
+/// The answer without a passage, which a ratio of 1 within its accuracy may hide.
+fn nowhere(expected: f64, open: bool) -> Finding {
+    Finding {
+        verdict: if open {
+            Verdict::NotDecidable
+        } else {
+            Verdict::Fails
+        },
+        leaning: Verdict::Fails,
+        expected: Some(expected),
+        ..Finding::without_numbers("no upward passage of 1")
+    }
 }

@@ -1,12 +1,12 @@
 use super::*;
 
-/// A tally of so many met, not met and open comparisons.
-fn tally(yes: usize, no: usize, open: usize) -> Tally {
-    let mut tally = Tally::default();
+/// Comparisons, so many of them met, not met and open comparisons.
+fn counts(yes: usize, no: usize, open: usize) -> Comparisons {
+    let mut counts = Comparisons::default();
     for (count, margin) in [(yes, 1.0), (no, -1.0), (open, 0.1)] {
-        (0..count).for_each(|_| tally.margin(margin, 0.5));
+        (0..count).for_each(|_| counts.add(margin, margin, 0.5, String::new));
     }
-    tally
+    counts
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn a_claim_holds_in_part_when_at_least_half_of_its_comparisons_are_met() {
         (0, 0, Verdict::NotDecidable),
     ] {
         assert_eq!(
-            tally(yes, no, 0).verdict(),
+            counts(yes, no, 0).finding().verdict,
             verdict,
             "{yes} of {yes} + {no}"
         );
@@ -40,9 +40,9 @@ fn open_comparisons_leave_a_verdict_open_only_if_they_could_change_it() {
         (15, 14, 1, Verdict::InPart),
         (0, 0, 3, Verdict::NotDecidable),
     ] {
-        let tally = tally(yes, no, open);
-        assert_eq!(tally.verdict(), verdict, "{yes} {no} {open}");
+        let found = counts(yes, no, open).finding();
+        assert_eq!(found.verdict, verdict, "{yes} {no} {open}");
         // Exact numbers with these signs meet every open one.
-        assert_eq!(tally.leaning(), self::tally(yes + open, no, 0).verdict());
+        assert_eq!(found.leaning, counts(yes + open, no, 0).finding().verdict);
     }
 }

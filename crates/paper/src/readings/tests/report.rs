@@ -10,7 +10,7 @@ fn row(reading: Reading, verdict: Verdict, claims: usize) -> Row {
 }
 
 /// A scan of two readings, in a product of one switch, with no room for others.
-fn made_up(left_out: Vec<Factor>) -> Scan {
+fn made_up(left_out: Vec<SwitchOptions>) -> Scan {
     let claims: Vec<Claim> = claims().unwrap().into_iter().map(|j| j.claim).collect();
     let wet = Reading::default().with("wet_everywhere", "yes").unwrap();
     let default = row(Reading::default(), Verdict::Fails, claims.len());

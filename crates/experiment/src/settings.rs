@@ -1,0 +1,415 @@
+//! The ends of the chain, deviations from rest, sensors, solver and liquid of a file.
+
+use crate::bodies::Materials;
+use crate::keys::{SPEED, Text, choice, positive};
+use crate::report::{FileProblem, brief};
+use crate::values::{Units, View, record};
+use hertzchain_chain::{Gap, Initial, Motion, Push};
+use std::ops::Range;
+use std::path::Path;
+
+choice! {
+    /// Method that integrates the motion.
+    Method {
+        "adaptive" => Adaptive: "An embedded pair that chooses its step by the accuracy.",
+        "rk4" => Rk4: "Classical Runge–Kutta with a fixed step, as in the paper.",
+        "verlet" => Verlet: "Velocity Verlet with a fixed step, as in discrete-element codes.",
+    }
+}
+
+/// Solver and its settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// Method.
+    pub method: Method,
+    /// Relative accuracy asked for.
+    pub accuracy: f64,
+    /// Step of a fixed-step method in s; `None` lets the program decide.
+    pub step_s: Option<f64>,
+    /// Duration of a shot in s; `None` until the reflected pulse has passed
+    /// the sensor.
+    pub duration_s: Option<f64>,
+}
+
+impl Solver {
+    /// The accuracy when a file names none.
+    pub const DEFAULT_ACCURACY: f64 = 1e-6;
+
+    pub(crate) fn read(root: &View<'_>) -> Result<Self, FileProblem> {
+        let table = root.table("solver");
+        let number = |key| table.map_or(Ok(None), |t| t.quantity(key));
+        let method = table.and_then(|t| Method::from_name(t.text("method")?));
+        let method = method.unwrap_or_default();
+        let step_s = number("step")?;
+        if let (Some(table), Method::Adaptive, Some(_)) = (table, method, step_s) {
+            let message = "the adaptive method chooses its own steps";
+            let label = "expected no `step`, or method = \"rk4\" or \"verlet\"";
+            return Err(table.problem("step", message, label));
+        }
+        Ok(Self {
+            method,
+            accuracy: number("accuracy")?.unwrap_or(Self::DEFAULT_ACCURACY),
+            step_s,
+            duration_s: number("duration")?,
+        })
+    }
+}
+
+record! {
+    /// A liquid, for reports: no law uses it.
+    Liquid "[liquid]"
+    name: String = name "liquid".to_owned(), Text, "name of the liquid";
+    kinematic_viscosity_m2_s: Option<f64> = kinematic_viscosity None, positive("m^2/s"), "kinematic viscosity";
+    density_kg_m3: Option<f64> = density None, positive("kg/m^3"), "density";
+}
+
+impl Liquid {
+    /// Dynamic viscosity in Pa s.
+    pub fn dynamic_viscosity_pa_s(&self) -> Option<f64> {
+        Some(self.kinematic_viscosity_m2_s? * self.density_kg_m3?)
+    }
+
+    /// The liquid of a file or of a case.
+    pub(crate) fn read_from(root: &View<'_>) -> Result<Option<Self>, FileProblem> {
+        let table = root.table("liquid");
+        table.map(|table| Self::read(Some(&table))).transpose()
+    }
+}
+
+/// Numbers of beads, contacts or bodies with their places.
+type Indices = Vec<(usize, Range<usize>)>;
+
+/// Sensors of a file.
+#[derive(Clone, Debug)]
+pub(crate) struct Sensors {
+    /// The sensor bead n of the ToF.
+    pub(crate) bead: usize,
+    pub(crate) span: Range<usize>,
+    pub(crate) beads: Indices,
+    pub(crate) contacts: Indices,
+    pub(crate) positions: Indices,
+    pub(crate) velocities: Indices,
+    /// Where the paper's channel is asked for.
+    pub(crate) channel: Option<Range<usize>>,
+}
+
+impl Sensors {
+    pub(crate) fn read(root: &View<'_>, beads: usize) -> Result<Self, FileProblem> {
+        let usual = if beads >= 8 { 7 } else { 1 };
+        let table = root.table("sensors");
+        let list = |key| table.map_or(Ok(Vec::new()), |t| t.counts(key));
+        let bead = table.map_or(Ok(None), |t| t.count("bead"))?;
+        let channel = table.filter(|t| t.flag("channel"));
+        Ok(Self {
+            bead: bead.unwrap_or(usual),
+            span: table.map_or(root.span(), |t| t.span_of("bead")),
+            beads: list("beads")?,
+            contacts: list("contacts")?,
+            positions: list("positions")?,
+            velocities: list("velocities")?,
+            channel: channel.map(|t| t.span_of("channel")),
+        })
+    }
+}
+
+/// Gaps with their places in the file.
+pub(crate) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, FileProblem> {
+    let gap = |table: &View<'_>| {
+        let contact = table.count("contact")?.unwrap_or(0);
+        let gap_m = table.needed("gap")?;
+        Ok((Gap { contact, gap_m }, table.span_of("contact")))
+    };
+    root.tables("gaps").iter().map(gap).collect()
+}
+
+/// Initial deviations with their places in the file.
+pub(crate) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, FileProblem> {
+    let initial = |table: &View<'_>| {
+        if !table.has("displacement") && !table.has("velocity") {
+            let message = "this bead is neither displaced nor moving";
+            let label = "expected `displacement` or `velocity`, or no such table";
+            return Err(FileProblem::new(&table.span(), message, label));
+        }
+        let initial = Initial {
+            bead: table.count("bead")?.unwrap_or(0),
+            displacement_m: table.quantity("displacement")?.unwrap_or(0.0),
+            velocity_m_s: table.quantity("velocity")?.unwrap_or(0.0),
+        };
+        Ok((initial, table.span_of("bead")))
+    };
+    root.tables("initial").iter().map(initial).collect()
+}
+
+/// Shape and material of body 0 or of a half-bead, as far as given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct BodyShape {
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) mass_kg: Option<f64>,
+    pub(crate) material: Option<usize>,
+    pub(crate) span: Range<usize>,
+}
+
+impl BodyShape {
+    fn read(table: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
+        Ok(Self {
+            radius_m: table.quantity("radius")?,
+            mass_kg: table.quantity("mass")?,
+            material: materials.find(table)?,
+            span: table.span(),
+        })
+    }
+}
+
+/// The cause of the chain's motion.
+#[derive(Clone, Debug)]
+pub(crate) enum Near {
+    Striker {
+        shape: BodyShape,
+        speed_m_s: f64,
+        speed_span: Range<usize>,
+    },
+    Driven {
+        shape: BodyShape,
+        motion: Motion,
+    },
+    /// Beads that start displaced or moving, as the file says here.
+    Free {
+        span: Range<usize>,
+    },
+}
+
+impl Near {
+    pub(crate) fn read(
+        root: &View<'_>,
+        materials: &Materials,
+        folder: &Path,
+    ) -> Result<Self, FileProblem> {
+        match (root.table("striker"), root.variant("driven")) {
+            (Some(striker), Some((_, driven))) => {
+                let message = "there are a striker and a driven end";
+                let problem = FileProblem::new(&driven.span(), message, "expected one of the two");
+                Err(problem.also(&striker.span(), "the striker is here"))
+            }
+            (Some(striker), None) => Ok(Self::Striker {
+                shape: BodyShape::read(&striker, materials)?,
+                speed_m_s: striker.needed("speed")?,
+                speed_span: striker.span_of("speed"),
+            }),
+            (None, Some((tag, table))) => Ok(Self::Driven {
+                shape: BodyShape::read(&table, materials)?,
+                motion: motion(tag, &table, folder)?,
+            }),
+            (None, None) if root.has("initial") => Ok(Self::Free {
+                span: root.tables("initial").first().map_or(0..0, View::span),
+            }),
+            (None, None) => {
+                let label = "expected [striker], [driven] or [[initial]]";
+                Err(root.problem("beads", "nothing sets the chain in motion", label))
+            }
+        }
+    }
+
+    /// Speed of the striker in m/s, if there is one.
+    pub(crate) const fn speed_m_s(&self) -> Option<f64> {
+        match self {
+            Self::Striker { speed_m_s, .. } => Some(*speed_m_s),
+            Self::Driven { .. } | Self::Free { .. } => None,
+        }
+    }
+
+    /// Shape of body 0, if there is one.
+    pub(crate) const fn shape(&self) -> Option<&BodyShape> {
+        match self {
+            Self::Striker { shape, .. } | Self::Driven { shape, .. } => Some(shape),
+            Self::Free { .. } => None,
+        }
+    }
+
+    /// Its place in the file.
+    pub(crate) fn span(&self) -> Range<usize> {
+        match self {
+            Self::Striker { shape, .. } | Self::Driven { shape, .. } => shape.span.clone(),
+            Self::Free { span } => span.clone(),
+        }
+    }
+}
+
+/// The motion of `[driven]`, no faster than a striker may be.
+fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
+    let amplitude_m = table.quantity("amplitude")?.unwrap_or(1.0);
+    if amplitude_m == 0.0 {
+        let message = "an amplitude of 0 sets nothing in motion";
+        return Err(table.problem("amplitude", message, "expected a length, such as \"1 um\""));
+    }
+    let motion = match tag {
+        "sine" => Motion::Sine {
+            amplitude_m,
+            frequency_hz: table.needed("frequency")?,
+        },
+        "pulse" => Motion::Pulse {
+            amplitude_m,
+            duration_s: table.needed("duration")?,
+        },
+        _ => motion_table(table, folder)?,
+    };
+    let speed_m_s = motion.largest_speed_m_s();
+    let limits = SPEED.within(table.units, "m/s");
+    if limits.hold(speed_m_s) {
+        return Ok(motion);
+    }
+    let speed = table.units.with_unit(&brief(speed_m_s), "m/s");
+    let keys = ["frequency", "duration", "times", "file"];
+    let key = keys
+        .into_iter()
+        .find(|key| table.has(key))
+        .unwrap_or("motion");
+    let message = format!("this motion reaches a speed of {speed}");
+    Err(table.problem(
+        key,
+        message,
+        format!("expected a largest speed {}", limits.words),
+    ))
+}
+
+/// Measured motion: points in the experiment file, or in a CSV file beside it.
+fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
+    let (times_s, positions_m, key) = match (table.text("file"), table.has("times")) {
+        (Some(_), true) => {
+            let message = "the motion stands both here and in a file";
+            let label = "expected `file`, or `times` and `positions`";
+            return Err(table.problem("file", message, label));
+        }
+        (Some(file), false) => {
+            let (times, positions) = motion_file(table, &folder.join(file))?;
+            (times, positions, "file")
+        }
+        (None, _) => {
+            let positions = table.quantities("positions")?;
+            (table.quantities("times")?, positions, "times")
+        }
+    };
+    let (message, label) = if times_s.len() != positions_m.len() {
+        let message = "there are not as many positions as times";
+        (message, "expected one position a time")
+    } else if times_s.len() < 2 {
+        ("a motion needs at least two points", "expected more points")
+    } else if times_s.windows(2).any(|pair| pair[0] >= pair[1]) {
+        let label = "expected each time to be later than the one before";
+        ("the times do not increase", label)
+    } else if positions_m.windows(2).all(|pair| pair[0] == pair[1]) {
+        let message = "this motion sets nothing in motion";
+        (message, "expected positions that differ")
+    } else {
+        return Ok(Motion::Table {
+            times_s,
+            positions_m,
+        });
+    };
+    Err(table.problem(key, message, label))
+}
+
+/// The two columns of a CSV file, whose first line names them with their units.
+fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), FileProblem> {
+    /// Larger files are a mistake.
+    const MOST_BYTES: u64 = 64 << 20;
+    let header = match table.units {
+        Units::Si => "time_s,position_m",
+        Units::Dimensionless => "time,position",
+    };
+    let wrong = |what: String| {
+        let label = format!("expected a readable CSV file with the columns {header}");
+        table.problem("file", format!("{}{what}", path.display()), label)
+    };
+    let unreadable = |e: std::io::Error| wrong(format!(" can't be read: {e}"));
+    let size = std::fs::metadata(path).map_err(unreadable)?;
+    if !size.is_file() || size.len() > MOST_BYTES {
+        return Err(wrong(" is not a file of at most 64 MiB".to_owned()));
+    }
+    let text = std::fs::read_to_string(path).map_err(unreadable)?;
+    let mut lines = text.lines().map(str::trim).zip(1..);
+    if lines.next().map(|(first, _)| first) != Some(header) {
+        return Err(wrong(format!(":1: the first line is not {header}")));
+    }
+    let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite());
+    let pair = |(line, at): (&str, u64)| {
+        let pair = line
+            .split_once(',')
+            .and_then(|(time, at)| Some((number(time)?, number(at)?)));
+        pair.ok_or_else(|| wrong(format!(":{at}: `{line}` is not two numbers")))
+    };
+    lines
+        .filter(|(line, _)| !line.is_empty())
+        .map(pair)
+        .collect()
+}
+
+/// The push on bead 1.
+pub(crate) fn push(root: &View<'_>) -> Result<Push, FileProblem> {
+    let Some((tag, table)) = root.variant("near_end") else {
+        return Ok(Push::None);
+    };
+    let force_n = table.needed("force")?;
+    Ok(match tag {
+        "spring" => Push::Spring {
+            force_n,
+            stiffness_n_m: table.needed("stiffness")?,
+        },
+        _ => Push::Constant { force_n },
+    })
+}
+
+/// The end that bead N leans on.
+#[derive(Clone, Debug)]
+pub(crate) enum Far {
+    /// A half-bead or a plane, fixed or on a stop of this mass.
+    Wall {
+        is_plane: bool,
+        shape: BodyShape,
+        stop_kg: Option<f64>,
+    },
+    Periodic {
+        force_n: f64,
+    },
+    Free,
+}
+
+impl Far {
+    /// A half-bead like bead N when the file is silent.
+    pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
+        let Some((tag, table)) = root.variant("far_end") else {
+            let shape = BodyShape::default();
+            return Ok(Self::Wall {
+                is_plane: false,
+                shape,
+                stop_kg: None,
+            });
+        };
+        Ok(match tag {
+            "periodic" => Self::Periodic {
+                force_n: table.quantity("force")?.unwrap_or(0.0),
+            },
+            "free" => Self::Free,
+            _ => Self::Wall {
+                is_plane: tag.starts_with("plane"),
+                shape: BodyShape::read(&table, materials)?,
+                stop_kg: table.quantity("mass")?,
+            },
+        })
+    }
+
+    /// Shape of a wall.
+    pub(crate) const fn shape(&self) -> Option<&BodyShape> {
+        match self {
+            Self::Wall { shape, .. } => Some(shape),
+            Self::Periodic { .. } | Self::Free => None,
+        }
+    }
+
+    /// Mass of a stop of finite mass in kg.
+    pub(crate) const fn stop_kg(&self) -> Option<f64> {
+        match self {
+            Self::Wall { stop_kg, .. } => *stop_kg,
+            Self::Periodic { .. } | Self::Free => None,
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Scales, ticks and legend of a chart and the room they need, before anything is drawn.
+
+use super::{Axis, Chart, ChartStyle, Legend, Series, SeriesKind, strokes};
+use crate::axis::{Extent, Room, Scale, Ticks, ticks};
+use crate::draw::{Colour, Margins, Point, Rect, Svg};
+use crate::text::{Anchor, TextLine};
+
+/// Two scales laid over a frame on the page.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plot {
+    pub(crate) frame: Rect,
+    pub(crate) x: Scale,
+    pub(crate) y: Scale,
+}
+
+impl Plot {
+    /// Where a data point lies; nothing if the axes cannot show it.
+    pub(crate) fn at(&self, x: f64, y: f64) -> Option<Point> {
+        Some(Point::new(self.x_at(x)?, self.y_at(y)?))
+    }
+
+    pub(crate) fn x_at(&self, x: f64) -> Option<f64> {
+        Some(self.frame.x0 + self.x.share(x)? * self.frame.width())
+    }
+
+    pub(crate) fn y_at(&self, y: f64) -> Option<f64> {
+        Some(self.frame.y1 - self.y.share(y)? * self.frame.height())
+    }
+}
+
+/// A chart with its scales, ticks and legend chosen for a frame size.
+pub(crate) struct Prepared<'a> {
+    pub(super) chart: &'a Chart,
+    pub(super) style: ChartStyle,
+    pub(super) x: Scale,
+    pub(super) y: Scale,
+    pub(super) x_ticks: Ticks,
+    pub(super) y_ticks: Ticks,
+    pub(super) legend: LegendBox,
+    size: (f64, f64),
+}
+
+impl<'a> Prepared<'a> {
+    /// For a frame of about the given size.
+    pub(crate) fn new(chart: &'a Chart, style: ChartStyle, size: (f64, f64)) -> Self {
+        let (x, y) = (x_scale(chart, &style), y_scale(chart, &style));
+        let font = style.small;
+        let room = |length, side_by_side| Room {
+            length,
+            font,
+            side_by_side,
+        };
+        let x_ticks = ticks(&x, &room(size.0, true));
+        Self {
+            x_ticks: if chart.x.whole {
+                x_ticks.whole()
+            } else {
+                x_ticks
+            },
+            y_ticks: ticks(&y, &room(size.1, false)),
+            legend: LegendBox::new(chart, font, size.0),
+            chart,
+            style,
+            x,
+            y,
+            size,
+        }
+    }
+
+    /// Room for tick labels, axis labels, legend and colour bar around the frame.
+    pub(crate) fn margins(&self) -> Margins {
+        let (chart, style) = (self.chart, &self.style);
+        let height = |text: &str| TextLine::new(text, style.label).height();
+        let mut side = Margins {
+            left: 2.0,
+            right: 2.0,
+            top: 0.55 * style.small,
+            bottom: 2.0,
+        };
+        if !chart.y.unlabelled {
+            side.left = self.y_ticks.widest(style.small) + 3.5;
+            if !chart.y.label.is_empty() {
+                side.left += height(&chart.y.label) + 2.0;
+            }
+        }
+        if !chart.x.unlabelled {
+            side.bottom = 1.35 * style.small + 3.0;
+            if !chart.x.label.is_empty() || self.x_ticks.exponent.is_some() {
+                side.bottom += height(&chart.x.label) + 1.5;
+            }
+            let (left, right) = self.overhang();
+            side.left = side.left.max(left);
+            side.right = side.right.max(right);
+        }
+        let bar = chart
+            .heat
+            .as_ref()
+            .map(|map| map.bar_room(style, self.size.1));
+        let (bar, above) = bar.unwrap_or_default();
+        side.right += bar;
+        side.top += self.factor_room().max(above) + self.legend.height();
+        side
+    }
+
+    /// Room above the frame for a power of ten.
+    pub(super) fn factor_room(&self) -> f64 {
+        self.y_ticks
+            .exponent
+            .map_or(0.0, |_| 1.5 * self.style.small)
+    }
+
+    /// How far the outermost x tick labels reach beyond the frame.
+    fn overhang(&self) -> (f64, f64) {
+        let (mut left, mut right) = (0.0_f64, 0.0_f64);
+        for tick in &self.x_ticks.major {
+            let half = 0.5 * TextLine::new(&tick.label, self.style.small).width();
+            if let Some(share) = self.x.share(tick.value) {
+                left = left.max(half - share * self.size.0);
+                right = right.max(half - (1.0 - share) * self.size.0);
+            }
+        }
+        (left + 1.5, right + 1.5)
+    }
+}
+
+/// The x scale of a chart: as asked for, or around the data. Lines and maps fill the frame from
+/// edge to edge; points near an edge need air there.
+pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
+    if let Some(scale) = chosen(&chart.x) {
+        return scale;
+    }
+    let (mut all, mut points) = (Extent::new(chart.x.log), Extent::new(chart.x.log));
+    for series in &chart.series {
+        add_x(&mut all, series);
+        if matches!(
+            series.kind,
+            SeriesKind::Points(_) | SeriesKind::LinePoints(_)
+        ) {
+            add_x(&mut points, series);
+        }
+    }
+    if let Some(map) = &chart.heat {
+        all.extend([map.x.0, map.x.1]);
+    }
+    let (tight, airy) = (all.scale(0.0), all.scale(style.pad));
+    let Some((first, last)) = points.ends().filter(|_| chart.heat.is_none()) else {
+        return tight;
+    };
+    let near = |value: f64, edge: f64| {
+        tight
+            .share(value)
+            .is_some_and(|share| (share - edge).abs() < style.pad)
+    };
+    let lo = if near(first, 0.0) { airy.lo } else { tight.lo };
+    let hi = if near(last, 1.0) { airy.hi } else { tight.hi };
+    Scale { lo, hi, ..tight }
+}
+
+fn add_x(extent: &mut Extent, series: &Series) {
+    for (i, (x, _)) in series.xy().enumerate() {
+        let error = series.x_error.get(i).copied().unwrap_or(0.0);
+        extent.extend([x, x - error, x + error]);
+    }
+}
+
+/// The y scale of a chart: as asked for, or around the data.
+fn y_scale(chart: &Chart, style: &ChartStyle) -> Scale {
+    let mut extent = Extent::new(chart.y.log);
+    let x = x_scale(chart, style);
+    for series in &chart.series {
+        for (i, (_, y)) in series.xy().enumerate().filter(|(_, (at, _))| x.holds(*at)) {
+            let error = |e: &[f64]| e.get(i).copied().unwrap_or(0.0);
+            let (below, above) = &series.y_error;
+            extent.extend([y, y - error(below), y + error(above)]);
+            if let SeriesKind::Band(upper) = &series.kind {
+                extent.extend(upper.get(i).copied());
+            }
+        }
+    }
+    if let Some(map) = &chart.heat {
+        extent.extend([map.y.0, map.y.1]);
+    }
+    // Maps and stacked areas fill their frame.
+    let areas = !chart.series.is_empty() && chart.series.iter().all(Series::is_band);
+    let pad = if chart.heat.is_some() || areas {
+        0.0
+    } else {
+        1.5 * style.pad
+    };
+    chosen(&chart.y).unwrap_or_else(|| extent.scale(pad))
+}
+
+fn chosen(axis: &Axis) -> Option<Scale> {
+    let (from, to) = axis.range?;
+    Scale::fixed(from, to, axis.log)
+}
+
+/// The names of a chart's series beside samples of their look, in rows above the frame: there it
+/// hides nothing.
+pub(super) struct LegendBox {
+    entries: Vec<(usize, TextLine)>,
+    columns: usize,
+    font: f64,
+}
+
+/// Length of the sample left of a name, distance of lines and of columns, in font sizes.
+const SAMPLE: f64 = 2.6;
+const LEADING: f64 = 1.4;
+const GAP: f64 = 1.2;
+
+impl LegendBox {
+    /// As few rows as `widest` allows, their columns aligned.
+    fn new(chart: &Chart, font: f64, widest: f64) -> Self {
+        let room = widest - (SAMPLE + 1.2) * font;
+        let named = chart.series.iter().enumerate();
+        let named = named.filter(|(_, s)| chart.legend == Legend::Auto && !s.name.is_empty());
+        let entries = named.map(|(i, s)| (i, TextLine::new(&s.name, font).shrunk_to(room)));
+        let entries: Vec<(usize, TextLine)> = entries.collect();
+        let mut legend = Self {
+            entries,
+            columns: 1,
+            font,
+        };
+        let gap = GAP * font;
+        let most = ((widest + gap) / (legend.cell() + gap)).floor().max(1.0) as usize;
+        let rows = legend.entries.len().div_ceil(most).max(1);
+        legend.columns = legend.entries.len().div_ceil(rows).max(1);
+        legend
+    }
+
+    /// Width of one entry.
+    fn cell(&self) -> f64 {
+        let widths = self.entries.iter().map(|(_, name)| name.width());
+        widths.fold(0.0, f64::max) + (SAMPLE + 1.0) * self.font
+    }
+
+    fn width(&self) -> f64 {
+        let columns = self.columns as f64;
+        columns * self.cell() + (columns - 1.0) * GAP * self.font
+    }
+
+    pub(super) fn height(&self) -> f64 {
+        match self.entries.len().div_ceil(self.columns) {
+            0 => 0.0,
+            rows => (rows as f64 * LEADING + 0.5) * self.font,
+        }
+    }
+
+    /// Draws the rows above `bottom`, in the middle of the frame.
+    pub(super) fn draw(
+        &self,
+        svg: &mut Svg,
+        chart: &Chart,
+        style: &ChartStyle,
+        middle: f64,
+        bottom: f64,
+    ) {
+        if self.entries.is_empty() {
+            return;
+        }
+        let (left, top) = (middle - 0.5 * self.width(), bottom - self.height());
+        let place = Rect::sized(left, top, self.width(), self.height());
+        svg.open_legend(&place.grown(-0.2 * self.font));
+        for (number, (index, name)) in self.entries.iter().enumerate() {
+            let (column, row) = (number % self.columns, number / self.columns);
+            let left = left + 0.2 * self.font + column as f64 * (self.cell() + GAP * self.font);
+            let y = top + (0.25 + (row as f64 + 0.5) * LEADING) * self.font;
+            let sample = Rect::sized(
+                left,
+                y - 0.4 * self.font,
+                SAMPLE * self.font,
+                0.8 * self.font,
+            );
+            strokes::draw_sample(svg, chart, style, *index, &sample);
+            let at = Point::new(left + (SAMPLE + 0.5) * self.font, y);
+            name.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+        }
+        svg.close();
+    }
+}

@@ -1,0 +1,266 @@
+//! Maps of a quantity over two axes, as in a space-time diagram.
+
+use crate::axis::{Room, Scale, Ticks, ticks};
+use crate::chart::{ChartStyle, Plot};
+use crate::draw::{Colour, ColourMap, Paint, PathData, Point, Rect, Svg};
+use crate::files::{indexed_png, rgb_png};
+use crate::text::{Anchor, TextLine};
+use std::ops::Range;
+
+/// Gap between frame and colour bar, and width of the bar, in points.
+const GAP: f64 = 6.0;
+const BAR: f64 = 8.0;
+/// Size of a pixel in points: 300 dpi.
+const PIXEL: f64 = 0.24;
+/// Palette entry of missing values.
+const MISSING: u8 = 255;
+
+/// Values on a regular grid, to be shown as colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatMap {
+    columns: usize,
+    rows: usize,
+    values: Vec<f64>,
+    pub(crate) x: (f64, f64),
+    pub(crate) y: (f64, f64),
+    map: ColourMap,
+    limits: Option<(f64, f64)>,
+    label: String,
+}
+
+impl HeatMap {
+    /// `values` row by row: `rows` rows of `columns` values each. The first row
+    /// lies at the lower end of the y axis. Missing values count as not a number.
+    #[must_use]
+    pub fn new(columns: usize, rows: usize, values: &[f64]) -> Self {
+        let number = |n: usize| n as f64;
+        Self {
+            columns,
+            rows,
+            values: values.to_vec(),
+            x: (0.0, number(columns.max(1))),
+            y: (0.0, number(rows.max(1))),
+            map: ColourMap::Sequential,
+            limits: None,
+            label: String::new(),
+        }
+    }
+
+    /// Outer edges of the first and last column on the x axis.
+    #[must_use]
+    pub fn x_edges(mut self, from: f64, to: f64) -> Self {
+        self.x = (from, to);
+        self
+    }
+
+    /// Outer edges of the first and last row on the y axis.
+    #[must_use]
+    pub fn y_edges(mut self, from: f64, to: f64) -> Self {
+        self.y = (from, to);
+        self
+    }
+
+    /// Chooses the colour map; sequential by default.
+    #[must_use]
+    pub fn colours(mut self, map: ColourMap) -> Self {
+        self.map = map;
+        self
+    }
+
+    /// Values at the ends of the colour bar; by default those of the data,
+    /// symmetric about zero for a diverging map.
+    #[must_use]
+    pub fn limits(mut self, from: f64, to: f64) -> Self {
+        self.limits = Some((from, to));
+        self
+    }
+
+    /// Label of the colour bar.
+    #[must_use]
+    pub fn label(mut self, label: &str) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    /// Lowest and highest value of the colour bar.
+    fn range(&self) -> (f64, f64) {
+        let asked = self
+            .limits
+            .filter(|(a, b)| a.is_finite() && b.is_finite() && a < b);
+        asked.unwrap_or_else(|| self.data_range())
+    }
+
+    fn data_range(&self) -> (f64, f64) {
+        let finite = self.values.iter().copied().filter(|v| v.abs() <= 1e300);
+        let (lo, hi) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
+            (lo.min(v), hi.max(v))
+        });
+        let largest = lo.abs().max(hi.abs());
+        if lo > hi || largest < 1e-290 {
+            (0.0, 1.0)
+        } else if self.map == ColourMap::Diverging {
+            (-largest, largest)
+        } else if hi - lo <= 1e-8 * largest {
+            (lo - 0.5 * largest, hi + 0.5 * largest)
+        } else {
+            (lo, hi)
+        }
+    }
+}
+
+impl HeatMap {
+    fn scale(&self) -> Scale {
+        let (lo, hi) = self.range();
+        Scale { lo, hi, log: false }
+    }
+
+    fn bar_ticks(&self, style: &ChartStyle, height: f64) -> Ticks {
+        let room = Room {
+            length: height,
+            font: style.small,
+            side_by_side: false,
+        };
+        ticks(&self.scale(), &room)
+    }
+
+    /// Room for bar, numbers and label: right of the frame, and above it.
+    pub(crate) fn bar_room(&self, style: &ChartStyle, height: f64) -> (f64, f64) {
+        let label = TextLine::new(&self.label, style.label);
+        let label = if self.label.is_empty() {
+            0.0
+        } else {
+            label.height() + 3.0
+        };
+        let found = self.bar_ticks(style, height);
+        let above = found.exponent.map_or(0.0, |_| 1.5 * style.small);
+        (GAP + BAR + 3.0 + found.widest(style.small) + label, above)
+    }
+
+    /// Draws bar, ticks, numbers and label right of `frame`.
+    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect, style: &ChartStyle) {
+        let bar = Rect::sized(frame.x1 + GAP, frame.y0, BAR, frame.height());
+        let shades = (0..256).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0));
+        let shades: Vec<u8> = shades.flat_map(|c| [c.0, c.1, c.2]).collect();
+        if let Some(png) = rgb_png(1, 256, &shades, None) {
+            svg.image(&bar, &png);
+        }
+        let (found, scale, ink) = (
+            self.bar_ticks(style, bar.height()),
+            self.scale(),
+            Colour::BLACK,
+        );
+        let mut path = PathData::new();
+        path.rect(&bar);
+        for tick in &found.major {
+            let y = bar.y1 - scale.share(tick.value).unwrap_or(0.0) * bar.height();
+            path.segment(Point::new(bar.x1 - 2.5, y), Point::new(bar.x1, y));
+            let line = TextLine::new(&tick.label, style.small);
+            line.draw(svg, Point::new(bar.x1 + 2.5, y), Anchor::LEFT_MIDDLE, ink);
+        }
+        svg.path(&path, &Paint::line(ink, style.frame));
+        if let Some(factor) = found.factor(style.small) {
+            let at = Point::new(bar.x0, bar.y0 - 0.6 * style.small);
+            factor.draw(svg, at, Anchor::LEFT, ink);
+        }
+        let label = TextLine::new(&self.label, style.label).shrunk_to(frame.height());
+        let x = bar.x1 + 6.0 + found.widest(style.small) + label.ascent();
+        label.draw_turned(
+            svg,
+            Point::new(x, bar.centre().y),
+            Anchor::CENTRE,
+            ink,
+            90.0,
+        );
+    }
+
+    /// Draws the map over the frame of `plot`.
+    pub(crate) fn draw(&self, svg: &mut Svg, plot: &Plot) {
+        let (width, height) = (pixels(plot.frame.width()), pixels(plot.frame.height()));
+        let columns = cells(&plot.x, self.x, self.columns, width);
+        let mut rows = cells(&plot.y, self.y, self.rows, height);
+        rows.reverse();
+        let (lo, hi) = self.range();
+        let mut data = Vec::with_capacity(width * height);
+        for row in &rows {
+            data.extend(
+                columns
+                    .iter()
+                    .map(|column| level(self.strongest(column, row), lo, hi)),
+            );
+        }
+        // Encoding fails only if memory cannot hold it; the frame then stays empty.
+        if let Some(png) = indexed_png(width, height, &palette(self.map), &data) {
+            svg.image(&plot.frame, &png);
+        }
+    }
+
+    /// Of all values under a pixel the one of largest size, so that a narrow
+    /// pulse stays visible.
+    fn strongest(&self, columns: &Range<usize>, rows: &Range<usize>) -> f64 {
+        let mut best = f64::NAN;
+        for row in rows.clone() {
+            let start = row.saturating_mul(self.columns);
+            let line = start.saturating_add(columns.start)..start.saturating_add(columns.end);
+            for value in self.values.get(line).unwrap_or(&[]) {
+                if best.is_nan() || value.abs() > best.abs() {
+                    best = *value;
+                }
+            }
+        }
+        best
+    }
+}
+
+fn pixels(length: f64) -> usize {
+    ((length / PIXEL).round() as usize).clamp(1, 20_000)
+}
+
+fn level(value: f64, lo: f64, hi: f64) -> u8 {
+    let share = (value - lo) / (hi - lo);
+    if share.is_nan() {
+        MISSING
+    } else {
+        (share.clamp(0.0, 1.0) * 254.0).round() as u8
+    }
+}
+
+/// 255 colours, so that a diverging map has one in the exact middle, and the missing one.
+fn palette(map: ColourMap) -> Vec<u8> {
+    let share = |i: u8| {
+        if i == MISSING {
+            f64::NAN
+        } else {
+            f64::from(i) / 254.0
+        }
+    };
+    let colours = (0..=255).map(|i| map.colour(share(i)));
+    colours.flat_map(|c| [c.0, c.1, c.2]).collect()
+}
+
+/// For each pixel along an axis the grid cells it covers, at least one if any.
+fn cells(scale: &Scale, edges: (f64, f64), count: usize, pixels: usize) -> Vec<Range<usize>> {
+    let index = |pixel: usize| {
+        let value = scale.value(pixel as f64 / pixels as f64);
+        (value - edges.0) / (edges.1 - edges.0) * count as f64
+    };
+    let cells = |pixel: usize| {
+        let (a, b) = (index(pixel), index(pixel + 1));
+        let (from, to) = (a.min(b), a.max(b));
+        let middle = 0.5 * (from + to);
+        if !(0.0..count as f64).contains(&middle) {
+            return 0..0;
+        }
+        let first = (from + 0.5).floor().max(0.0) as usize;
+        let last = ((to + 0.5).floor() as usize).min(count);
+        if first < last {
+            first..last
+        } else {
+            middle as usize..middle as usize + 1
+        }
+    };
+    (0..pixels).map(cells).collect()
+}
+
+#[cfg(test)]
+#[path = "heat/tests/raster.rs"]
+mod tests;

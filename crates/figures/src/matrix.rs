@@ -1,0 +1,348 @@
+//! Verdicts on claims under several readings, as a table of symbols.
+
+use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
+use crate::figure::{DOUBLE_COLUMN_MM, Figure, SINGLE_COLUMN_MM};
+use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
+
+/// Result of the check of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The claim holds.
+    Holds,
+    /// It holds in part.
+    InPart,
+    /// It fails.
+    Fails,
+    /// It cannot be decided.
+    NotDecidable,
+}
+
+impl Verdict {
+    const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::InPart => "holds in part",
+            Self::Fails => "fails",
+            Self::NotDecidable => "not decidable",
+        }
+    }
+
+    /// Colours differ in lightness too, for grey print.
+    fn colour(self) -> Colour {
+        match self {
+            Self::Holds => Colour(56, 150, 122),
+            Self::InPart => Colour(244, 218, 130),
+            Self::Fails => Colour(186, 66, 10),
+            Self::NotDecidable => Colour::grey(226),
+        }
+    }
+}
+
+const FONT: f64 = 7.0;
+const LEADING: f64 = 8.8;
+/// Widest and narrowest room for the names of claims.
+const LABELS: f64 = 190.0;
+const NARROWEST: f64 = 66.0;
+const SMALLEST_CELL: f64 = 9.0;
+const LARGEST_CELL: f64 = 40.0;
+const TALLEST_HEADER: f64 = 130.0;
+const PADDING: f64 = 4.0;
+const KEY: f64 = 18.0;
+/// Room that an entry of the key needs beside its name.
+const KEY_ROOM: f64 = 26.0;
+/// Room left of a line that holds throughout, for its symbol.
+const INDENT: f64 = 16.0;
+/// Margins of the page, left and right together.
+const MARGINS: f64 = 6.0;
+
+/// Rows are claims, columns readings, cells verdicts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VerdictMatrix {
+    columns: Vec<String>,
+    rows: Vec<(String, Vec<Verdict>)>,
+    throughout: Vec<(Verdict, String)>,
+    notes: Vec<String>,
+}
+
+impl VerdictMatrix {
+    /// A table with the given columns and no rows.
+    #[must_use]
+    pub fn new(columns: &[&str]) -> Self {
+        let columns = columns.iter().map(|c| (*c).to_owned()).collect();
+        Self {
+            columns,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
+    #[must_use]
+    pub fn row(mut self, claim: &str, verdicts: &[Verdict]) -> Self {
+        let cells = verdicts.iter().copied().take(self.columns.len()).collect();
+        self.rows.push((claim.into(), cells));
+        self
+    }
+
+    /// Adds claims that have one verdict in all columns, as a line of text
+    /// below the rows.
+    #[must_use]
+    pub fn throughout(mut self, verdict: Verdict, claims: &str) -> Self {
+        self.throughout.push((verdict, claims.into()));
+        self
+    }
+
+    /// Adds a remark below everything.
+    #[must_use]
+    pub fn note(mut self, text: &str) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// The table as a figure of its own, as high as it needs to be: one column
+    /// wide if that holds its cells, else two, or wider if it has very many.
+    #[must_use]
+    pub fn figure(self) -> Figure {
+        let narrow = MatrixLayout::new(&self, SINGLE_COLUMN_MM);
+        let (page_mm, layout) = if narrow.fits(SINGLE_COLUMN_MM) {
+            (SINGLE_COLUMN_MM, narrow)
+        } else {
+            (DOUBLE_COLUMN_MM, MatrixLayout::new(&self, DOUBLE_COLUMN_MM))
+        };
+        let (width, height) = layout.size();
+        let mm = |points: f64| (points + MARGINS) / PT_PER_MM;
+        Figure::new(mm(width).max(page_mm), mm(height)).panel(self)
+    }
+
+    /// Draws the table, shrunk to fit the frame.
+    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
+        let layout = MatrixLayout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
+        let (width, height) = layout.size();
+        let fit = (frame.width() / width).min(frame.height() / height);
+        // The page was made for it up to rounding.
+        let scale = if fit > 0.999 { 1.0 } else { fit };
+        svg.open_scaled(Point::new(frame.x0, frame.y0), scale);
+        layout.draw_header(svg, self);
+        let y = layout.draw_rows(svg, self);
+        layout.draw_below(svg, y);
+        layout.draw_key(svg);
+        svg.close();
+    }
+}
+
+struct MatrixLayout {
+    claims: Vec<Vec<TextLine>>,
+    headers: Vec<TextLine>,
+    below: Vec<(Option<Verdict>, Vec<TextLine>)>,
+    labels: f64,
+    cell: f64,
+    header: f64,
+    upright: bool,
+}
+
+impl MatrixLayout {
+    /// For a page of this width.
+    fn new(matrix: &VerdictMatrix, page_mm: f64) -> Self {
+        let page = page_mm * PT_PER_MM - MARGINS;
+        let columns = matrix.columns.len().max(1) as f64;
+        let room = page - columns * SMALLEST_CELL - 2.0 * PADDING;
+        let claims: Vec<Vec<TextLine>> = matrix
+            .rows
+            .iter()
+            .map(|(claim, _)| wrap(claim, FONT, room.clamp(NARROWEST, LABELS), 4))
+            .collect();
+        let lines = claims.iter().flatten();
+        let widest = lines.map(TextLine::width).fold(40.0, f64::max);
+        let labels = widest + 2.0 * PADDING;
+        let cell = ((page - labels) / columns).clamp(SMALLEST_CELL, LARGEST_CELL);
+        let headers: Vec<TextLine> = matrix
+            .columns
+            .iter()
+            .map(|c| TextLine::new(c, FONT).shrunk_to(TALLEST_HEADER))
+            .collect();
+        let longest = headers.iter().map(TextLine::width).fold(0.0, f64::max);
+        let upright = longest <= cell - 3.0;
+        let header = if upright { 1.3 * FONT } else { longest } + PADDING;
+        let mut layout = Self {
+            claims,
+            headers,
+            below: Vec::new(),
+            labels,
+            cell,
+            header,
+            upright,
+        };
+        layout.below = layout.lines_below(matrix, page);
+        layout
+    }
+
+    /// What stands below the rows, as wide as the page.
+    fn lines_below(
+        &self,
+        matrix: &VerdictMatrix,
+        page: f64,
+    ) -> Vec<(Option<Verdict>, Vec<TextLine>)> {
+        let width = page.max(self.size().0);
+        let same = matrix.throughout.iter().map(|(verdict, claims)| {
+            let lines = wrap(claims, FONT, width - INDENT, 30);
+            (Some(*verdict), lines)
+        });
+        let notes = matrix.notes.iter();
+        let notes = notes.map(|note| (None, wrap(note, FONT, width, 30)));
+        same.chain(notes).collect()
+    }
+
+    /// Whether everything is legible on a page of this width.
+    fn fits(&self, page_mm: f64) -> bool {
+        // Cells that fill the page may exceed it by rounding.
+        self.size().0 <= page_mm * PT_PER_MM - MARGINS + 1e-6
+    }
+
+    fn size(&self) -> (f64, f64) {
+        let rows: f64 = (0..self.claims.len()).map(|i| self.row_height(i)).sum();
+        let width = self.labels + self.cell * self.headers.len() as f64;
+        let below = self.below.iter().map(|(_, lines)| below_height(lines));
+        let height = self.header + rows + below.sum::<f64>() + KEY;
+        (width.max(self.key_width()), height)
+    }
+
+    fn row_height(&self, row: usize) -> f64 {
+        let lines = self.claims.get(row).map_or(1, |l| l.len().max(1));
+        (lines as f64 * LEADING + 3.0).max(SMALLEST_CELL + 2.0)
+    }
+
+    fn cell_centre(&self, column: usize) -> f64 {
+        self.labels + self.cell * (column as f64 + 0.5)
+    }
+
+    fn draw_header(&self, svg: &mut Svg, matrix: &VerdictMatrix) {
+        for (i, header) in self.headers.iter().enumerate().take(matrix.columns.len()) {
+            let at = Point::new(self.cell_centre(i), self.header - PADDING);
+            if self.upright {
+                header.draw(svg, at, Anchor::CENTRE, Colour::BLACK);
+            } else {
+                header.draw_turned(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK, 90.0);
+            }
+        }
+    }
+
+    /// Returns where the last row ends.
+    fn draw_rows(&self, svg: &mut Svg, matrix: &VerdictMatrix) -> f64 {
+        let (mut y, mut rules) = (self.header, PathData::new());
+        let right = self.labels + self.cell * self.headers.len() as f64;
+        for (row, (_, cells)) in matrix.rows.iter().enumerate() {
+            let height = self.row_height(row);
+            self.draw_claim(svg, row, y + 0.5 * height);
+            for (column, verdict) in cells.iter().enumerate() {
+                let x = self.cell_centre(column) - 0.5 * self.cell;
+                draw_symbol(
+                    svg,
+                    *verdict,
+                    &Rect::sized(x, y, self.cell, height).grown(-0.5),
+                );
+            }
+            rules.segment(Point::new(0.0, y), Point::new(right, y));
+            y += height;
+        }
+        rules.segment(Point::new(0.0, y), Point::new(right, y));
+        svg.path(&rules, &Paint::line(Colour::grey(190), 0.4));
+        y
+    }
+
+    /// Claims with one verdict, and remarks.
+    fn draw_below(&self, svg: &mut Svg, mut y: f64) {
+        for (verdict, lines) in &self.below {
+            let middle = y + PADDING + 0.5 * LEADING;
+            let x = if verdict.is_some() { INDENT } else { 0.0 };
+            if let Some(verdict) = verdict {
+                draw_symbol(svg, *verdict, &Rect::sized(0.0, middle - 4.5, 11.0, 9.0));
+            }
+            for (i, line) in lines.iter().enumerate() {
+                let at = Point::new(x, middle + LEADING * i as f64);
+                line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+            }
+            y += below_height(lines);
+        }
+    }
+
+    fn draw_claim(&self, svg: &mut Svg, row: usize, middle: f64) {
+        let lines = self.claims.get(row).map_or(&[][..], Vec::as_slice);
+        let first = middle - 0.5 * LEADING * (lines.len() as f64 - 1.0);
+        for (i, line) in lines.iter().enumerate() {
+            let at = Point::new(PADDING, first + LEADING * i as f64);
+            line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+        }
+    }
+
+    fn key_width(&self) -> f64 {
+        let widths = Verdict::ALL
+            .iter()
+            .map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
+        widths.sum()
+    }
+
+    fn draw_key(&self, svg: &mut Svg) {
+        let middle = self.size().1 - 0.5 * KEY + 3.0;
+        let mut x = (self.size().0 - self.key_width()).max(0.0);
+        for verdict in Verdict::ALL {
+            draw_symbol(svg, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
+            let name = TextLine::new(verdict.name(), FONT);
+            name.draw(
+                svg,
+                Point::new(x + 16.0, middle),
+                Anchor::LEFT_MIDDLE,
+                Colour::BLACK,
+            );
+            x += name.width() + KEY_ROOM;
+        }
+    }
+}
+
+/// Height of a line of text below the rows, however often it breaks.
+fn below_height(lines: &[TextLine]) -> f64 {
+    PADDING + LEADING * lines.len().max(1) as f64
+}
+
+/// Fills `cell` and draws the symbol of a verdict in its middle, as a path: it does not depend on
+/// what a font offers.
+fn draw_symbol(svg: &mut Svg, verdict: Verdict, cell: &Rect) {
+    svg.rect(cell, &Paint::fill(verdict.colour()));
+    let (c, r) = (
+        cell.centre(),
+        0.3 * cell.width().min(cell.height()).min(11.0),
+    );
+    let at = |dx: f64, dy: f64| Point::new(c.x + dx * r, c.y + dy * r);
+    let white = Paint::line(Colour::WHITE, 0.42 * r);
+    match verdict {
+        Verdict::Holds => {
+            let tick = [at(-0.9, 0.05), at(-0.25, 0.75), at(0.95, -0.8)];
+            svg.path(PathData::new().polyline(&tick), &white);
+        }
+        Verdict::Fails => {
+            let mut cross = PathData::new();
+            cross.segment(at(-0.75, -0.75), at(0.75, 0.75));
+            cross.segment(at(-0.75, 0.75), at(0.75, -0.75));
+            svg.path(&cross, &white);
+        }
+        Verdict::InPart => draw_half_circle(svg, c, 0.8 * r),
+        Verdict::NotDecidable => {
+            let mark = TextLine::bold("?", (2.6 * r).max(LEAST_SIZE));
+            mark.draw(svg, c, Anchor::MIDDLE, Colour::grey(90));
+        }
+    }
+}
+
+fn draw_half_circle(svg: &mut Svg, c: Point, r: f64) {
+    let ink = Colour::grey(60);
+    svg.circle(c, r, &Paint::line(ink, 0.25 * r));
+    let mut half = PathData::new();
+    half.move_to(Point::new(c.x, c.y + r))
+        .arc_to(r, false, true, Point::new(c.x, c.y - r))
+        .close();
+    svg.path(&half, &Paint::fill(ink));
+}
+
+#[cfg(test)]
+#[path = "matrix/tests/mod.rs"]
+mod tests;

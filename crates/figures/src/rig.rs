@@ -1,0 +1,663 @@
+//! A labelled drawing of the apparatus, as wide as one column.
+
+use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
+use crate::figure::{Figure, SINGLE_COLUMN_MM};
+use crate::rig_labels::{Labels, Stacked};
+use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
+
+/// The end that closes the row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FarEnd {
+    /// A half-bead fixed to the stop.
+    #[default]
+    HalfBead,
+    /// The plane face of the stop itself.
+    Plane,
+    /// Nothing: the last bead is free.
+    Open,
+}
+
+/// The parts of an apparatus. Parts that are `None`, `false` or without a label
+/// are left out.
+///
+/// The default is an empty track.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RigDrawing {
+    /// Beads in the row, the striker not counted.
+    pub beads: usize,
+    /// Material and size of the beads, such as "AISI 316, $R$ = 6.35 mm".
+    pub bead_label: String,
+    /// Radius of the striker over that of a bead; no striker if `None`.
+    pub striker_ratio: Option<f64>,
+    /// Label of the striker.
+    pub striker_label: String,
+    /// Bead with a sensor in its middle, counted from 1.
+    pub sensor_bead: Option<usize>,
+    /// Kind of the sensors, such as "piezo disc".
+    pub sensor_label: String,
+    /// First and last wet contact; contact c lies between bead c and c + 1, bead 0 being the striker.
+    pub wet_contacts: Option<(usize, usize)>,
+    /// Name of the liquid.
+    pub liquid: String,
+    /// Angle of the track above the horizontal in degrees, rising away from the wall.
+    pub incline_deg: f64,
+    /// The far end.
+    pub far_end: FarEnd,
+    /// A sensor between the far end and the stop.
+    pub wall_sensor: bool,
+    /// Launches the striker.
+    pub actuator: String,
+    /// Brings the striker back.
+    pub repositioner: String,
+    /// Measures the striker's speed.
+    pub photogate: String,
+    /// Springs that hold bead 1.
+    pub springs: String,
+    /// The box that the sensors are wired to.
+    pub recorder: String,
+    /// Body to which the far end is fixed; a rigid wall if there is neither it nor
+    /// an end structure.
+    pub stop: String,
+    /// Carries the stop.
+    pub end_structure: String,
+    /// A mass that stands apart.
+    pub bar: String,
+}
+
+/// Width of the drawing in points; the beads' centres are at height 0.
+pub(crate) const WIDTH: f64 = SINGLE_COLUMN_MM * PT_PER_MM - 6.0;
+pub(crate) const FONT: f64 = 7.0;
+pub(crate) const INK: Colour = Colour::grey(60);
+const BODY: Colour = Colour(214, 217, 222);
+const DARK: Colour = Colour(150, 156, 164);
+const STEEL: Colour = Colour(176, 184, 194);
+const OIL: Colour = Colour(224, 160, 30);
+/// A piezoelectric disc.
+const PIEZO: Colour = Colour(150, 40, 110);
+
+/// Labels above begin here: over the row, or over the recorder.
+const ROOF: f64 = -30.0;
+const OVER_RECORDER: f64 = -58.0;
+/// Room for the remark at the bottom.
+const REMARK: f64 = 17.0;
+
+/// Beads are drawn between these diameters, points.
+const SMALLEST: f64 = 11.0;
+const LARGEST: f64 = 24.0;
+/// Width of an elision in bead diameters.
+const ELISION: f64 = 1.1;
+/// Widest number in a bead, in diameters.
+const NUMBER: f64 = 0.86;
+
+/// Widths of the parts at either end of the row.
+const ACTUATOR: f64 = 34.0;
+const STRIKER: f64 = 25.0;
+const GATE: f64 = 8.0;
+const SPRINGS: f64 = 13.0;
+const SENSOR: f64 = 3.8;
+const STOP: f64 = 8.0;
+const STRUCTURE: f64 = 17.0;
+const APART: f64 = 5.0;
+const BAR: f64 = 9.0;
+
+impl RigDrawing {
+    /// The drawing as a figure of its own, one column wide.
+    #[must_use]
+    pub fn figure(self) -> Figure {
+        let (above, below) = self.extent(&Drawing::new(&self).stacked());
+        Figure::single_column((above + below + 6.0) / PT_PER_MM).panel(self)
+    }
+
+    /// Draws the rig, shrunk to fit the frame.
+    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
+        let labels = Drawing::new(self).stacked();
+        let (above, below) = self.extent(&labels);
+        let fit = (frame.width() / WIDTH).min(frame.height() / (above + below));
+        // The page was made for it up to rounding.
+        let scale = if fit > 0.999 { 1.0 } else { fit };
+        svg.open_scaled(Point::new(frame.x0, frame.y0 + scale * above), scale);
+        let drawing = Drawing::new(self);
+        drawing.draw(svg);
+        labels.draw(svg, self.roof(), drawing.floor());
+        drawing.draw_wires(svg);
+        let mut remark = String::from("Not to scale");
+        if self.incline_deg != 0.0 && self.incline_deg.is_finite() {
+            let angle = self.incline_deg;
+            remark += &format!("; the track, drawn level, is inclined by $\\alpha$ = {angle}°");
+        }
+        let line = TextLine::new(&format!("{remark}."), 6.4).shrunk_to(WIDTH);
+        line.draw(
+            svg,
+            Point::new(0.0, below - 3.0),
+            Anchor::LEFT,
+            Colour::grey(100),
+        );
+        svg.close();
+    }
+
+    /// Room above and below the beads' centres.
+    fn extent(&self, labels: &Stacked) -> (f64, f64) {
+        let (above, below) = labels.heights();
+        (
+            above - self.roof(),
+            Drawing::new(self).floor() + below + REMARK,
+        )
+    }
+
+    const fn roof(&self) -> f64 {
+        if self.recorder.is_empty() {
+            ROOF
+        } else {
+            OVER_RECORDER
+        }
+    }
+
+    /// The sensor bead if it is in the row.
+    fn sensor(&self) -> Option<usize> {
+        self.sensor_bead.filter(|n| (1..=self.beads).contains(n))
+    }
+
+    fn is_wet(&self, contact: usize) -> bool {
+        let holds = |(first, last): (usize, usize)| (first..=last).contains(&contact);
+        self.wet_contacts.is_some_and(holds)
+    }
+
+    /// Width of the half-bead in diameters.
+    fn half_bead(&self) -> f64 {
+        if self.far_end == FarEnd::HalfBead {
+            0.5
+        } else {
+            0.0
+        }
+    }
+
+    /// Width of the wall's sensor, and of stop and structure.
+    fn end_widths(&self) -> (f64, f64) {
+        let closed = self.far_end != FarEnd::Open;
+        let stop = closed && !self.stop.is_empty();
+        (
+            sum(&[(self.wall_sensor && closed, SENSOR)]),
+            sum(&[(stop, STOP), (closed, STRUCTURE)]),
+        )
+    }
+}
+
+/// Sum of the widths of what there is.
+fn sum(parts: &[(bool, f64)]) -> f64 {
+    parts
+        .iter()
+        .map(|(there, width)| if *there { *width } else { 0.0 })
+        .sum()
+}
+
+/// A drawing with the positions of its parts in points.
+struct Drawing<'a> {
+    rig: &'a RigDrawing,
+    diameter: f64,
+    /// Left end of everything, the photogate, and the left edge of bead 1.
+    left: f64,
+    gate: f64,
+    start: f64,
+    /// Right edge of the last bead, left face of the stop, right face of the structure.
+    end: f64,
+    face: f64,
+    back: f64,
+    /// Number and centre of every bead that is drawn.
+    beads: Vec<(usize, f64)>,
+    /// Middle of every place where beads are left out.
+    elisions: Vec<f64>,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(rig: &'a RigDrawing) -> Self {
+        let striker = rig.striker_ratio.is_some() || !rig.repositioner.is_empty();
+        let springs = sum(&[(!rig.springs.is_empty(), SPRINGS)]);
+        let before = sum(&[
+            (true, 2.0 + springs),
+            (!rig.actuator.is_empty(), ACTUATOR),
+            (striker, STRIKER),
+            (!rig.photogate.is_empty(), GATE),
+        ]);
+        let (sensor, support) = rig.end_widths();
+        let bar = sum(&[(!rig.bar.is_empty(), APART + BAR)]);
+        let open = sum(&[(rig.far_end == FarEnd::Open, 8.0), (true, 1.0)]);
+        let room = WIDTH - before - (sensor + support + bar + open);
+        // Least diameter at which the longest number is legible inside a bead.
+        let number = TextLine::new(&rig.beads.to_string(), LEAST_SIZE).width();
+        let smallest = (number / NUMBER).clamp(SMALLEST, LARGEST);
+        let runs = runs(rig, (room / smallest) as usize);
+        let shown: usize = runs.iter().map(|(first, last)| last - first + 1).sum();
+        let gaps = runs.len().saturating_sub(1);
+        let units = shown as f64 + gaps as f64 * ELISION + rig.half_bead();
+        let diameter = (room / units.max(1.0)).min(LARGEST);
+        // Short rows stand in the middle.
+        let left = 0.5 * (room - diameter * units).max(0.0);
+        let start = left + before;
+        let mut end = start;
+        let (mut beads, mut elisions) = (Vec::new(), Vec::new());
+        for (i, (first, last)) in runs.into_iter().enumerate() {
+            if i > 0 {
+                elisions.push(end + 0.5 * ELISION * diameter);
+                end += ELISION * diameter;
+            }
+            for bead in first..=last {
+                beads.push((bead, end + 0.5 * diameter));
+                end += diameter;
+            }
+        }
+        let face = end + rig.half_bead() * diameter + sensor;
+        Self {
+            rig,
+            diameter,
+            left,
+            gate: start - springs - 0.5 * GATE,
+            start,
+            end,
+            face,
+            back: face + support,
+            beads,
+            elisions,
+        }
+    }
+
+    fn radius(&self) -> f64 {
+        0.5 * self.diameter
+    }
+
+    /// Height of the lines that group dry and wet contacts.
+    fn brace(&self) -> f64 {
+        self.radius() + 11.0
+    }
+
+    /// Upper end of the labels below.
+    fn floor(&self) -> f64 {
+        self.brace() + 5.0
+    }
+
+    /// Centre of a bead if it is drawn.
+    fn bead(&self, number: usize) -> Option<f64> {
+        let found = self.beads.iter().find(|(n, _)| *n == number);
+        found.map(|(_, x)| *x)
+    }
+
+    /// Place of a contact, or of the elision that hides it.
+    fn contact(&self, contact: usize) -> f64 {
+        let before = self.bead(contact).map(|x| x + self.radius());
+        let after = || self.bead(contact + 1).map(|x| x - self.radius());
+        let hidden = || self.beads.iter().rev().find(|(n, _)| *n <= contact);
+        let elision = || hidden().map(|(_, x)| x + self.radius() * (1.0 + ELISION));
+        before.or_else(after).or_else(elision).unwrap_or(self.start)
+    }
+
+    /// Places of the labels, which do not depend on where they are drawn.
+    fn stacked(&self) -> Stacked {
+        self.draw(&mut Svg::new()).stacked()
+    }
+
+    /// Everything but wires, remark and labels, which are returned.
+    fn draw(&self, svg: &mut Svg) -> Labels {
+        let mut labels = Labels::default();
+        self.draw_track(svg);
+        self.draw_launcher(svg, &mut labels);
+        self.draw_row(svg, &mut labels);
+        self.draw_far_end(svg, &mut labels);
+        self.draw_braces(svg, &mut labels);
+        labels
+    }
+
+    /// The air track below everything, with its holes.
+    fn draw_track(&self, svg: &mut Svg) {
+        let top = self.radius() + 0.3;
+        let open = sum(&[(self.rig.far_end == FarEnd::Open, 8.0)]);
+        let length = self.face + open - self.left;
+        block(svg, (self.left, top), (length, 4.5), BODY);
+        let mut holes = PathData::new();
+        for i in 0..(length / 7.0) as u32 {
+            let x = self.left + 4.0 + 7.0 * f64::from(i);
+            holes.segment(Point::new(x, top + 1.2), Point::new(x, top + 3.3));
+        }
+        svg.path(&holes, &Paint::line(DARK, 0.5));
+    }
+
+    /// Actuator, striker, repositioner, photogate and springs, from left to right.
+    fn draw_launcher(&self, svg: &mut Svg, labels: &mut Labels) {
+        let (rig, r) = (self.rig, self.radius());
+        let mut x = self.left + 1.0;
+        if !rig.actuator.is_empty() {
+            block(svg, (x, -8.0), (22.0, 16.0), DARK);
+            block(svg, (x + 22.0, -1.4), (ACTUATOR - 25.0, 2.8), BODY);
+            block(svg, (x + ACTUATOR - 3.5, -0.7 * r), (1.8, 1.4 * r), INK);
+            labels.above(Point::new(x + 10.0, -6.0), &rig.actuator);
+            x += ACTUATOR;
+        }
+        let ratio = rig.striker_ratio.filter(|ratio| ratio.is_finite());
+        // The striker leaves room for its arrow.
+        let radius = (r * ratio.unwrap_or(1.0).clamp(0.6, 1.4)).min(6.8);
+        let centre = Point::new(x + radius, r - radius);
+        if rig.striker_ratio.is_some() {
+            draw_bead(svg, centre, radius);
+            draw_arrow(svg, Point::new(centre.x + radius + 1.2, centre.y), 9.0);
+            let at = Point::new(centre.x, centre.y + 0.8 * radius);
+            labels.below(at, &with_comma("striker", &rig.striker_label));
+        }
+        if !rig.repositioner.is_empty() {
+            let (reach, shoulder, rail) = (radius + 1.3, centre.y - radius - 2.2, -22.0);
+            let foot = centre.y - 0.35 * radius;
+            let sides = [-reach, reach].map(|dx| centre.x + dx);
+            let fork = [
+                (sides[0], foot),
+                (sides[0], shoulder),
+                (sides[1], shoulder),
+                (sides[1], foot),
+            ];
+            polyline(svg, &fork, &Paint::line(Colour::GREEN, 1.2));
+            polyline(
+                svg,
+                &[(centre.x, shoulder), (centre.x, rail)],
+                &Paint::line(Colour::GREEN, 1.2),
+            );
+            polyline(
+                svg,
+                &[(centre.x - 12.0, rail), (centre.x + 12.0, rail)],
+                &Paint::line(INK, 1.0),
+            );
+            labels.above(Point::new(centre.x, rail), &rig.repositioner);
+        }
+        if !rig.photogate.is_empty() {
+            let beam = [(self.gate, -r - 3.0), (self.gate, r)];
+            polyline(
+                svg,
+                &beam,
+                &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]),
+            );
+            block(svg, (self.gate - 2.6, -r - 7.5), (5.2, 4.5), INK);
+            labels.above(Point::new(self.gate, -r - 6.0), &rig.photogate);
+        }
+        if !rig.springs.is_empty() {
+            for y in [-0.72 * r, 0.72 * r] {
+                let (post, end) = (self.start - 10.0, self.start + 0.32 * r);
+                block(svg, (post - 1.6, y - 1.8), (1.6, 3.6), INK);
+                let turn = |i: u32| {
+                    let side = if i % 2 == 0 { -1.5 } else { 1.5 };
+                    (post + (end - post) / 6.0 * (f64::from(i) + 0.5), y + side)
+                };
+                let turns: Vec<(f64, f64)> = (0..6).map(turn).collect();
+                let spring = [&[(post, y)], &turns[..], &[(end, y)]].concat();
+                polyline(svg, &spring, &Paint::line(Colour::BLUE, 0.7));
+            }
+            labels.above(Point::new(self.start - 4.0, -0.72 * r), &rig.springs);
+        }
+    }
+
+    /// Oil, beads, sensor bead and elisions.
+    fn draw_row(&self, svg: &mut Svg, labels: &mut Labels) {
+        let (rig, r) = (self.rig, self.radius());
+        for (i, (number, x)) in self.beads.iter().enumerate() {
+            let next = self.beads.get(i + 1).map(|(n, _)| *n);
+            if rig.is_wet(*number) && next.is_none_or(|n| n == number + 1) {
+                draw_oil(svg, x + r, r);
+            }
+        }
+        for (number, x) in &self.beads {
+            let centre = Point::new(*x, 0.0);
+            draw_bead(svg, centre, r);
+            if rig.sensor() == Some(*number) {
+                // Cut in two with a sensor disc between the halves.
+                let disc = Rect::sized(x - 1.3, -0.97 * r, 2.6, 1.94 * r);
+                svg.rect(&disc.grown(0.6), &Paint::fill(Colour::WHITE));
+                svg.rect(&disc, &Paint::fill(PIEZO));
+                let mut text = format!("split bead $n$ = {number}");
+                if !rig.sensor_label.is_empty() {
+                    text += &format!(" with {}", rig.sensor_label);
+                }
+                labels.below(Point::new(*x, 0.9 * r), &text);
+                continue;
+            }
+            let line = TextLine::new(&number.to_string(), LEAST_SIZE);
+            // What rounding of the layout leaves over still fits.
+            if line.width() <= NUMBER * self.diameter * 1.001 {
+                line.draw(svg, centre, Anchor::MIDDLE, Colour::BLACK);
+            }
+        }
+        for x in &self.elisions {
+            for offset in [-0.55, 0.0, 0.55] {
+                svg.circle(Point::new(x + offset * r, 0.0), 0.75, &Paint::fill(INK));
+            }
+        }
+        let mut others = self.beads.iter().filter(|(n, _)| Some(*n) != rig.sensor());
+        if let Some((_, x)) = others.find(|(n, _)| *n > 1) {
+            let noun = if rig.beads == 1 { "bead" } else { "beads" };
+            let text = with_comma(&format!("{} {noun}", rig.beads), &rig.bead_label);
+            labels.above(Point::new(*x, -0.8 * r), &text);
+        }
+    }
+
+    /// Half-bead, sensor, stop, end structure and the bar apart from them.
+    fn draw_far_end(&self, svg: &mut Svg, labels: &mut Labels) {
+        let (rig, r) = (self.rig, self.radius());
+        if rig.far_end == FarEnd::HalfBead {
+            let (x, radius) = (self.end + r, r - 0.25);
+            let mut half = PathData::new();
+            half.move_to(Point::new(x, radius))
+                .arc_to(radius, false, true, Point::new(x, -radius));
+            let shade = svg.ball_gradient(STEEL);
+            svg.path(half.close(), &Paint::gradient(&shade).outlined(INK, 0.5));
+            labels.below(Point::new(self.end + 0.45 * r, 0.5 * r), "half-bead");
+        }
+        if rig.far_end != FarEnd::Open {
+            if rig.wall_sensor {
+                let disc = Rect::sized(self.face - 3.3, -0.97 * r, 2.8, 1.94 * r);
+                svg.rect(&disc, &Paint::fill(PIEZO));
+                let name = [rig.sensor_label.as_str(), "wall sensor"];
+                let name = name.into_iter().find(|name| !name.is_empty());
+                labels.below(
+                    Point::new(self.face - 1.8, 0.8 * r),
+                    name.unwrap_or_default(),
+                );
+            }
+            let mut x = self.face;
+            if !rig.stop.is_empty() {
+                block(svg, (x, -r), (STOP, 2.0 * r + 4.8), DARK);
+                labels.below(Point::new(x + 0.6 * STOP, 0.6 * r), &rig.stop);
+                x += STOP;
+            }
+            block(svg, (x, -18.0), (self.back - x, 22.8 + r), BODY);
+            let name = match rig.end_structure.as_str() {
+                "" => "rigid wall",
+                name => name,
+            };
+            labels.above(Point::new(0.5 * (x + self.back), -15.0), name);
+        }
+        if !rig.bar.is_empty() {
+            let x = self.back + APART;
+            block(svg, (x, -16.0), (BAR, 20.8 + r), DARK);
+            labels.above(Point::new(x + 0.5 * BAR, -13.5), &rig.bar);
+        }
+    }
+
+    /// Lines under the row that say which contacts are dry and which wet.
+    fn draw_braces(&self, svg: &mut Svg, labels: &mut Labels) {
+        let y = self.brace();
+        for (first, last, wet) in groups(self.rig) {
+            let from = self.contact(first) - 0.22 * self.diameter;
+            let to = self.contact(last) + 0.22 * self.diameter;
+            let colour = if wet {
+                OIL.mixed(Colour::BLACK, 0.35)
+            } else {
+                INK
+            };
+            let corners = [(from, y - 3.0), (from, y), (to, y), (to, y - 3.0)];
+            polyline(svg, &corners, &Paint::line(colour, 0.9));
+            // Away from the sensor's leader if that runs through the middle.
+            let middle = 0.5 * (from + to);
+            let sensor = self.rig.sensor().and_then(|n| self.bead(n));
+            let sensor = sensor.filter(|x| (x - middle).abs() < 8.0);
+            let x = sensor.map_or(middle, |x| (x + 8.0).min(0.5 * (middle + to)));
+            let contacts = match first == last {
+                true => format!("contact {first}"),
+                false => format!("contacts {first}–{last}"),
+            };
+            let text = match (wet, self.rig.liquid.as_str()) {
+                (false, _) => format!("{contacts} dry"),
+                (true, "") => format!("{contacts} wet"),
+                (true, liquid) => format!("{contacts} wet: {liquid}"),
+            };
+            labels.coloured(Point::new(x, y), &text, colour);
+        }
+    }
+
+    /// The recorder above the row and a wire to every sensor.
+    fn draw_wires(&self, svg: &mut Svg) {
+        /// Widest line: the box stays between the leaders at its sides.
+        const WIDEST: f64 = 84.0;
+        const LEADING: f64 = 8.4;
+        const PADDING: f64 = 4.0;
+        let (rig, top) = (self.rig, OVER_RECORDER + 5.0);
+        let inside = rig.sensor().and_then(|n| self.bead(n));
+        let wall = rig.wall_sensor && rig.far_end != FarEnd::Open;
+        let ends: Vec<f64> = inside
+            .into_iter()
+            .chain(wall.then_some(self.face - 1.8))
+            .collect();
+        let (Some(first), Some(last), false) = (ends.first(), ends.last(), rig.recorder.is_empty())
+        else {
+            return;
+        };
+        let lines = wrap(&rig.recorder, FONT, WIDEST, 3);
+        let widest = lines.iter().map(TextLine::width).fold(0.0, f64::max);
+        let width = widest + 2.0 * PADDING;
+        // Leaders of what stands behind the row pass on its right.
+        let left = (0.5 * (first + last - width)).min(last + PADDING - width);
+        let left = left.clamp(0.0, (WIDTH - width).max(0.0));
+        let case = Rect::sized(left, top, width, LEADING * lines.len() as f64 + PADDING);
+        for x in &ends {
+            // Straight up into the box, or up and across into its side.
+            let (height, across) = match *x > case.x0 + 1.0 && *x < case.x1 - 1.0 {
+                true => (case.y1, *x),
+                false => (case.centre().y, x.clamp(case.x0, case.x1)),
+            };
+            let wire = [(*x, -0.97 * self.radius()), (*x, height), (across, height)];
+            polyline(svg, &wire, &Paint::line(PIEZO, 0.8));
+        }
+        svg.rect(&case, &Paint::fill(Colour::WHITE).outlined(PIEZO, 0.8));
+        for (i, line) in lines.iter().enumerate() {
+            let middle = top + 0.5 * PADDING + LEADING * (i as f64 + 0.5);
+            line.draw(
+                svg,
+                Point::new(case.centre().x, middle),
+                Anchor::MIDDLE,
+                Colour::BLACK,
+            );
+        }
+    }
+}
+
+/// A text and another after a comma, if there is one.
+fn with_comma(text: &str, other: &str) -> String {
+    if other.is_empty() {
+        text.to_owned()
+    } else {
+        format!("{text}, {other}")
+    }
+}
+
+fn block(svg: &mut Svg, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
+    svg.rect(
+        &Rect::sized(x, y, width, height),
+        &Paint::fill(colour).outlined(INK, 0.5),
+    );
+}
+
+fn polyline(svg: &mut Svg, points: &[(f64, f64)], paint: &Paint) {
+    let points: Vec<Point> = points.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+    svg.path(PathData::new().polyline(&points), paint);
+}
+
+/// A shaded ball.
+fn draw_bead(svg: &mut Svg, centre: Point, radius: f64) {
+    let shade = svg.ball_gradient(STEEL);
+    svg.circle(
+        centre,
+        radius - 0.25,
+        &Paint::gradient(&shade).outlined(INK, 0.5),
+    );
+}
+
+/// A meniscus around the contact of two balls at `x`: waisted, widest where it wets them.
+fn draw_oil(svg: &mut Svg, x: f64, radius: f64) {
+    let half_height = 0.62 * radius;
+    let wetted = radius - (radius * radius - half_height * half_height).sqrt();
+    let (at, waist) = (|dx, y| Point::new(x + dx, y), 0.55 * half_height);
+    let mut path = PathData::new();
+    path.move_to(at(-wetted, -half_height))
+        .quad_to(at(0.0, -waist), at(wetted, -half_height));
+    path.line_to(at(wetted, half_height))
+        .quad_to(at(0.0, waist), at(-wetted, half_height));
+    svg.path(path.close(), &Paint::fill(OIL));
+}
+
+fn draw_arrow(svg: &mut Svg, from: Point, length: f64) {
+    let tip = from.x + length;
+    polyline(
+        svg,
+        &[(from.x, from.y), (tip - 2.5, from.y)],
+        &Paint::line(Colour::VERMILION, 1.1),
+    );
+    let corners = [(tip, 0.0), (tip - 4.2, -2.2), (tip - 4.2, 2.2)];
+    let corners = corners.map(|(x, dy)| Point::new(x, from.y + dy));
+    svg.path(
+        PathData::new().polygon(&corners),
+        &Paint::fill(Colour::VERMILION),
+    );
+}
+
+/// Runs of neighbouring beads to draw if there is room for `capacity` beads: all of them, or
+/// those at the ends and around the sensor.
+fn runs(rig: &RigDrawing, capacity: usize) -> Vec<(usize, usize)> {
+    let last = rig.beads;
+    if last <= capacity {
+        return if last == 0 {
+            Vec::new()
+        } else {
+            vec![(1, last)]
+        };
+    }
+    // Beads kept at either end; a narrow drawing has room for one.
+    let kept = if capacity < 9 { 1 } else { 2 };
+    let sensor = rig
+        .sensor()
+        .map(|n| ((n - 1).max(1), n.saturating_add(1).min(last)));
+    let end = (last.saturating_sub(kept) + 1, last);
+    let mut out: Vec<(usize, usize)> = Vec::new();
+    for (first, last) in [Some((1, kept)), sensor, Some(end)].into_iter().flatten() {
+        match out.last_mut() {
+            // Runs that touch, or that hide a single bead between them, are joined.
+            Some(before) if first <= before.1 + 2 => before.1 = before.1.max(last),
+            _ => out.push((first, last)),
+        }
+    }
+    out
+}
+
+/// Neighbouring contacts of one kind: first, last, wet.
+fn groups(rig: &RigDrawing) -> Vec<(usize, usize, bool)> {
+    let begin = usize::from(rig.striker_ratio.is_none());
+    let end = rig
+        .beads
+        .saturating_sub(usize::from(rig.far_end == FarEnd::Open));
+    let wet = match rig.wet_contacts {
+        Some((a, b)) if a <= b && a <= end && b >= begin => (a.max(begin), b.min(end) + 1),
+        _ => (end + 1, end + 1),
+    };
+    let all = [
+        (begin, wet.0, false),
+        (wet.0, wet.1, true),
+        (wet.1, end + 1, false),
+    ];
+    let some = all.into_iter().filter(|(from, to, _)| from < to);
+    some.map(|(from, to, wet)| (from, to - 1, wet)).collect()
+}
+
+#[cfg(test)]
+#[path = "rig/tests/drawing.rs"]
+mod tests;
