@@ -40,6 +40,7 @@ pub mod laws;
 pub mod measure;
 pub mod missing;
 pub mod options;
+pub mod program;
 pub mod quantity;
 pub mod table;
 
