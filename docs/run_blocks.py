@@ -176,17 +176,20 @@ class Page:
 
 
 def replaced(whole: str, part: str, keys: set[str]) -> str:
-    """An experiment file without its own lines of some keys, then with others."""
-    kept, dropping = [], False
-    for line in whole.splitlines(keepends=True):
-        if head := re.match(r"\[*\s*([\w-]+)[\w.-]*\s*(=|\])", line):
-            dropping = head[1] in keys and (line[0] == "[" or "=" in line)
-        if not dropping:
-            kept.append(line)
-    tables = [index for index, line in enumerate(kept) if line.startswith("[")]
-    top = part if not part.lstrip().startswith("[") else ""
-    cut = tables[0] if tables and top else len(kept)
-    return "".join(kept[:cut]) + part + "".join(kept[cut:])
+    """An experiment file without its own values of some keys, then with others."""
+    head, bracket, tables = whole.partition("\n[")
+    own, others = part.partition("[")[::2] if part.lstrip().startswith("[") else (part, "")
+    statements = re.split(r"\n(?=[\w-])", head)
+    chunks = re.split(r"\n(?=\[)", bracket + tables)
+    kept = [text for text in statements if root(text) not in keys]
+    kept += [own] + [text for text in chunks if root(text) not in keys]
+    return "\n".join(kept) + (f"\n[{others}" if others else "")
+
+
+def root(text: str) -> str:
+    """The first name of a statement or a table's heading."""
+    found = re.search(r"^\[*\s*([\w-]+)", text.lstrip("\n"))
+    return found[1] if found else ""
 
 
 def compare(expected: str, printed: str | None) -> None:
