@@ -20,6 +20,7 @@ Comments before a block, invisible on the page, change this:
 
 <!-- before: SCRIPT -->    a bash script that is run first, such as one that makes a file of the reader's
 <!-- tested by: FILE -->   another test of this repository runs the next block
+<!-- rust: FILE -->        that test compiles and runs the page's blocks of Rust
 <!-- not run: REASON -->   the next block is not executed
 """
 
@@ -36,7 +37,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ["README.md", "docs/tutorials", "docs/how-to", "docs/reference", "docs/explanation"]
 PIECE = re.compile(
-    r"^```(?P<language>[\w-]*)\n(?P<code>.*?)^```$|^<!--\s*(?P<kind>before|tested by|not run):(?P<text>.*?)-->",
+    r"^```(?P<language>[\w-]*)\n(?P<code>.*?)^```$|^<!--\s*(?P<kind>before|tested by|rust|not run):(?P<text>.*?)-->",
     re.MULTILINE | re.DOTALL,
 )
 NUMBER = re.compile(r"[-+−]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -74,6 +75,7 @@ class Page:
         self.printed: str | None = None
         self.experiment: str | None = None
         self.python: subprocess.Popen[str] | None = None
+        self.rust_is_run = False
 
     def run(self) -> int:
         """Executes all blocks; returns their number."""
@@ -99,9 +101,10 @@ class Page:
         if kind == "before":
             self.shell(text)
             return False
-        if kind == "tested by" and self.path.name not in (ROOT / text).read_text(encoding="utf-8"):
+        if kind != "not run" and self.path.name not in (ROOT / text).read_text(encoding="utf-8"):
             raise BlockError(f"{text} does not read this page")
-        return True
+        self.rust_is_run |= kind == "rust"
+        return kind != "rust"
 
     def block(self, language: str, code: str) -> int:
         """Executes a block; returns 1 if it is one to execute."""
@@ -114,8 +117,10 @@ class Page:
                 self.printed = self.toml(code)
             case "output":
                 compare(code, self.printed)
-            case "text" | "bibtex" | "json":
+            case "text" | "bibtex":
                 return 0
+            case "rust" if self.rust_is_run:
+                return 1
             case _:
                 raise BlockError(f"a block in '{language}' is not run: see {Path(__file__).name}")
         return 1
