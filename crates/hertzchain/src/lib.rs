@@ -48,6 +48,11 @@ pub use failure::Failure;
 pub use fit::fit;
 pub use measure::measure;
 
+/// The page's examples, compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/how-to/use-from-rust.md")]
+pub struct UseFromRust;
+
 /// What most programs need, by one `use`.
 pub mod prelude {
     pub use crate::fit::{Fitted, fit};
