@@ -57,3 +57,25 @@ test-peers:
 # Documentation of all crates
 doc:
     cargo doc --workspace --no-deps --open
+
+# The site, into target/docs/html: just docs [WHEEL]
+docs *wheel:
+    docs/build {{wheel}}
+
+# Every code block of README.md and the pages, executed (after `just docs` and a release build)
+tutorials *options:
+    cargo build --release --locked -p hertzchain
+    target/docs/venv/bin/python docs/run_blocks.py {{options}}
+
+# Wheels of the stable ABI and the source distribution, into target/wheels
+wheels:
+    packaging/wheels
+
+# A Debian package, into target/
+deb:
+    cargo build --release --locked -p hertzchain
+    packaging/deb target/release/hertzchain target
+
+# What a release consists of, checked, tagged and collected: just release 0.2.0
+release version:
+    packaging/release {{version}}

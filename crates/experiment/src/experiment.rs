@@ -477,7 +477,7 @@ macro_rules! files {
     ($($name:literal),+ $(,)?) => {
         &[$(Preset {
             name: $name,
-            text: include_str!(concat!("../../../experiments/", $name, ".toml")),
+            text: include_str!(concat!("../experiments/", $name, ".toml")),
         }),+]
     };
 }

@@ -1,7 +1,7 @@
 //! The sources of `references.bib`, for reading.
 
 /// The bibliography of the code and the documents: one field a line.
-const BIBLIOGRAPHY: &str = include_str!("../../../references.bib");
+const BIBLIOGRAPHY: &str = include_str!("../references.bib");
 
 /// What the bibliography writes in LaTeX, and the same in letters.
 const LETTERS: [(&str, &str); 16] = [

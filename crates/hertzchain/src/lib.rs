@@ -40,12 +40,18 @@ pub mod laws;
 pub mod measure;
 pub mod missing;
 pub mod options;
+pub mod program;
 pub mod quantity;
 pub mod table;
 
 pub use failure::Failure;
 pub use fit::fit;
 pub use measure::measure;
+
+/// The page's examples, compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/how-to/use-from-rust.md")]
+pub struct UseFromRust;
 
 /// What most programs need, by one `use`.
 pub mod prelude {

@@ -27,5 +27,4 @@ mod resume;
 mod shards;
 mod sweeps;
 mod tables;
-mod tutorials;
 mod whole_loop;

@@ -13,6 +13,7 @@ mod job;
 mod json;
 mod law;
 mod options;
+mod program;
 mod recordings;
 mod shot;
 mod spread;
@@ -32,6 +33,8 @@ mod _hertzchain {
     use super::law::Force;
     #[pymodule_export]
     use super::options::options;
+    #[pymodule_export]
+    use super::program::run_program;
     #[pymodule_export]
     use super::recordings::{campaign, campaign_series, measure};
     #[pymodule_export]

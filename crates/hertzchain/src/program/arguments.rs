@@ -1,11 +1,11 @@
 //! The command line, declared once: help, man pages and completions follow.
 
-use clap::{Args, Parser, Subcommand};
-use clap_complete::Shell;
-use hertzchain::options::{
+use crate::options::{
     CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
     ShotOptions, SweepOptions,
 };
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use std::path::PathBuf;
 
 /// Rows of beads and their solitary waves.

@@ -1,19 +1,18 @@
 //! What went wrong, printed, with the exit code: 2 for the user's mistakes, 1
 //! for ours.
 
-use crate::print::note;
-use hertzchain::failure;
-pub(crate) use hertzchain::failure::{Failure, of_speed};
-use hertzchain::inference::{assumed, held_loads, kept};
-use hertzchain::input::option;
-use hertzchain::options::Given;
-use hertzchain::options::{Assignment, CurveOptions as Measured};
+use crate::failure;
+pub(crate) use crate::failure::{Failure, of_speed};
+use crate::inference::{assumed, held_loads, kept};
+use crate::input::option;
+use crate::options::Given;
+use crate::options::{Assignment, CurveOptions as Measured};
+use crate::program::print::note;
 use hertzchain_experiment::Warning;
 use hertzchain_infer::{Data, Model};
 use hertzchain_measure::records::without_controls;
 use std::borrow::Cow;
 use std::io::IsTerminal;
-use std::process::ExitCode;
 
 fn colour() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
@@ -29,12 +28,12 @@ fn show(report: impl Fn(bool) -> String) {
 }
 
 /// Prints why a verb failed and says how the program ends.
-pub(crate) fn report(failure: &Failure) -> ExitCode {
+pub(crate) fn report(failure: &Failure) -> u8 {
     show(|colour| failure.report(colour));
     match failure {
-        Failure::Mistakes(_) | Failure::User(_) => ExitCode::from(2),
-        Failure::Ours(_) => ExitCode::from(1),
-        Failure::BrokenPipe => ExitCode::SUCCESS,
+        Failure::Mistakes(_) | Failure::User(_) => 2,
+        Failure::Ours(_) => 1,
+        Failure::BrokenPipe => 0,
     }
 }
 

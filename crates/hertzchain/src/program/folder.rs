@@ -1,6 +1,6 @@
 //! An output folder whose files are there whole or not at all.
 
-use crate::failure::Failure;
+use crate::program::failure::Failure;
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::Files;
 use std::io::{self, Write};

@@ -1,9 +1,9 @@
 //! Numbers and tables for people.
 
-use crate::print::heading;
+use crate::program::print::heading;
+use crate::quantity::decimals;
+pub(crate) use crate::quantity::{Style, digits};
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle, presets};
-use hertzchain::quantity::decimals;
-pub(crate) use hertzchain::quantity::{Style, digits};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Group, Row, Value};
 

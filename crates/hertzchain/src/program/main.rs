@@ -1,67 +1,7 @@
-//! The `hertzchain` program: one file a verb, no logic of its own.
+//! The `hertzchain` program; all of it is in the library, as Python's package has it too.
 
-mod arguments;
-mod failure;
-mod folder;
-mod format;
-mod notes;
-mod pictures;
-mod print;
-mod verbs;
-mod words;
-
-use arguments::{Program, Verb};
-use clap::Parser;
-use failure::Failure;
-use hertzchain_measure::records::remove_copies;
 use std::process::ExitCode;
 
-/// Exit code of a program that the user ended: 128 and the number of SIGINT.
-const INTERRUPTED: i32 = 130;
-
 fn main() -> ExitCode {
-    end_on_interrupt();
-    let program = Program::parse();
-    let done = match program.verb {
-        Some(verb) => run(verb),
-        None => verbs::version::run(program.verbose),
-    };
-    let code = match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure::report(&failure),
-    };
-    remove_copies();
-    code
-}
-
-/// Ends the program with a message at Ctrl-C. Files appear whole, so none has to be closed.
-fn end_on_interrupt() {
-    let installed = ctrlc::set_handler(|| {
-        print::note("interrupted: what was not finished is not written");
-        std::process::exit(INTERRUPTED);
-    });
-    if let Err(error) = installed {
-        print::note(&format!("warning: Ctrl-C ends without a message: {error}"));
-    }
-}
-
-fn run(verb: Verb) -> Result<(), Failure> {
-    match verb {
-        Verb::Reproduce(arguments) => verbs::reproduce::run(&arguments),
-        Verb::Shot(arguments) => verbs::shot::run(&arguments),
-        Verb::Sweep(arguments) => verbs::sweep::run(&arguments),
-        Verb::Merge(arguments) => verbs::merge::run(&arguments),
-        Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
-        Verb::Measure(arguments) => verbs::measure::run(&arguments),
-        Verb::Fit(arguments) => verbs::fit::run(&arguments),
-        Verb::Design(arguments) => verbs::design::run(&arguments),
-        Verb::Gauge(arguments) => verbs::gauge::run(&arguments),
-        Verb::Check(arguments) => verbs::check::run(&arguments),
-        Verb::Theory(arguments) => verbs::theory::run(&arguments),
-        Verb::Laws(arguments) => verbs::laws::run(&arguments),
-        Verb::Presets(arguments) => verbs::presets::run(&arguments),
-        Verb::Schema => verbs::schema::run(),
-        Verb::Completions { shell } => verbs::completions::run(shell),
-        Verb::Man { out } => verbs::man::run(out.as_deref()),
-    }
+    ExitCode::from(hertzchain::program::run(std::env::args_os()))
 }

@@ -1,7 +1,7 @@
 //! How far long work is, on standard error.
 
-use crate::failure::Failure;
-use crate::print;
+use crate::program::failure::Failure;
+use crate::program::print;
 use hertzchain_sim::Stop;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;

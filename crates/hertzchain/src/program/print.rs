@@ -1,6 +1,6 @@
 //! Standard output, which may be a closed pipe.
 
-use crate::failure::Failure;
+use crate::program::failure::Failure;
 use hertzchain_measure::records::without_controls;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 

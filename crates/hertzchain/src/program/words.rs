@@ -1,6 +1,6 @@
 //! Numbers of inference in words.
 
-use crate::format::{digits, with_error};
+use crate::program::format::{digits, with_error};
 use hertzchain_infer::{Ending, Goodness, Jacobian, Parameter};
 use hertzchain_measure::signal::ChiSquare;
 

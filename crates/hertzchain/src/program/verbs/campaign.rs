@@ -1,9 +1,9 @@
 //! `hertzchain campaign`: what a rig does alone, on a virtual rig.
 
-use crate::failure::Failure;
-use crate::print::{self, print};
-use hertzchain::input;
-use hertzchain::options::CampaignOptions as Arguments;
+use crate::input;
+use crate::options::CampaignOptions as Arguments;
+use crate::program::failure::Failure;
+use crate::program::print::{self, print};
 use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, forecast};
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
 use rayon::ThreadPoolBuilder;

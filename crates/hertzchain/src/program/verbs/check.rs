@@ -1,9 +1,9 @@
 //! `hertzchain check`: what was understood; runs nothing.
 
-use crate::failure::{self, Failure};
-use crate::{format, print};
-use hertzchain::options::CheckOptions as Check;
-use hertzchain::{input, json};
+use crate::options::CheckOptions as Check;
+use crate::program::failure::{self, Failure};
+use crate::program::{format, print};
+use crate::{input, json};
 use hertzchain_sim::describe;
 use serde_json::json;
 

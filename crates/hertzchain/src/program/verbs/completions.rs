@@ -1,8 +1,8 @@
 //! `hertzchain completions`: a script for a shell.
 
-use crate::arguments::Program;
-use crate::failure::Failure;
-use crate::print;
+use crate::program::arguments::Program;
+use crate::program::failure::Failure;
+use crate::program::print;
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 

@@ -1,13 +1,13 @@
 //! `hertzchain design`: what to measure next.
 
-use crate::failure::{Failure, print_assumed, print_kept};
-use crate::folder::Folder;
-use crate::format::{self, digits};
-use crate::print::{self, heading};
-use crate::words::{lines, misfit};
-use hertzchain::design::Designed;
-use hertzchain::options::DesignOptions as Arguments;
-use hertzchain::{design, inference};
+use crate::design::Designed;
+use crate::options::DesignOptions as Arguments;
+use crate::program::failure::{Failure, print_assumed, print_kept};
+use crate::program::folder::Folder;
+use crate::program::format::{self, digits};
+use crate::program::print::{self, heading};
+use crate::program::words::{lines, misfit};
+use crate::{design, inference};
 use hertzchain_infer::{CurveProblem, Expected, titled};
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = inference::pool(arguments.modelled.threads)?;
     let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
     let mut all = design::json(&problem, &designed);
-    all["options"] = hertzchain::options::recorded(arguments);
+    all["options"] = crate::options::recorded(arguments);
     let assumed = inference::assumed_model(&arguments.modelled);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());

@@ -5,14 +5,14 @@ mod pulses;
 mod report;
 mod uncertainty;
 
-use crate::failure::{Failure, print_assumed, print_kept};
-use crate::folder::Folder;
-use crate::notes::with_notes;
-use crate::print;
-use crate::words::lines;
-use hertzchain::fit::{self, Fitted, Inferred, More};
-use hertzchain::inference;
-use hertzchain::options::{FitOptions as Arguments, Method};
+use crate::fit::{self, Fitted, Inferred, More};
+use crate::inference;
+use crate::options::{FitOptions as Arguments, Method};
+use crate::program::failure::{Failure, print_assumed, print_kept};
+use crate::program::folder::Folder;
+use crate::program::notes::with_notes;
+use crate::program::print;
+use crate::program::words::lines;
 use hertzchain_infer::{CurveProblem, Problem, Surrogate};
 
 /// Runs the verb.

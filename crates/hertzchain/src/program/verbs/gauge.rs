@@ -3,13 +3,13 @@
 mod pictures;
 mod report;
 
-use crate::failure::{Failure, print_assumed};
-use crate::folder::Folder;
-use crate::print;
-use crate::words::lines;
-use hertzchain::gauge::{self, Gauged};
-use hertzchain::inference;
-use hertzchain::options::GaugeOptions as Arguments;
+use crate::gauge::{self, Gauged};
+use crate::inference;
+use crate::options::GaugeOptions as Arguments;
+use crate::program::failure::{Failure, print_assumed};
+use crate::program::folder::Folder;
+use crate::program::print;
+use crate::program::words::lines;
 use hertzchain_infer::gauge::Chains;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
     let mut all = gauge::json(&gauged);
-    all["options"] = hertzchain::options::recorded(arguments);
+    all["options"] = crate::options::recorded(arguments);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());
     match arguments.json {

@@ -1,10 +1,10 @@
 //! `hertzchain laws`: every contact law, from the registry.
 
-use crate::arguments::Laws;
-use crate::failure::Failure;
-use crate::{format, print};
-use hertzchain::bibliography::Work;
-use hertzchain::laws::{self, nature};
+use crate::bibliography::Work;
+use crate::laws::{self, nature};
+use crate::program::arguments::Laws;
+use crate::program::failure::Failure;
+use crate::program::{format, print};
 use hertzchain_chain::laws::{LawInfo, Parameter, Source};
 
 /// Runs the verb.

@@ -1,9 +1,9 @@
 //! `hertzchain man`: manual pages.
 
-use crate::arguments::Program;
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::print;
+use crate::program::arguments::Program;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::print;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use std::path::Path;

@@ -3,11 +3,11 @@
 mod pictures;
 mod summary;
 
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::print;
-use hertzchain::measure;
-use hertzchain::options::MeasureOptions as Arguments;
+use crate::measure;
+use crate::options::MeasureOptions as Arguments;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::print;
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Measurement, Note, Options, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,

@@ -2,10 +2,10 @@
 
 use super::campaign::failure;
 use super::sweep::{shard, told};
-use crate::arguments::Merge as Arguments;
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::print::print;
+use crate::program::arguments::Merge as Arguments;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::print::print;
 use hertzchain_sim::BatchResult;
 use hertzchain_sim::rig::{CAMPAIGN_FILE, plan_of_folder};
 use indicatif::HumanBytes;

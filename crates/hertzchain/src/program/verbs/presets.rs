@@ -1,8 +1,8 @@
 //! `hertzchain presets`: the experiments that come with the program.
 
-use crate::arguments::Presets;
-use crate::failure::Failure;
-use crate::{format, print};
+use crate::program::arguments::Presets;
+use crate::program::failure::Failure;
+use crate::program::{format, print};
 use hertzchain_experiment::{Preset, campaigns, examples, preset, presets};
 
 /// Runs the verb.

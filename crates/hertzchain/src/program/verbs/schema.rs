@@ -1,7 +1,7 @@
 //! `hertzchain schema`: the JSON Schema of experiment files.
 
-use crate::failure::Failure;
-use crate::print;
+use crate::program::failure::Failure;
+use crate::program::print;
 
 /// Runs the verb.
 pub(crate) fn run() -> Result<(), Failure> {

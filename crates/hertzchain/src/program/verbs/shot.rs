@@ -3,14 +3,14 @@
 mod report;
 mod traces;
 
-use crate::failure::{self, Failure};
-use crate::folder::Folder;
-use crate::notes::with_notes;
-use crate::print;
-use crate::words::lines;
-use hertzchain::options::ShotOptions as Arguments;
-use hertzchain::table::named;
-use hertzchain::{input, json};
+use crate::options::ShotOptions as Arguments;
+use crate::program::failure::{self, Failure};
+use crate::program::folder::Folder;
+use crate::program::notes::with_notes;
+use crate::program::print;
+use crate::program::words::lines;
+use crate::table::named;
+use crate::{input, json};
 use hertzchain_sim::{Expected, Plan, shoot_checked, shoot_estimated};
 use std::path::Path;
 

@@ -4,14 +4,14 @@ mod fits;
 pub(crate) mod shard;
 pub(crate) mod told;
 
-use crate::failure::{self, Failure};
-use crate::folder::Folder;
-use crate::format::Style;
-use crate::print;
-use hertzchain::json::SweepView;
-use hertzchain::options::check_speeds;
-use hertzchain::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
-use hertzchain::{input, missing, table};
+use crate::options::check_speeds;
+use crate::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
+use crate::program::failure::{self, Failure};
+use crate::program::folder::Folder;
+use crate::program::format::Style;
+use crate::program::print;
+use crate::json::SweepView;
+use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_sim::{
     Batch, BatchOptions, BatchResult, BatchShot, Calibration, ErrorControl, Plan, Shard,

@@ -1,10 +1,10 @@
 //! `hertzchain theory`: what theory says of a chain's waves.
 
-use crate::failure::{self, Failure};
-use crate::words::lines;
-use crate::{format, print};
-use hertzchain::options::CheckOptions as Check;
-use hertzchain::{input, json};
+use crate::options::CheckOptions as Check;
+use crate::program::failure::{self, Failure};
+use crate::program::words::lines;
+use crate::program::{format, print};
+use crate::{input, json};
 use hertzchain_sim::describe_theory;
 
 /// Runs the verb.

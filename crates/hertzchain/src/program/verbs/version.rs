@@ -1,8 +1,8 @@
 //! `hertzchain --version`: which program this is and how it computes here.
 
-use crate::failure::Failure;
-use crate::print;
-use hertzchain::input;
+use crate::input;
+use crate::program::failure::Failure;
+use crate::program::print;
 use hertzchain_sim::InstructionSet;
 
 /// Prints the version.

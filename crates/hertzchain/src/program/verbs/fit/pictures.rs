@@ -1,7 +1,7 @@
 //! Figures of a fit.
 
 use super::{Fitted, report::short};
-use hertzchain::fit::Inferred;
+use crate::fit::Inferred;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
 

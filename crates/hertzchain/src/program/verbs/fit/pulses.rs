@@ -1,16 +1,16 @@
 //! Whole pulses of recordings to parameters.
 
 use super::{report, show, write_inferred};
-use crate::failure::{Failure, print_kept};
-use crate::folder::Folder;
-use crate::format::digits;
-use crate::notes::with_notes;
-use crate::print::{self, heading};
-use crate::words::lines;
-use hertzchain::fit::pulses::{Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown};
-use hertzchain::fit::{finished, tables_of_any};
-use hertzchain::inference;
-use hertzchain::options::FitOptions as Arguments;
+use crate::fit::pulses::{Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown};
+use crate::fit::{finished, tables_of_any};
+use crate::inference;
+use crate::options::FitOptions as Arguments;
+use crate::program::failure::{Failure, print_kept};
+use crate::program::folder::Folder;
+use crate::program::format::digits;
+use crate::program::notes::with_notes;
+use crate::program::print::{self, heading};
+use crate::program::words::lines;
 use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
 use hertzchain_infer::Problem;
 use serde_json::Value;

@@ -1,11 +1,13 @@
 //! A fit for people.
 
-use crate::format::{self, digits};
-use crate::print::heading;
-use crate::words::{chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough};
-use hertzchain::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
-use hertzchain::inference::{references, widened};
-use hertzchain::options::FitOptions as Arguments;
+use crate::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
+use crate::inference::{references, widened};
+use crate::options::FitOptions as Arguments;
+use crate::program::format::{self, digits};
+use crate::program::print::heading;
+use crate::program::words::{
+    chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough,
+};
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
 };

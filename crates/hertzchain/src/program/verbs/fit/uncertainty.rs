@@ -1,6 +1,6 @@
 //! Figures of uncertainty: profiles, samples, and what the data determine.
 
-use hertzchain::fit::Inferred;
+use crate::fit::Inferred;
 use hertzchain_figures::Figure;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_infer::{Parameter, Posterior, Profile, RISE_OF_95_PERCENT};

@@ -1,6 +1,6 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
-use hertzchain::gauge::Gauged;
+use crate::gauge::Gauged;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
 use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_determined};
 

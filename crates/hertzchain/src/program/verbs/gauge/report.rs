@@ -1,10 +1,10 @@
 //! What the gauge says, for people and for programs.
 
-use crate::format::{self, digits, with_error};
-use crate::print::heading;
-use crate::words::{chi_square_text, estimate, lines, misfit, percent};
-use hertzchain::gauge::Gauged;
-use hertzchain::inference::references;
+use crate::gauge::Gauged;
+use crate::inference::references;
+use crate::program::format::{self, digits, with_error};
+use crate::program::print::heading;
+use crate::program::words::{chi_square_text, estimate, lines, misfit, percent};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_determined};
 

@@ -1,8 +1,8 @@
 //! What was measured, in short, for people.
 
-use crate::format::{self, with_error};
-use crate::print::heading;
-use crate::words::chi_square_text;
+use crate::program::format::{self, with_error};
+use crate::program::print::heading;
+use crate::program::words::chi_square_text;
 use hertzchain_measure::signal::{Estimate, FitError, PowerLaw, Summary};
 use hertzchain_measure::{Case, Curves, Measurement, Shot, SpeedRow};
 

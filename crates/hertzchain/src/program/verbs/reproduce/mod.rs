@@ -2,10 +2,10 @@
 
 mod rig;
 
-use crate::arguments::Reproduce;
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::print::{self, print};
+use crate::program::arguments::Reproduce;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_paper::claims::{EvaluatedClaim, MEANING, Verdict, computed_text};
 use hertzchain_paper::figures::{captions, figures};

@@ -1,8 +1,8 @@
 //! `hertzchain reproduce --rig`: what the paper says of its rig.
 
 use super::{Bar, verdicts};
-use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
 use hertzchain_experiment::preset;
 use hertzchain_paper::figures::rig_figures;
 use hertzchain_paper::rig_claims::{Design, MEANING, RigClaims, observe, series_csv};

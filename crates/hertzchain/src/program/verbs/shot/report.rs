@@ -1,8 +1,8 @@
 //! A shot in words.
 
-use crate::format::{Style, digits, pairs};
-use crate::print::heading;
-use hertzchain::missing;
+use crate::missing;
+use crate::program::format::{Style, digits, pairs};
+use crate::program::print::heading;
 use hertzchain_chain::Start;
 use hertzchain_chain::observe::{Maximum, Passage, Pulse};
 use hertzchain_chain::wave::Budget;

@@ -1,11 +1,11 @@
 //! Traces, figures and the moving picture of a shot.
 
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::pictures;
-use crate::print;
-use hertzchain::options::ShotOptions as Arguments;
-use hertzchain::table::{cell, suffix};
+use crate::options::ShotOptions as Arguments;
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::pictures;
+use crate::program::print;
+use crate::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};

@@ -1,7 +1,7 @@
 //! The power laws of a sweep in words.
 
-use crate::format::{digits, r_squared, with_error};
-use hertzchain::missing;
+use crate::missing;
+use crate::program::format::{digits, r_squared, with_error};
 use hertzchain_experiment::Units;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_sim::{BatchResult, Column};

@@ -1,10 +1,10 @@
 //! `hertzchain sweep --shard`: one part of a sweep, as a file.
 
 use super::Arguments;
-use crate::failure::Failure;
-use crate::print::{self, print};
-use crate::words::lines;
-use hertzchain::input::assumed;
+use crate::input::assumed;
+use crate::program::failure::Failure;
+use crate::program::print::{self, print};
+use crate::program::words::lines;
 use hertzchain_sim::{Batch, BatchResult, Column, Shard};
 use std::path::Path;
 use std::time::Instant;

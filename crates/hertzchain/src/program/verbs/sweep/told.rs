@@ -2,12 +2,12 @@
 //! process and merged shards are told alike.
 
 use super::fits;
-use crate::failure::Failure;
-use crate::folder::Folder;
-use crate::format::{self, Style};
-use crate::pictures;
-use crate::print::{self, heading, print};
-use hertzchain::table::{self, cell};
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::format::{self, Style};
+use crate::program::pictures;
+use crate::program::print::{self, heading, print};
+use crate::table::{self, cell};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{BatchResult, COLUMNS, Column, Rows};
 

@@ -1,0 +1,20 @@
+"""The program ``hertzchain``, which a wheel puts on the path; also ``python -m hertzchain``."""
+
+import sys
+
+from ._hertzchain import run_program
+
+
+def main() -> int:
+    """Runs the program with the arguments of this process.
+
+    Returns
+    -------
+    int
+        Its exit code: 0, 2 for a mistake of the user, 1 for any other failure.
+    """
+    return run_program(["hertzchain", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
