@@ -7,5 +7,16 @@
 pub mod engine;
 pub mod server;
 
+use std::ffi::OsStr;
+use std::io;
+
 pub use engine::{Recording, Refusal, Reply, Request, Verbs, answer};
 pub use server::{ServerError, Settings, serve};
+
+/// Opens an address in the user's browser.
+///
+/// # Errors
+/// A system without a browser.
+pub fn open(address: impl AsRef<OsStr>) -> io::Result<()> {
+    ::open::that_detached(address)
+}

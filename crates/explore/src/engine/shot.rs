@@ -37,6 +37,8 @@ pub struct ShotReply {
     pub rebound_first_m_s: Option<f64>,
     /// Its velocity at the end, in m/s.
     pub rebound_end_m_s: Option<f64>,
+    /// Velocities at the end in m/s, body 0 first.
+    pub velocity_m_s: Vec<f64>,
     /// Duration in s.
     pub duration_s: f64,
     /// How it was computed.
@@ -163,6 +165,7 @@ fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> ShotReply {
         pulse_speed_beads_s: shot.pulse_speed_beads_s,
         rebound_first_m_s: rebound.and_then(|rebound| Some(rebound.first?.1)),
         rebound_end_m_s: rebound.and_then(|rebound| rebound.end_m_s),
+        velocity_m_s: shot.velocity_m_s.clone(),
         duration_s: shot.duration_s,
         solver: shot.solver.clone(),
         force_passes: shot.work.force_passes,
