@@ -143,14 +143,16 @@ fn fitted(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
         .map(|number| json!({ "name": number.name(), "path": number.path() }))
         .collect();
     let residuals = found.curve.predicted.iter().zip(&data.rows).map(|(predicted, row)| {
-        let of = |what: Observable| {
+        // Predictions stand in the order of the observables.
+        let [there, back, ..] = *predicted;
+        let of = |what, predicted: Option<f64>| {
             let measured = row.value(what)?;
-            Some(json!([measured.value - predicted.value(what)?, measured.sigma]))
+            Some(json!([measured.value - predicted?, measured.sigma]))
         };
         json!({
             "speed_m_s": row.speed_m_s.value,
-            "tof_incident_s": of(Observable::Incident),
-            "tof_reflected_s": of(Observable::Reflected),
+            "tof_incident_s": of(Observable::Incident, there),
+            "tof_reflected_s": of(Observable::Reflected, back),
         })
     });
     Ok(fit::joined(
