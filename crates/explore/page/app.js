@@ -1,7 +1,7 @@
 // The page: its state, and what changes it.
 
 import { ask, decoded, newest, start } from "./engine.js";
-import { html } from "./charts.js";
+import { formula, html } from "./charts.js";
 import { copy, csv, figures, packed, picture, python, save, shell, slug, unpacked } from "./files.js";
 import { Fit } from "./fit.js";
 import { Form, sentence, source } from "./form.js";
@@ -180,6 +180,7 @@ const sweep = newest(async (draft) => {
   const speed = outline.speed_m_s;
   const [from, to] = outline.dimensionless || speed < RANGE[0] || speed > RANGE[1] ? [speed / 5, speed * 5] : RANGE;
   const speeds = { from_m_s: from, to_m_s: to, count: draft ? CURVE.draft : CURVE.full };
+  $("#curve").classList.add("stale");
   try {
     const curve = await ask("curve", { verb: "batch", text, speeds });
     Object.assign(state, { curve, speeds });
@@ -192,6 +193,8 @@ const sweep = newest(async (draft) => {
     if (error.stopped) return;
     state.curve = null;
     state.curveWhy = error.message;
+  } finally {
+    $("#curve").classList.remove("stale");
   }
   plots.drawCurve(state);
   drawTables();
@@ -248,11 +251,11 @@ function drawTiles() {
   const pair = (value, unit, digits) => (of.scale === 1 ? [plain(value, digits), ""] : quantityParts(value, unit, digits));
   const tof = (value) => (value === null ? ["–", ""] : of.scale === 1 ? [plain(value, 6), ""] : [(value * 1e6).toFixed(2), "µs"]);
   const tiles = [
-    ["Incident time of flight", ...tof(shot.tof_incident_s), "incident"],
-    ["Reflected time of flight", ...tof(shot.tof_reflected_s), "reflected"],
-    ["Force at the wall", ...pair(shot.wall?.value_n ?? null, "N", 4), "wall"],
+    ["Incident ToF", ...tof(shot.tof_incident_s), "incident"],
+    ["Reflected ToF", ...tof(shot.tof_reflected_s), "reflected"],
+    ["Wall force", ...pair(shot.wall?.value_n ?? null, "N", 4), "wall"],
     ["Pulse speed", ...(shot.pulse_speed_beads_s === null ? ["–", ""] : [plain(shot.pulse_speed_beads_s, 5), of.scale === 1 ? "" : "beads/s"])],
-    ["Striker at the end", ...pair(shot.rebound_end_m_s ?? shot.rebound_first_m_s, "m/s", 3)],
+    ["Striker’s end speed", ...pair(shot.rebound_end_m_s ?? shot.rebound_first_m_s, "m/s", 3)],
     ["Energy lost", ...(lost === null ? ["–", ""] : [plain(Math.max(0, 100 * lost) < 1e-4 ? 0 : 100 * lost, 3), "%"])],
   ];
   $("#tiles").replaceChildren(...tiles.map(([name, value, unit, tint]) => {
@@ -307,7 +310,7 @@ function showTime() {
   if (!motion) return;
   const of = units(state);
   const end = shownEnd();
-  const seen = drawRow($("#row"), motion, state.time, Number($("#magnify").value) || 1);
+  const seen = drawRow($("#row"), motion, state.time, Number($("#magnify").value) || 1, { most: of.q(motion.most, "N", 3) });
   const open = seen.open.filter(Boolean).length;
   $("#clock").textContent = `t = ${of.scale === 1 ? plain(state.time, 4) : `${(state.time * 1e6).toFixed(1)} µs`}`;
   const slider = $("#time");
@@ -326,7 +329,7 @@ function pace() {
 
 function play(on) {
   playing = on;
-  $("#play").textContent = on ? "⏸" : "▶";
+  $("#play").classList.toggle("on", on);
   $("#play").setAttribute("aria-label", on ? "Pause" : "Play");
   if (!on) return;
   if (state.time >= shownEnd() * 0.999) setTime(0);
@@ -423,13 +426,13 @@ function tell() {
   const focused = place.contains(document.activeElement) ? document.activeElement.dataset.go : null;
   place.dataset.key = key;
   const button = (name, act, of, primary) => html("button", { type: "button", "data-go": of, class: primary ? "primary" : undefined, onclick: act }, name);
-  const answer = html("p", { class: "answer", hidden: !opened }, scene.answer);
+  const answer = html("p", { class: "answer", hidden: !opened }, formula(scene.answer));
   const asking = last ? [html("p", { class: "question" }, scene.question), answer] : [];
   const show = () => {
     answer.hidden = false;
     place.dataset.answer = scene.id + step;
   };
-  place.replaceChildren(html("h2", {}, scene.title), html("p", {}, text), ...asking, html("div", { class: "steps" }, [
+  place.replaceChildren(html("h2", {}, scene.title), html("p", {}, formula(text)), ...asking, html("div", { class: "steps" }, [
     button("Back", () => go(step - 1), "back"),
     last ? button("Show an answer", show, "next", true) : button("Next", () => go(step + 1), "next", true),
     html("span", {}, `${step + 1} of ${scene.steps.length}`),
@@ -497,8 +500,8 @@ function tab(name) {
 async function theory() {
   try {
     const groups = await ask("theory", { verb: "theory", text: state.text });
-    const value = (row) => (Array.isArray(row.value) ? row.value.map((one) => (typeof one === "object" ? `${one.name} ${value(one)}` : quantity(one, row.unit))).join(", ") : typeof row.value === "number" ? quantity(row.value, row.unit, 5) : String(row.value));
-    const shown = (all) => all.map((group) => html("section", { class: "groupcard" }, [html("h3", {}, group.title), html("dl", { class: "pairs" }, group.rows.flatMap((row) => [html("dt", {}, row.name), html("dd", {}, value(row))]))]));
+    const value = (row) => (Array.isArray(row.value) ? row.value.map((one) => (typeof one === "object" ? `${one.name} ${value(one)}` : quantity(one, row.unit))).join(", ") : typeof row.value === "number" ? quantity(row.value, row.unit, 5) : formula(String(row.value)));
+    const shown = (all) => all.map((group) => html("section", { class: "groupcard" }, [html("h3", {}, group.title), html("dl", { class: "pairs" }, group.rows.flatMap((row) => [html("dt", {}, formula(row.name)), html("dd", {}, value(row))]))]));
     $("#pane-theory").replaceChildren(...(groups.length ? shown(groups) : [html("p", { class: "hint" }, "No closed theory fits this chain: no striker, no preload.")]), html("h3", {}, "As understood"), ...shown(state.outline?.groups ?? []));
   } catch (error) {
     $("#pane-theory").replaceChildren(html("p", { class: "error" }, error.message));
@@ -508,7 +511,7 @@ async function theory() {
 function showLaws() {
   $("#pane-laws").replaceChildren(...state.laws.map((law) => html("section", { class: "lawcard" }, [
     html("h3", {}, [law.name.replaceAll("_", " "), html("span", { class: "tag" }, law.nature)]),
-    html("p", { class: "equation" }, law.equation),
+    html("p", { class: "equation" }, formula(law.equation)),
     ...law.parameters.map((one) => html("p", { class: "source" }, `${one.name}${one.unit === "1" ? "" : ` in ${one.unit}`}: ${one.meaning}`)),
     html("p", { class: "source" }, `Valid for ${law.validity}.`),
     html("p", { class: "source" }, source(law)),
@@ -530,6 +533,10 @@ function bind() {
   $("#scene").addEventListener("change", (event) => begin(event.target.value));
   $("#open").addEventListener("click", () => $("#file").click());
   $("#file").addEventListener("change", (event) => take([...event.target.files]).then(() => (event.target.value = "")));
+  $("#jump").addEventListener("click", () => {
+    $(".side").scrollIntoView({ behavior: still.matches ? "auto" : "smooth" });
+    $("[role=tab][aria-selected=true]").focus({ preventScroll: true });
+  });
   $("#theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
   for (const button of document.querySelectorAll("[data-save]")) button.addEventListener("click", () => closeMenus() ?? saved(button.dataset.save));
   for (const button of document.querySelectorAll("[data-copy]")) button.addEventListener("click", () => closeMenus() ?? copied(button.dataset.copy));

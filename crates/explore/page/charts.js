@@ -25,6 +25,19 @@ export function html(name, attributes = {}, children = []) {
   return element;
 }
 
+/** A formula's text with raised and lowered parts: `δ^{3/2}`, `v^n`, `F_y`. */
+export function formula(text) {
+  const parts = [];
+  let from = 0;
+  // A subscript follows a single letter: names such as `damping_cubic` have none.
+  const marks = /(\^|(?<=(?<![\p{L}\d_])\p{L})_)(?:\{([^}]*)\}|([−-]?[\p{L}\d.]+|\*))/gu;
+  for (const found of text.matchAll(marks)) {
+    parts.push(text.slice(from, found.index), html(found[1] === "^" ? "sup" : "sub", {}, found[2] ?? found[3]));
+    from = found.index + found[0].length;
+  }
+  return [...parts, text.slice(from)];
+}
+
 /** A colour of the page's theme. */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
@@ -125,7 +138,7 @@ export class Chart {
     const group = svg("g");
     const { inner, tall, height } = this.size;
     const of = (axis, count) => (axis.log ? logTicks(axis.from, axis.to) : { labelled: ticks(axis.from, axis.to, count), all: [] });
-    const across = of(this.x, inner / 85);
+    const across = of(this.x, inner / 62);
     const up = of(this.y, tall / 42);
     const inRange = (axis, value) => axis.at(value) > -1e-6 && axis.at(value) < 1 + 1e-6;
     for (const value of new Set([...up.all, ...up.labelled])) {

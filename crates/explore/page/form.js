@@ -1,6 +1,6 @@
 // Controls for everything that an experiment file knows, made from its JSON Schema.
 
-import { html } from "./charts.js";
+import { formula, html } from "./charts.js";
 import { brief, split, typed } from "./numbers.js";
 
 /** Tables in the order in which a row is thought of; what is not named here comes after. */
@@ -175,7 +175,7 @@ export class Form {
         this.field([...here, one.name], { pattern: "1", type: one.unit === "1" ? ["string", "number"] : "string", description: one.meaning }, true, !one.required));
       const absent = (law?.parameters ?? []).filter((one) => given[one.name] === undefined);
       const add = absent.length ? this.select("Set…", absent.map((one) => [one.name, `${one.name.replaceAll("_", " ")}: ${one.meaning}`]), (key) => this.edit(here, { law: name, ...given, [key]: SUGGESTED_LAWS[name]?.[key] ?? "1" })) : null;
-      return html("section", { class: "law" }, [header, html("p", { class: "equation" }, law?.equation ?? ""), ...fields, add, html("p", { class: "source" }, source(law))]);
+      return html("section", { class: "law" }, [header, html("p", { class: "equation" }, formula(law?.equation ?? "")), ...fields, add, html("p", { class: "source" }, source(law))]);
     });
     parts.push(this.select("Add a law…", this.laws.map((law) => [law.name, `${law.name.replaceAll("_", " ")} (${law.nature})`]), (name) => this.edit([...path, value.length], this.law(name))));
     return parts;

@@ -132,10 +132,12 @@ export class Plots {
     if (!ratio && state.shot?.speed_m_s) {
       for (const [, key, tint] of kinds) if (state.shot[key]) marks.push({ x: state.shot.speed_m_s, y: state.shot[key] * of.scale, colour: tint });
     }
+    // Ratios of equal rows differ by the accuracy of times: no axis shows that large.
+    const near = ratio && series.every((one) => one.y.every((value) => value === null || Math.abs(value - 1) < 1e-3));
     const label = of.scale === 1 ? "time of flight" : "time of flight in µs";
     this.curve.draw({
       x: { label: of.scale === 1 ? "speed of the striker" : "speed of the striker in m/s", log },
-      y: { label: ratio ? `time of flight over ${reference?.name ?? "reference"}` : label, log: log && !ratio },
+      y: { label: ratio ? `time of flight over ${reference?.name ?? "reference"}` : label, log: log && !ratio, ...(near ? { from: 0.998, to: 1.002 } : {}) },
       series,
       marks,
       say: this.say,
@@ -192,12 +194,11 @@ export class Plots {
     const base = new Float64Array(x.length);
     const series = energy.parts.map(([name, values], index) => {
       const from = Array.from(base);
-      const signed = values.some((value) => share(value) < -0.01);
       for (let at = 0; at < x.length; at++) {
         base[at] += share(values[at]);
         least[at] = Math.min(least[at], base[at]);
       }
-      return { name: name.replaceAll("_", " "), brief: name.split("_").pop(), values, signed, x, base: from, y: Array.from(base), colour: tints[index % tints.length], opacity: 0.82 };
+      return { name: name.replaceAll("_", " "), quiet: true, values, x, base: from, y: Array.from(base), colour: tints[index % tints.length], opacity: 0.82 };
     });
     const end = (state.whole ? state.shot.duration_s : interesting(state.shot)) * of.scale;
     const lowest = Math.min(0, ...least);
@@ -213,7 +214,12 @@ export class Plots {
         return { x: x[at], lines: [{ text: `t = ${of.t(x[at] / of.scale)}` }, ...series.map((one) => ({ text: `${one.name} ${plain(share(one.values[at]), 3)} %`, colour: one.colour }))] };
       },
     });
-    this.note("energy", `Put in: ${of.q(energy.input_j, "J", 4)}. The budget closes to ${plain(Math.abs(energy.relative_residual), 2)} of it.`);
+    const legend = [...series].reverse().map((one) => {
+      const dot = html("i");
+      dot.style.background = one.colour;
+      return html("span", { class: "key" }, [dot, one.name]);
+    });
+    this.note("energy", ...legend, `Put in: ${of.q(energy.input_j, "J", 4)}. The budget closes to ${plain(Math.abs(energy.relative_residual), 2)} of it.`);
   }
 }
 
@@ -234,8 +240,9 @@ function at_speed(curve, key, speed) {
 function law(curve, of) {
   const one = (name, found) => {
     if (!found) return [];
-    const power = html("b", {}, `v^${found.exponent_error === null ? plain(found.exponent, 5) : withError(found.exponent, Math.max(found.exponent_error, 1e-7), "")}`);
-    return [`${name} ≈ ${of.t(found.prefactor_s)} · `, power, "  "];
+    const exponent = found.exponent_error === null ? plain(found.exponent, 5) : withError(found.exponent, Math.max(found.exponent_error, 1e-7), "");
+    const power = html("b", {}, ["v", html("sup", {}, exponent)]);
+    return [html("span", { class: "law-note" }, [`${name} ≈ ${of.t(found.prefactor_s)} · `, power]), " "];
   };
   return [...one("incident", curve.power_law_incident), ...one("reflected", curve.power_law_reflected)];
 }

@@ -83,7 +83,7 @@ export class Motion {
 }
 
 /** Draws a motion's row at a time on a canvas; returns the row's state. */
-export function drawRow(canvas, motion, time, magnify) {
+export function drawRow(canvas, motion, time, magnify, words) {
   const ratio = window.devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -104,16 +104,16 @@ export function drawRow(canvas, motion, time, magnify) {
   const room = 26;
   const scale = Math.min((width - 2 * room) / (to - from), (0.17 * height) / largest);
   const left = (width - (to - from) * scale) / 2;
-  const middle = Math.max(0.36 * height, largest * scale + 34);
+  const middle = largest * scale + 34;
   const place = bodies.map((body, at) => left + (body.rest_m - from + state.moved[at] * magnify) * scale);
   const theme = {
     steel: isDark() ? [104, 120, 134] : [182, 194, 205],
     light: isDark() ? [196, 208, 219] : [246, 249, 251],
     edge: colour("steel-3"), ink: colour("ink"), soft: colour("soft"), ground: colour("ground"), accent: colour("accent"), incident: colour("incident"), wall: colour("wall"),
   };
-  const bars = { top: middle + largest * scale + 24, bottom: height - 22 };
+  const bars = { top: middle + largest * scale + 22, bottom: height - 12 };
   drawGround(pen, theme, { left, right: left + (to - from) * scale, y: middle + largest * scale + 3, walled, width });
-  if (walled) drawWall(pen, theme, { x: place[bodies.length - 1], middle, tall: largest * scale + 16, width });
+  if (walled) drawWall(pen, theme, { x: place[bodies.length - 1], middle, tall: largest * scale + 10, width });
   bodies.forEach((body, at) => {
     if (body.kind === "plane") return;
     const around = [state.forces[at - 1] ?? 0, state.forces[at] ?? 0];
@@ -121,6 +121,10 @@ export function drawRow(canvas, motion, time, magnify) {
     drawBead(pen, theme, { body, x: place[at], y: middle, r: body.radius_m * scale, share });
   });
   drawBars(pen, theme, motion, state, place, bars);
+  pen.font = "12px system-ui, sans-serif";
+  pen.textAlign = "left";
+  pen.fillStyle = theme.soft;
+  pen.fillText(`contact forces, up to ${words.most}${state.open.some(Boolean) ? "; boxes: open contacts" : ""}${bodies.some((body) => body.wet) ? "; dots below: wet" : ""}`, Math.max(6, left), bars.top + 8);
   drawLabels(pen, theme, { bodies, place, middle, scale, state, largest });
   return state;
 }
@@ -154,7 +158,7 @@ function drawWall(pen, theme, { x, middle, tall, width }) {
 }
 
 function drawBead(pen, theme, { body, x, y, r, share }) {
-  const hot = ramp(0.2 + 0.6 * share);
+  const hot = ramp((isDark() ? 0.5 : 0.2) + (isDark() ? 0.4 : 0.6) * share);
   const lit = Math.min(1, 2.2 * share);
   const base = mixed(theme.steel, hot, lit);
   const shine = mixed(theme.light, mixed(hot, [255, 255, 255], 0.45), lit);
@@ -214,7 +218,7 @@ function drawBars(pen, theme, motion, state, place, { top, bottom }) {
       pen.fillRect(x - wide / 2, bottom - share * tall, wide, share * tall);
     } else if (state.open[contact]) {
       pen.strokeStyle = theme.soft;
-      pen.strokeRect(x - Math.min(3, wide / 2), bottom - 4, Math.min(6, wide), 3);
+      pen.strokeRect(x - Math.min(2.5, wide / 2), bottom - 8, Math.min(5, wide), 7);
     }
   });
 }
@@ -222,7 +226,7 @@ function drawBars(pen, theme, motion, state, place, { top, bottom }) {
 function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest }) {
   pen.font = "12px system-ui, sans-serif";
   pen.textAlign = "center";
-  const above = middle - largest * scale - 12;
+  const above = middle - largest * scale - 14;
   const taken = [];
   const label = (text, x, ink, strong) => {
     const half = pen.measureText(text).width / 2 + 6;
@@ -238,5 +242,5 @@ function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest }
   if (sensor >= 0) label(`sensor ${bodies[sensor].number}`, place[sensor], theme.incident, true);
   if (bodies[0].kind === "striker") label("striker", place[0], theme.soft);
   const last = bodies[bodies.length - 1];
-  if (last.kind === "half-bead" || last.kind === "plane") label("wall", place[bodies.length - 1], theme.wall, true);
+  if (last.kind === "half-bead" || last.kind === "plane") label("wall", pen.canvas.clientWidth, theme.wall, true);
 }
