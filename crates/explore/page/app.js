@@ -63,6 +63,7 @@ const check = newest(async () => {
   if (!work) return;
   queued = null;
   const began = ++asked;
+  working(1);
   try {
     const reply = await ask("check", { verb: "check", text: work.text ?? state.text, edits: work.edits });
     Object.assign(state, { text: reply.text, tree: reply.tree ?? state.tree, mistakes: reply.mistakes });
@@ -72,8 +73,18 @@ const check = newest(async () => {
   } catch (error) {
     if (work.text !== null) state.text = work.text;
     if (!error.stopped) refuse(error);
+  } finally {
+    working(-1);
   }
 });
+
+let works = 0;
+
+/** Counts what is under way. */
+function working(by) {
+  works += by;
+  document.body.classList.toggle("busy", works > 0);
+}
 
 function showExperiment() {
   const { text, tree, schema, laws, mistakes, outline } = state;
@@ -119,16 +130,16 @@ function compute(draft) {
 }
 
 const shoot = newest(async (draft) => {
-  document.body.classList.add("busy");
+  working(1);
   try {
-    const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full });
+    const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full, draft: Boolean(draft) });
     takeShot(shot);
     if (!draft) announceShot();
   } catch (error) {
     if (error.mistakes?.length) form.mark(error.mistakes);
     if (!error.stopped) refuse(error);
   } finally {
-    document.body.classList.remove("busy");
+    working(-1);
   }
 });
 
@@ -144,6 +155,8 @@ function takeShot(shot) {
     shot.energy.time = decoded(shot.energy.time_s);
     shot.energy.parts = shot.energy.parts.map(([name, values]) => [name, decoded(values)]);
   }
+  // Drafts have no energy: what was seen last stays until the slider stands.
+  shot.energy ??= state.fresh ? null : state.shot?.energy ?? null;
   state.shot = shot;
   state.motion = motion ? new Motion(shot) : null;
   if (state.fresh) {

@@ -11,7 +11,10 @@ fn files() -> Vec<PathBuf> {
 
 #[test]
 fn the_page_is_small() {
-    let bytes: u64 = files().iter().map(|file| file.metadata().unwrap().len()).sum();
+    let bytes: u64 = files()
+        .iter()
+        .map(|file| file.metadata().unwrap().len())
+        .sum();
     assert!(bytes <= 400_000, "{bytes}");
 }
 
@@ -22,8 +25,14 @@ fn nothing_is_loaded_from_elsewhere_and_no_text_becomes_markup() {
         // Names of XML are no addresses that are opened.
         let text = text.replace("http://www.w3.org/", "");
         let absent = [
-            "http://", "https://", "innerHTML", "outerHTML", "insertAdjacentHTML", "eval(",
-            "document.write", "new Function",
+            "http://",
+            "https://",
+            "innerHTML",
+            "outerHTML",
+            "insertAdjacentHTML",
+            "eval(",
+            "document.write",
+            "new Function",
         ];
         for absent in absent {
             assert!(!text.contains(absent), "{}: {absent}", file.display());

@@ -121,7 +121,8 @@ fn put(item: &mut Item, step: &Step, json: &Json) -> Option<()> {
     match (step, item) {
         (Step::Key(key), Item::Table(table)) => {
             let mut fresh = of_json(json)?;
-            if let (Some(old), Item::Value(new)) = (table.get(key).and_then(Item::as_value), &mut fresh)
+            if let (Some(old), Item::Value(new)) =
+                (table.get(key).and_then(Item::as_value), &mut fresh)
             {
                 // Comments behind the old value stay.
                 *new.decor_mut() = old.decor().clone();
@@ -203,7 +204,9 @@ fn value_of(json: &Json) -> Option<Value> {
             values.map(Value::Array)
         }
         Json::Object(entries) => {
-            let values = entries.iter().map(|(key, json)| Some((key.as_str(), value_of(json)?)));
+            let values = entries
+                .iter()
+                .map(|(key, json)| Some((key.as_str(), value_of(json)?)));
             let table: Option<InlineTable> = values.collect();
             table.map(Value::InlineTable)
         }
@@ -217,7 +220,9 @@ pub(super) fn tree(text: &str) -> Option<Json> {
 }
 
 fn json_of_table(table: &dyn TableLike) -> Json {
-    let entries = table.iter().map(|(key, item)| (key.to_owned(), json_of(item)));
+    let entries = table
+        .iter()
+        .map(|(key, item)| (key.to_owned(), json_of(item)));
     Json::Object(entries.collect())
 }
 

@@ -48,6 +48,9 @@ pub enum Request {
         /// Samples of signals and motion; 0 for none.
         #[serde(default)]
         samples: usize,
+        /// Without energy and an estimate of the error: while a slider moves.
+        #[serde(default)]
+        draft: bool,
     },
     /// Times of flight against speed.
     Batch {
@@ -147,11 +150,19 @@ fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Reply, Refusal> {
         Request::Presets => Ok(Reply::Presets(outline::presets())),
         Request::Laws => Ok(Reply::Json(verbs.laws())),
         Request::Schema => Ok(Reply::Json(hertzchain_experiment::schema())),
-        Request::Check { text, edits } => outline::check(text, edits)
+        Request::Check { text, edits } => {
+            outline::check(text, edits).map(Box::new).map(Reply::Check)
+        }
+        Request::Shot {
+            text,
+            samples,
+            draft,
+        } => shot::shot(text, *samples, *draft)
             .map(Box::new)
-            .map(Reply::Check),
-        Request::Shot { text, samples } => shot::shot(text, *samples).map(Box::new).map(Reply::Shot),
-        Request::Batch { text, speeds } => batch::batch(text, speeds).map(Box::new).map(Reply::Batch),
+            .map(Reply::Shot),
+        Request::Batch { text, speeds } => {
+            batch::batch(text, speeds).map(Box::new).map(Reply::Batch)
+        }
         Request::Theory { text } => outline::theory(text).map(Reply::Theory),
         Request::Measure(recording) => words::reported(verbs.measure(recording)),
         Request::Fit {

@@ -119,5 +119,7 @@ pub(super) fn theory(text: &str) -> Result<Vec<GroupReply>, Refusal> {
     let chain = experiment.chain_and_system(None);
     let (chain, _, _) = chain.map_err(|mistakes| Refusal::of_text(text, &mistakes))?;
     let said = describe_theory(&experiment, &chain);
-    Ok(groups(&said.map_err(|error| Refusal::of_study(text, error))?))
+    Ok(groups(
+        &said.map_err(|error| Refusal::of_study(text, error))?,
+    ))
 }

@@ -30,7 +30,9 @@ pub struct Settings {
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
     /// The port can't be listened on.
-    #[error("127.0.0.1:{port} can't be listened on: {error}; --port names another, none lets the system choose")]
+    #[error(
+        "127.0.0.1:{port} can't be listened on: {error}; --port names another, none lets the system choose"
+    )]
     Port {
         /// Port asked for; 0 for any.
         port: u16,

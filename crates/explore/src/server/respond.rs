@@ -105,7 +105,10 @@ async fn api(server: &Server, request: hyper::Request<Incoming>, path: &str) -> 
 async fn compute(server: &Server, request: hyper::Request<Incoming>, lane: &str) -> Page {
     let is_json = request.headers().get(CONTENT_TYPE);
     if is_json.is_none_or(|kind| kind != "application/json") {
-        return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "expected application/json");
+        return refused(
+            StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            "expected application/json",
+        );
     }
     let body = match body(request).await {
         Ok(body) => body,
@@ -153,7 +156,9 @@ async fn run(server: &Server, job: &Job<'_>, request: Request) -> Result<Reply, 
         answered
     });
     answered.await.unwrap_or_else(|error| {
-        Err(Refusal::Error(format!("the engine failed, which is a bug: {error}")))
+        Err(Refusal::Error(format!(
+            "the engine failed, which is a bug: {error}"
+        )))
     })
 }
 
@@ -205,7 +210,9 @@ fn response(status: StatusCode, kind: &'static str, body: Bytes) -> Page {
         (resource, "same-origin"),
     ];
     for (name, value) in headers {
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static(value));
     }
     response
 }
