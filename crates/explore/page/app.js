@@ -480,6 +480,7 @@ function saved(what) {
       save(`${name}-signals.csv`, csv({ time_s, sensor_n: motion.sensor, ...(motion.wall.length ? { wall_n: motion.wall } : {}) }), "text/csv");
     },
     curve: () => curve && save(`${name}-tof.csv`, csv({ speed_m_s: curve.speed_m_s, tof_incident_s: curve.tof_incident_s, tof_reflected_s: curve.tof_reflected_s }), "text/csv"),
+    print: () => print(),
     svg: () => save(`${name}.svg`, figures(state, plots, $("#row")), "image/svg+xml"),
     png: async () => save(`${name}.png`, await picture(figures(state, plots, $("#row"))), "image/png"),
   }[what];

@@ -49,7 +49,7 @@ impl Verbs for Program {
     }
 
     fn fit(&self, text: &str, table: &str, options: &Value) -> Result<Value, String> {
-        fitted(text, table, options).map_err(|failure| failure.to_string())
+        fit_of(text, table, options).map_err(|failure| failure.to_string())
     }
 }
 
@@ -139,7 +139,7 @@ fn recorded(file: &Path, options: &MeasureOptions) -> Result<Value, Failure> {
     }))
 }
 
-fn fitted(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
+fn fit_of(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
     let options: FitOptions = from_json("fit", options.clone())?;
     let experiment = Experiment::from_text("experiment.toml", text)?;
     let data = inference::parsed("the table", table, &options.measured, None)?;
