@@ -25,6 +25,10 @@ ci:
 test-python:
     .ci/python
 
+# The explorer's page in a browser, with screenshots: just test-explore target/explore
+test-explore *folder:
+    .ci/explore {{folder}}
+
 # Everything in the paper, into reproduction/
 reproduce *options:
     cargo run --release -- reproduce {{options}}

@@ -10,6 +10,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("experiment", &["chain"]),
     ("sim", &["chain", "experiment", "measure"]),
     ("infer", &["chain", "experiment", "measure", "sim"]),
+    ("explore", &["chain", "experiment", "measure", "sim"]),
     ("figures", &[]),
     (
         "paper",
@@ -20,6 +21,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "chain",
             "experiment",
+            "explore",
             "figures",
             "infer",
             "measure",

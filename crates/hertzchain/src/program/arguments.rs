@@ -1,5 +1,7 @@
 //! The command line, declared once: help, man pages and completions follow.
 
+#[cfg(feature = "explore")]
+use crate::options::Input;
 use crate::options::{
     CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
     ShotOptions, SweepOptions,
@@ -57,6 +59,9 @@ pub(crate) enum Verb {
     Design(DesignOptions),
     /// Tell the oil on a row's contacts from times of flight, wet and dry
     Gauge(GaugeOptions),
+    /// Open a page in the browser on which the wave is seen and every number can be turned
+    #[cfg(feature = "explore")]
+    Explore(Explore),
     /// Check an experiment file and print what was understood; run nothing
     Check(CheckOptions),
     /// Print what theory says of a chain's waves
@@ -89,6 +94,21 @@ pub(crate) struct Merge {
     /// Folder to write the whole into: the files of a run that was never cut
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// Arguments of `explore`.
+#[cfg(feature = "explore")]
+#[derive(Debug, Args)]
+pub(crate) struct Explore {
+    /// What the page shows first.
+    #[command(flatten)]
+    pub input: Input,
+    /// Port of the page's address on this machine; a free one when absent
+    #[arg(long, value_name = "NUMBER")]
+    pub port: Option<u16>,
+    /// Print the address and open no browser
+    #[arg(long)]
+    pub no_browser: bool,
 }
 
 /// Arguments of `laws`.

@@ -61,6 +61,8 @@ fn run_verb(verb: Verb) -> Result<(), Failure> {
         Verb::Fit(arguments) => verbs::fit::run(&arguments),
         Verb::Design(arguments) => verbs::design::run(&arguments),
         Verb::Gauge(arguments) => verbs::gauge::run(&arguments),
+        #[cfg(feature = "explore")]
+        Verb::Explore(arguments) => verbs::explore::run(&arguments),
         Verb::Check(arguments) => verbs::check::run(&arguments),
         Verb::Theory(arguments) => verbs::theory::run(&arguments),
         Verb::Laws(arguments) => verbs::laws::run(&arguments),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::observe::Shape;
 
 fn passages(sensor: &[(f64, f64)], wall: &[(f64, f64)], until_s: f64) -> Passages {
     let [sensor, wall] =

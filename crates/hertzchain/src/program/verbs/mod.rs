@@ -4,6 +4,8 @@ pub(crate) mod campaign;
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod design;
+#[cfg(feature = "explore")]
+pub(crate) mod explore;
 pub(crate) mod fit;
 pub(crate) mod gauge;
 pub(crate) mod laws;

@@ -4,13 +4,13 @@ mod fits;
 pub(crate) mod shard;
 pub(crate) mod told;
 
+use crate::json::SweepView;
 use crate::options::check_speeds;
 use crate::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
 use crate::program::failure::{self, Failure};
 use crate::program::folder::Folder;
 use crate::program::format::Style;
 use crate::program::print;
-use crate::json::SweepView;
 use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_sim::{

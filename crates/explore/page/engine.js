@@ -1,0 +1,89 @@
+// The engine behind the page: one request a lane, arrays decoded.
+
+const token = new URLSearchParams(location.search).get("token") ?? "";
+// Two tabs must not end each other's requests.
+const tab = Math.random().toString(36).slice(2, 10);
+
+/** Why the engine gave no answer: `mistakes` of the experiment, or `message`. */
+export class Refused extends Error {
+  constructor(refusal) {
+    const mistakes = refusal?.mistakes ?? [];
+    super(refusal?.error ?? mistakes.map((one) => one.message).join("; ") ?? "stopped");
+    this.mistakes = mistakes;
+    this.stopped = refusal === "stopped";
+  }
+}
+
+async function post(path, body, lane, signal) {
+  let response;
+  try {
+    response = await fetch(`${path}?lane=${tab}-${lane}`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", "X-Hertzchain-Token": token },
+      body: JSON.stringify(body),
+      signal,
+    });
+  } catch (error) {
+    if (error.name === "AbortError") throw new Refused("stopped");
+    throw new Refused({ error: "The engine is gone: start `hertzchain explore` again and open its address." });
+  }
+  const json = await response.json();
+  if (json && json.refused !== undefined) throw new Refused(json.refused);
+  return json;
+}
+
+/** What the page starts with. */
+export const start = () => post("start", null, "start");
+
+/** The answer to a request; a newer one in the same lane ends it. */
+export async function ask(lane, request, signal) {
+  return (await post("answer", request, lane, signal)).reply;
+}
+
+/** How far the work of a lane is. */
+export const progress = (lane) => post("progress", null, lane);
+
+/** Ends the work of a lane. */
+export const cancel = (lane) => post("cancel", null, lane);
+
+/** Numbers of an array in a reply. */
+export function decoded(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let at = 0; at < text.length; at++) bytes[at] = text.charCodeAt(at);
+  return new Float32Array(bytes.buffer);
+}
+
+/** Base64 of a file's bytes. */
+export function encoded(buffer) {
+  const bytes = new Uint8Array(buffer);
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 0x8000) {
+    text += String.fromCharCode(...bytes.subarray(at, at + 0x8000));
+  }
+  return btoa(text);
+}
+
+/**
+ * Runs the newest of many calls: while one is under way only the last that came waits, so that
+ * a slider shows intermediate results however slow an answer is.
+ */
+export function newest(run) {
+  let busy = false;
+  let waiting = null;
+  return async function call(...given) {
+    if (busy) {
+      waiting = given;
+      return;
+    }
+    busy = true;
+    try {
+      await run(...given);
+    } finally {
+      busy = false;
+      const next = waiting;
+      waiting = null;
+      if (next) call(...next);
+    }
+  };
+}
