@@ -99,7 +99,7 @@ export class Plots {
     const ratio = state.curveView === "ratio";
     const of = units(state);
     if (!curve) {
-      this.curve.draw({ x: { label: "speed", log }, y: { label: "", log }, series: [] });
+      this.curve.draw({ x: { label: "speed", log }, y: { label: "", log }, series: [], empty: state.curveWhy ? "no curve" : "" });
       this.note("curve", state.curveWhy ?? "");
       return;
     }
