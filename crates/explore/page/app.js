@@ -162,12 +162,18 @@ function takeShot(shot) {
   if (state.fresh) {
     state.fresh = false;
     // A first look: the pulse half-way to the wall.
-    state.time = state.linked ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.12 * shot.duration_s);
+    state.time = state.linked ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.6 * highest(motion));
     state.linked = null;
     setMagnify();
   }
   state.time = Math.min(state.time, shot.duration_s);
   drawShot();
+}
+
+/** When the sensor bead's signal is largest, in s. */
+function highest(motion) {
+  if (!motion) return 0;
+  return motion.sensor.indexOf(Math.max(...motion.sensor)) * motion.interval_s;
 }
 
 function drawShot() {

@@ -107,6 +107,7 @@ export class Chart {
     const height = Math.max(120, this.place.clientHeight);
     this.size = { width, height, inner: width - LEFT - RIGHT, tall: height - TOP - BOTTOM };
     const drawn = spec.series.filter((one) => one.x.length);
+    if (!drawn.length) return this.empty();
     const range = (of, key, share) => {
       const found = padded(extent(drawn, key, of.log), of.log, share, of.zero);
       return axis(of.from ?? found[0], of.to ?? found[1], of.log);
@@ -124,6 +125,15 @@ export class Chart {
     this.root.replaceChildren(svg("defs", {}, bounds), this.axes(spec), inside, this.cursorLine, this.hoverLine, this.marks, this.legend(drawn));
     for (const mark of spec.marks ?? []) this.mark(mark);
     this.cursor(spec.cursor);
+  }
+
+  /** Nothing to draw: no axes either, which would promise something. */
+  empty() {
+    this.root.setAttribute("viewBox", `0 0 ${this.size.width} ${this.size.height}`);
+    this.root.replaceChildren(svg("text", { x: this.size.width / 2, y: this.size.height / 2, "text-anchor": "middle" }, this.spec.empty ?? "nothing to draw"));
+    this.cursorLine = null;
+    this.hoverLine = null;
+    this.leave();
   }
 
   px(value) {

@@ -59,7 +59,7 @@ export class Fit {
       this.ticked.add(usual.name);
     }
     this.list.replaceChildren(...found.map((one) => html("label", {}, [html("input", { type: "checkbox", checked: this.ticked.has(one.name), onchange: (event) => (event.target.checked ? this.ticked.add(one.name) : this.ticked.delete(one.name)) }), one.label, html("small", {}, one.value)])));
-    this.start.disabled = !this.page.state.data?.table || this.busy;
+    this.start.disabled = !this.page.state.data?.points?.length || this.busy;
   }
 
   /** Noise of a part in a thousand on eight speeds of the present curve: something to fit. */
@@ -115,7 +115,10 @@ export class Fit {
     if (seen && speed && !data.points?.length) {
       const value = speed.value * ({ "mm/s": 1e-3, "cm/s": 1e-2 }[speed.unit] ?? 1);
       const estimate = (of) => (of ? [of.value, of.sigma] : null);
-      data.points = [{ speed_m_s: [value, 0], tof_incident_s: estimate(seen.tof_incident_s), tof_reflected_s: estimate(seen.tof_reflected_s) }];
+      const row = { speed_m_s: [value, 0], tof_incident_s: estimate(seen.tof_incident_s), tof_reflected_s: estimate(seen.tof_reflected_s) };
+      const cells = Object.entries(row).filter(([, cell]) => cell).flatMap(([key, [mean, sigma]]) => [[key, mean], [key === "speed_m_s" ? "speed_error_m_s" : `${key}_error`, sigma]]);
+      data.points = [row];
+      data.table = [0, 1].map((line) => `${cells.map((cell) => cell[line]).join(",")}\n`).join("");
     }
   }
 
@@ -155,7 +158,7 @@ export class Fit {
 
   async run() {
     const { state } = this.page;
-    if (!state.data?.table || this.busy) return;
+    if (!state.data?.points?.length || this.busy) return;
     const free = [...this.ticked];
     if (!free.length) return this.state.replaceChildren(html("p", { class: "error" }, "Tick at least one number."));
     this.working(true);
@@ -180,7 +183,7 @@ export class Fit {
 
   working(busy) {
     this.busy = busy;
-    this.start.disabled = busy || !this.page.state.data?.table;
+    this.start.disabled = busy || !this.page.state.data?.points?.length;
     this.stop.hidden = !busy;
     if (busy) this.stop.focus();
     else if (document.activeElement === document.body) this.start.focus();

@@ -67,7 +67,7 @@ export class Plots {
     const series = [{ name: "sensor bead", brief: "sensor", x, y: shot.motion.sensor, colour: colour("incident") }];
     if (shot.motion.wall.length) series.push({ name: "wall", x, y: shot.motion.wall, colour: colour("wall") });
     const overlay = aligned(state);
-    for (const one of overlay) series.push({ ...one, x: one.time.map((time) => time * of.scale), colour: colour("record"), width: 1.3 });
+    for (const [at, one] of overlay.entries()) series.push({ ...one, quiet: at > 0, x: one.time.map((time) => time * of.scale), colour: colour("record"), width: 1.3 });
     const marks = [["incident", "incident"], ["wall", "wall"], ["reflected", "reflected"]].flatMap(([key, name]) =>
       shot[key] ? [{ x: shot[key].time_s * of.scale, y: shot[key].value_n, text: of.t(shot[key].time_s), colour: colour(name) }] : []);
     this.signals.draw({
@@ -99,7 +99,7 @@ export class Plots {
     const ratio = state.curveView === "ratio";
     const of = units(state);
     if (!curve) {
-      this.curve.draw({ x: { label: "speed", log }, y: { label: "", log }, series: [] });
+      this.curve.draw({ x: { label: "speed", log }, y: { label: "", log }, series: [], empty: state.curveWhy ? "no curve" : "" });
       this.note("curve", state.curveWhy ?? "");
       return;
     }

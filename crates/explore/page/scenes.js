@@ -169,7 +169,7 @@ export const SCENES = [
 
 /** Speeds of all balls at the end. */
 function ends(state) {
-  const all = state.shot?.velocity_m_s ?? [];
+  const all = (state.shot?.bodies ?? []).map((body) => state.shot.velocity_m_s[body.number]);
   return `${all.map((speed) => plain(speed, 3)).join(", ")} m/s`;
 }
 

@@ -58,7 +58,7 @@ async function opened({ width = 1280, height = 900, scheme = "light", url = addr
 
 /** Waits until shot and curve are drawn and nothing is under way. */
 async function ready(page) {
-  await page.waitForFunction(() => document.querySelector("#tiles dd") && !document.querySelector(".busy, .stale"), null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector("#tiles dd") && !document.querySelector(".busy, .stale"), null, { timeout: 240_000 });
   await page.waitForLoadState("networkidle");
   await page.waitForTimeout(150);
 }

@@ -76,7 +76,11 @@ fn measured(recording: &Recording) -> Result<Value, Failure> {
 fn plain(name: &str) -> String {
     let kept = |c: &char| c.is_alphanumeric() || matches!(c, '.' | '-' | '_' | ' ');
     let name: String = name.chars().filter(kept).take(100).collect();
-    format!("_{name}").replace("_.", "_")
+    // A name of dots alone would be a folder.
+    match name.trim_matches(['.', ' ']) {
+        "" => "recording".to_owned(),
+        kept => kept.to_owned(),
+    }
 }
 
 /// A result whose texts no longer name the folder of temporary files.
