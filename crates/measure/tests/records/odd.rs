@@ -260,3 +260,29 @@ fn half_an_array_is_told_as_such_before_a_rate_is_asked_for() {
     assert!(matches!(told, MeasureError::Truncated(..)), "{told}");
     assert!(told.to_string().contains("3200 of 7200 bytes"), "{told}");
 }
+
+#[test]
+fn arrays_of_three_axes_are_read_in_either_order() {
+    let folder = folder("cubes");
+    let value = |shot: usize, channel: usize, at: usize| volt(at + 3 * channel + 7 * shot);
+    let rows = (0..2).flat_map(|shot| (0..2).map(move |channel| (shot, channel)));
+    let rows = rows.flat_map(|(shot, channel)| (0..900).map(move |at| value(shot, channel, at)));
+    let columns = (0..900).flat_map(|at| [(0, 0, at), (1, 0, at), (0, 1, at), (1, 1, at)]);
+    let columns = columns.map(|(shot, channel, at)| value(shot, channel, at));
+    let options = ReadOptions {
+        rate_hz: Some(1e6),
+        ..ReadOptions::default()
+    };
+    let shape = "(2, 2, 900)";
+    for bytes in [npy(shape, "False", rows), npy(shape, "True", columns)] {
+        let path = written(&folder, "cube.npy", bytes);
+        let records: Vec<Record> = read(&path, &options).map(Result::unwrap).collect();
+        assert_eq!(records.len(), 2);
+        for (shot, record) in records.iter().enumerate() {
+            for (channel, found) in record.channels.iter().enumerate() {
+                let expected = (0..900).map(|at| value(shot, channel, at));
+                assert!(found.volts.iter().copied().eq(expected), "{shot} {channel}");
+            }
+        }
+    }
+}
