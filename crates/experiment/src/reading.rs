@@ -98,7 +98,7 @@ switches! {
     "preload on bead 1"
     preload: PreloadReading {
         "none" => None: "No more than the file says.",
-        "spring" => Spring: "A spring of 0.24 N and [`SPRING_STIFFNESS_N_M`] that never pulls.",
+        "spring" => Spring: "A spring of 0.24 N and 100 N/m that never pulls.",
         "constant" => Constant: "A constant force of 0.24 N.",
     }
     "incline of the track"

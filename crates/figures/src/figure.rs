@@ -8,9 +8,9 @@ use crate::rig::RigDrawing;
 use crate::text::{Anchor, TextLine};
 
 /// Width of a single journal column in millimetres.
-pub const SINGLE_COLUMN_MM: f64 = 85.0;
+pub(crate) const SINGLE_COLUMN_MM: f64 = 85.0;
 /// Width of a journal page of two columns in millimetres.
-pub const DOUBLE_COLUMN_MM: f64 = 175.0;
+pub(crate) const DOUBLE_COLUMN_MM: f64 = 175.0;
 
 /// Part of a figure.
 #[derive(Debug, Clone)]

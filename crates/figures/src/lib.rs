@@ -25,7 +25,7 @@ mod text;
 pub use animation::Animation;
 pub use chart::{Chart, Dash, Legend, Marker, Series, case_look};
 pub use draw::{Colour, ColourMap};
-pub use figure::{DOUBLE_COLUMN_MM, Figure, Panel, SINGLE_COLUMN_MM};
+pub use figure::{Figure, Panel};
 pub use files::FigureError;
 pub use heat::HeatMap;
 pub use matrix::{Verdict, VerdictMatrix};

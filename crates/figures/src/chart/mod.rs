@@ -92,8 +92,7 @@ impl Chart {
     }
 
     /// Makes the x axis count: ticks at whole numbers alone.
-    #[must_use]
-    pub fn x_whole(mut self) -> Self {
+    pub(crate) fn x_whole(mut self) -> Self {
         self.x.whole = true;
         self
     }

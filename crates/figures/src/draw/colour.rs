@@ -18,7 +18,7 @@ impl Colour {
     /// Black.
     pub const BLACK: Self = Self(0, 0, 0);
     /// White.
-    pub const WHITE: Self = Self(255, 255, 255);
+    pub(crate) const WHITE: Self = Self(255, 255, 255);
     /// Mid grey for reference lines.
     pub const GREY: Self = Self(115, 115, 115);
     /// Blue of the series palette.
@@ -36,7 +36,7 @@ impl Colour {
 
     /// Series colours distinguished with common colour-vision deficiencies, after
     /// the hues of Okabe and Ito, darkened so that thin lines stay legible.
-    pub const PALETTE: [Self; 7] = [
+    pub(crate) const PALETTE: [Self; 7] = [
         Self::BLACK,
         Self::BLUE,
         Self::VERMILION,
@@ -47,8 +47,7 @@ impl Colour {
     ];
 
     /// A grey of the given lightness, 0 black to 255 white.
-    #[must_use]
-    pub const fn grey(level: u8) -> Self {
+    pub(crate) const fn grey(level: u8) -> Self {
         Self(level, level, level)
     }
 

@@ -117,8 +117,7 @@ impl Evaluator {
 
     /// Whether the claim is about a shot of a case whose gaps close when the pulse
     /// meets the wall.
-    #[must_use]
-    pub fn needs_closing(&self, case: &str, speed_m_s: f64) -> bool {
+    pub(crate) fn needs_closing(&self, case: &str, speed_m_s: f64) -> bool {
         self.claim.predicate == predicates::CLOSING && self.covers(case, speed_m_s)
     }
 
@@ -203,8 +202,7 @@ impl Rounded {
     }
 
     /// Whether some draw lies on another side than a verdict.
-    #[must_use]
-    pub fn flips(&self, verdict: Verdict) -> bool {
+    pub(crate) fn flips(&self, verdict: Verdict) -> bool {
         let same = Verdict::ALL.iter().position(|v| *v == verdict);
         same.is_some_and(|i| self.verdicts.get(i) != Some(&self.draws))
     }
@@ -226,8 +224,7 @@ pub struct EvaluatedClaim {
 impl EvaluatedClaim {
     /// Whether rounding of the printed constants alone flips the verdict that
     /// they give.
-    #[must_use]
-    pub fn flips_by_rounding(&self) -> bool {
+    pub(crate) fn flips_by_rounding(&self) -> bool {
         let rounded = self.rounded.as_ref();
         rounded.is_some_and(|rounded| rounded.flips(self.finding.leaning))
     }

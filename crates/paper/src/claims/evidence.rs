@@ -4,10 +4,10 @@ use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
 
 /// Reproducibility of the striker's speed in the paper: standard deviation
 /// over 20 shots, in m/s.
-pub const SPEED_SCATTER_M_S: f64 = 0.003;
+pub(crate) const SPEED_SCATTER_M_S: f64 = 0.003;
 
 /// Shots behind each point of the paper.
-pub const SHOTS_PER_POINT: f64 = 20.0;
+pub(crate) const SHOTS_PER_POINT: f64 = 20.0;
 
 /// Which passage a time of flight belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -90,8 +90,7 @@ impl Point {
     }
 
     /// Absolute accuracy of a ToF in s.
-    #[must_use]
-    pub fn tof_accuracy_s(&self, branch: Branch) -> f64 {
+    pub(crate) fn tof_accuracy_s(&self, branch: Branch) -> f64 {
         self.accuracy_reached * self.tof_s(branch)
     }
 }
@@ -151,8 +150,7 @@ impl Curve {
     }
 
     /// dT/dv of a branch in s²/m at every speed.
-    #[must_use]
-    pub fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
         let slopes = self.exponents(branch).into_iter().zip(&self.points);
         slopes
             .map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s)
@@ -161,8 +159,7 @@ impl Curve {
 
     /// Relative accuracy of dT/dv at every speed: that of the local exponent
     /// and of the ToF.
-    #[must_use]
-    pub fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
         let exponents = self.exponents(branch).into_iter().zip(&self.points);
         exponents
             .map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached)
@@ -171,8 +168,7 @@ impl Curve {
 
     /// Standard error in s that the paper's points have: the scatter of the
     /// speed over 20 shots, carried through dT/dv, over √20.
-    #[must_use]
-    pub fn standard_errors_s(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn standard_errors_s(&self, branch: Branch) -> Vec<f64> {
         let scatter = SPEED_SCATTER_M_S / SHOTS_PER_POINT.sqrt();
         let slopes = self.slopes_s2_m(branch);
         slopes.iter().map(|slope| slope.abs() * scatter).collect()
@@ -190,7 +186,7 @@ impl Curve {
     ///
     /// # Errors
     /// As [`Curve::power_law`].
-    pub fn weighted_power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
+    pub(crate) fn weighted_power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
         let sigmas = self.standard_errors_s(branch);
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), Some(&sigmas))
     }

@@ -5,7 +5,7 @@
 pub enum Verdict {
     /// It does.
     Holds,
-    /// It does in at least [`IN_PART`] of the comparisons that the claim covers, or
+    /// It does in at least half of the comparisons that the claim covers, or
     /// meets the claim's weaker threshold.
     InPart,
     /// It does not, or in fewer.
@@ -48,7 +48,7 @@ impl std::fmt::Display for Verdict {
 
 /// Share of its comparisons that a claim must meet to hold in part: what more
 /// often fails than holds is not partly true.
-pub const IN_PART: f64 = 0.5;
+pub(crate) const IN_PART: f64 = 0.5;
 
 /// A predicate's answer: a number with its accuracy, and what follows from it.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,8 +88,7 @@ impl Finding {
     }
 
     /// Of a claim for which numbers are missing.
-    #[must_use]
-    pub fn without_numbers(why: &str) -> Self {
+    pub(crate) fn without_numbers(why: &str) -> Self {
         Self {
             verdict: Verdict::NotDecidable,
             leaning: Verdict::NotDecidable,
@@ -106,6 +105,8 @@ impl Finding {
         let mut comparisons = Comparisons::default();
         comparisons.add(margin, value, accuracy, String::new);
         Self {
+            value,
+            accuracy,
             detail,
             ..comparisons.finding()
         }

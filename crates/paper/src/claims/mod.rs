@@ -20,5 +20,5 @@ pub(crate) use evidence::{SHOTS_PER_POINT, SPEED_SCATTER_M_S};
 pub(crate) use finding::{Comparisons, IN_PART};
 pub use finding::{Distance, Finding, Verdict};
 pub use predicates::find as predicate;
-pub use report::{MEANING, claims_json, claims_markdown, computed_text};
-pub(crate) use report::{rounded_text, verdicts_text, with_unit};
+pub use report::{MEANING, claims_markdown, computed_text};
+pub(crate) use report::{claims_json, rounded_text, verdicts_text, with_unit};

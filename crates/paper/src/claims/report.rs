@@ -11,8 +11,7 @@ pub const MEANING: &str = "A claim that fails is a statement that the paper's mo
 
 /// All that was found about every claim, as a list in JSON. Numbers that do not
 /// exist are `null`.
-#[must_use]
-pub fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
+pub(crate) fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
     evaluated.iter().map(row).collect()
 }
 

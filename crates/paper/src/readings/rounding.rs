@@ -198,7 +198,7 @@ impl Draw {
     }
 
     /// The liquids' own constants, drawn.
-    pub fn change_oils(&self, oils: &mut [Oil]) {
+    pub(crate) fn change_oils(&self, oils: &mut [Oil]) {
         for oil in oils {
             if let Some((_, offsets)) = self.oils.iter().find(|(name, _)| *name == oil.case) {
                 oil.kinematic_viscosity_m2_s += offsets.kinematic_viscosity;

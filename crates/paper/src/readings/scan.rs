@@ -157,8 +157,7 @@ impl Scan {
 
     /// Readings of the full product, of which [`Scan::product`] has those that
     /// there was room for.
-    #[must_use]
-    pub fn full_product_size(&self) -> usize {
+    pub(crate) fn full_product_size(&self) -> usize {
         let options = self.left_out.iter().map(|(_, options)| options.len());
         self.product.len() * options.product::<usize>()
     }

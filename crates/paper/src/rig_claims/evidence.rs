@@ -160,8 +160,7 @@ pub fn typical(of_series: &[f64]) -> Estimate {
 
 /// ln of the root mean square of a number that series have, with its error, and
 /// not below that of `least`: for numbers that may all be 0.
-#[must_use]
-pub fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
+pub(crate) fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
     bootstrap(of_series, |drawn| {
         let squares: Vec<f64> = drawn.iter().map(|v| v * v).collect();
         mean(&squares).sqrt().max(least).ln()

@@ -11,7 +11,7 @@ mod predicates;
 mod report;
 
 pub use design::{Design, FACTORS, Factor, Rig};
-pub use evidence::{AtSpeed, Estimate, Evidence, Observed, observe, root_mean_square, typical};
+pub use evidence::{AtSpeed, Estimate, Evidence, Observed, observe, typical};
 pub(crate) use evidence::{mean, rebound_m_s, spread_s};
 pub use report::{MEANING, RigClaims, series_csv};
 
