@@ -260,7 +260,7 @@ fn both_loops_shoot_from_a_state_alike() {
     let flown = fire_one(&from, (step_for(1e-6).0, 5e-3), &settings(40));
     let found = tofs(&passage(&flown).unwrap());
     // The step for 1e-6 of rows that begin in equilibrium; here overlaps differ
-    // from bead to bead, and one of the ensemble's judges would say so.
+    // from bead to bead, and one of the ensemble's evaluates would say so.
     close(found[0], incident, 3e-5);
     close(found[1], reflected, 3e-5);
 }

@@ -76,7 +76,7 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     close(distance / (last.time_s - first.time_s), 0.840_508_77, 1e-6);
     // The mean number of beads that a force pass touches does not grow with the chain.
     assert!(outcome.work.bodies_passed / outcome.work.force_passes < 150);
-    // Columns of numbers a bead and nothing a step: 30 MB, where the system tells.
+    // Columns of numbers a bead and nothing a step: 30 MB, where the system reports it.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let peak_kb = peak.and_then(|peak| peak.trim().strip_suffix(" kB")?.parse::<u64>().ok());

@@ -5,13 +5,13 @@
 //! flight are off in the median; what docs/explanation/picking.md shows.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
-#[path = "whole_loop/judged.rs"]
-#[allow(dead_code, reason = "the whole loop tells more")]
-mod judged;
+#[path = "whole_loop/evaluated.rs"]
+#[allow(dead_code, reason = "the whole loop uses more")]
+mod evaluated;
 
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::median;
-use judged::{Judged, TIMES, judge, run};
+use evaluated::{Evaluated, TIMES, evaluate, run};
 use std::error::Error;
 use std::path::Path;
 
@@ -34,9 +34,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         text = text.replace(from, to);
     }
     let under = std::env::temp_dir().join(format!("hertzchain-channels-{}", std::process::id()));
-    let told = print(&text, &under);
+    let reported = print(&text, &under);
     std::fs::remove_dir_all(under)?;
-    told
+    reported
 }
 
 fn print(text: &str, under: &Path) -> Result<(), Box<dyn Error>> {
@@ -45,7 +45,7 @@ fn print(text: &str, under: &Path) -> Result<(), Box<dyn Error>> {
     println!("| time | case | shots | one channel, ns | two channels, ns |\n|---|---|---|---|---|");
     for (time, name) in TIMES.iter().enumerate() {
         for case in ["dry", "pump", "gear", "motor"] {
-            let off = |shots: &[Judged]| off_ns(shots, case, time);
+            let off = |shots: &[Evaluated]| off_ns(shots, case, time);
             let (Some((count, one)), Some((_, two))) = (off(&one), off(&two)) else {
                 continue;
             };
@@ -55,16 +55,16 @@ fn print(text: &str, under: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn shots(text: &str, under: &Path) -> Result<Vec<Judged>, Box<dyn Error>> {
+fn shots(text: &str, under: &Path) -> Result<Vec<Evaluated>, Box<dyn Error>> {
     let mut shots = Vec::new();
     for folder in run(text, 1..=1, under)? {
-        shots.extend(judge(&folder, &Options::default())?);
+        shots.extend(evaluate(&folder, &Options::default())?);
     }
     Ok(shots)
 }
 
 /// How many shots, and the median of measured less true times, with its error.
-fn off_ns(shots: &[Judged], case: &str, time: usize) -> Option<(usize, String)> {
+fn off_ns(shots: &[Evaluated], case: &str, time: usize) -> Option<(usize, String)> {
     let own = shots.iter().filter(|shot| shot.case == case);
     let off: Vec<f64> = own
         .filter_map(|shot| Some(1e9 * shot.error(time)?.value))

@@ -11,13 +11,13 @@ use hertzchain_infer::{
 use hertzchain_sim::parse_speeds;
 use serde_json::{Value, json};
 
-/// What could be measured, and what it would tell.
-pub struct Designed {
+/// What could be measured, and what it would determine.
+pub struct DesignResult {
     /// How well the model follows the data so far: the ranking is the model's.
     pub goodness: Goodness,
     /// What could be measured.
     pub candidates: Vec<Candidate>,
-    /// What each would tell.
+    /// What each would determine.
     pub design: Design,
     /// What is tightened, by name.
     pub names: Vec<String>,
@@ -108,16 +108,16 @@ fn kind(of: WayKind) -> Kind {
     }
 }
 
-/// Fits, and ranks candidates by what they would tell of the targets.
+/// Fits, and ranks candidates by what they would determine of the targets.
 ///
 /// # Errors
 /// What is in the way of the fit or of a candidate's curve.
-pub fn designed(
+pub fn run_design(
     problem: &CurveProblem,
     targets: &[usize],
     speeds: &[f64],
     arguments: &Arguments,
-) -> Result<Designed, Failure> {
+) -> Result<DesignResult, Failure> {
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
     let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
@@ -135,7 +135,7 @@ pub fn designed(
         false => problem.suggested_measurements(&fit).words(),
     };
     let open = identified.unidentifiable.into_iter();
-    Ok(Designed {
+    Ok(DesignResult {
         goodness: Goodness::new(problem, &fit),
         advice,
         candidates,
@@ -157,14 +157,14 @@ fn called(problem: &CurveProblem, at: usize, aim: &Aim) -> (String, String) {
     }
 }
 
-impl Designed {
+impl DesignResult {
     /// What can't be tightened, and what is in its place, one sentence a line.
     #[must_use]
-    pub fn hopeless(&self, problem: &CurveProblem) -> Vec<String> {
+    pub fn unidentifiable(&self, problem: &CurveProblem) -> Vec<String> {
         let open = self.design.open.iter().map(|words| {
             format!("Nothing that could be measured determines this combination: {words}")
         });
-        let mut told: Vec<String> = open.collect();
+        let mut reported: Vec<String> = open.collect();
         let names = self.design.not_identifiable.iter();
         let names: Vec<&str> = names
             .map(|k| problem.parameters()[*k].name.as_str())
@@ -175,23 +175,23 @@ impl Designed {
                 _ => format!("none of {}", names.join(", ")),
             };
             let can = if names.len() > 1 { "can" } else { "can't" };
-            told.push(format!("So {which} {can} be tightened by itself"));
+            reported.push(format!("So {which} {can} be tightened by itself"));
         }
         for (name, aim) in self.names.iter().zip(&self.design.aims) {
             if let Aim::Combination(words) = aim {
-                told.push(format!(
+                reported.push(format!(
                     "Ranked is what tightens {name}, {words}, in shares of the parameters' sizes"
                 ));
             }
         }
-        told
+        reported
     }
 }
 
 /// Everything, in SI.
 #[must_use]
-pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
-    let (candidates, found) = (&designed.candidates, &designed.design);
+pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
+    let (candidates, found) = (&run_design.candidates, &run_design.design);
     let finite = |x: f64| x.is_finite().then_some(x);
     let one = |expected: &Expected| {
         json!({
@@ -204,53 +204,53 @@ pub fn json(problem: &CurveProblem, designed: &Designed) -> Value {
     };
     json!({
         "references": references_json(problem.model()),
-        "follows_data": !designed.goodness.is_rejected(),
-        "parameters": designed.names,
-        "units": designed.units,
+        "follows_data": !run_design.goodness.is_rejected(),
+        "parameters": run_design.names,
+        "units": run_design.units,
         "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
         "ranked": found.ranked.iter().map(one).collect::<Value>(),
         "series": found.greedy.iter().map(one).collect::<Value>(),
-        "undetermined": designed.undetermined,
-        "hopeless": designed.hopeless(problem),
+        "undetermined": run_design.undetermined,
+        "hopeless": run_design.unidentifiable(problem),
     })
 }
 
 /// Every table: files' names and what stands in them.
 #[must_use]
-pub fn tables(designed: &Designed) -> Vec<(&'static str, String)> {
-    let found = &designed.design;
+pub fn tables(run_design: &DesignResult) -> Vec<(&'static str, String)> {
+    let found = &run_design.design;
     vec![
-        ("design.csv", ranked(designed, &found.ranked)),
-        ("series.csv", ranked(designed, &found.greedy)),
-        ("now.csv", now(designed)),
+        ("design.csv", ranked(run_design, &found.ranked)),
+        ("series.csv", ranked(run_design, &found.greedy)),
+        ("now.csv", now(run_design)),
     ]
 }
 
 /// One line a candidate, best first.
-fn ranked(designed: &Designed, ranked: &[Expected]) -> String {
-    let names = designed.names.iter().zip(&designed.units);
+fn ranked(run_design: &DesignResult, ranked: &[Expected]) -> String {
+    let names = run_design.names.iter().zip(&run_design.units);
     let names = names.map(|(name, unit)| titled(&format!("{name}_error"), unit));
     let titles = std::iter::once("measure".to_owned()).chain(names);
-    let told = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
-    let table = Csv::new(titles.chain(told));
+    let reported = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
+    let table = Csv::new(titles.chain(reported));
     let line = |expected: &Expected| {
-        let name = Cell::from(designed.candidates[expected.candidate].name.clone());
+        let name = Cell::from(run_design.candidates[expected.candidate].name.clone());
         let after = expected.after.iter().map(|sd| Cell::from(*sd));
         let cells = std::iter::once(name).chain(after);
-        let cost = designed.candidates[expected.candidate].cost;
-        let told = [expected.gain, cost, expected.gain_per_cost].map(Cell::from);
-        cells.chain(told).collect::<Vec<_>>()
+        let cost = run_design.candidates[expected.candidate].cost;
+        let reported = [expected.gain, cost, expected.gain_per_cost].map(Cell::from);
+        cells.chain(reported).collect::<Vec<_>>()
     };
     table.with_all(ranked, line).text()
 }
 
 /// One line a parameter or combination that is to be tightened: its standard error so far.
-fn now(designed: &Designed) -> String {
+fn now(run_design: &DesignResult) -> String {
     let line = |((name, unit), sd): ((&String, &String), &f64)| -> [Cell; 3] {
         [name.clone().into(), unit.clone().into(), (*sd).into()]
     };
-    let named = designed.names.iter().zip(&designed.units);
-    let lines = named.zip(&designed.design.before);
+    let named = run_design.names.iter().zip(&run_design.units);
+    let lines = named.zip(&run_design.design.before);
     Csv::new(["name", "unit", "standard_error"])
         .with_all(lines, line)
         .text()

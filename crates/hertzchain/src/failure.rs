@@ -1,4 +1,4 @@
-//! What went wrong, told to people.
+//! What went wrong, described to people.
 
 use crate::options::{SimulationOptions as How, has_unit};
 use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, Warning};
@@ -15,7 +15,7 @@ pub enum Failure {
     User(String),
     /// Our fault, or the machine's.
     Ours(String),
-    /// Nobody reads the output any more: no failure at all.
+    /// no user reads the output any more: no failure at all.
     BrokenPipe,
 }
 
@@ -68,7 +68,7 @@ impl Failure {
     }
 
     /// Mistakes at a speed that an option gave: what would underline the speed
-    /// in the file is told of the option instead.
+    /// in the file is described of the option instead.
     #[must_use]
     pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
         match of_speed(&mistakes) {
@@ -77,7 +77,7 @@ impl Failure {
         }
     }
 
-    /// What people are told, with marks in colour or plain.
+    /// What people are described, with marks in colour or plain.
     #[must_use]
     pub fn report(&self, colour: bool) -> String {
         match self {
@@ -100,8 +100,8 @@ fn handler(colour: bool) -> GraphicalReportHandler {
 const MOST: usize = 20;
 
 fn findings(findings: &[Finding], kind: &str, colour: bool) -> String {
-    let told = findings.iter().take(MOST);
-    let mut text: String = told.map(|finding| report(finding, colour)).collect();
+    let described = findings.iter().take(MOST);
+    let mut text: String = described.map(|finding| report(finding, colour)).collect();
     let more = findings.len().saturating_sub(MOST);
     if more > 0 {
         text += &format!("… and {more} more {kind}\n");

@@ -65,7 +65,7 @@ pub fn speed(given: Option<&Given>, experiment: &Experiment) -> Result<Option<f6
 }
 
 /// What an experiment gives at a speed; a speed of the command line that does
-/// not do is told as such.
+/// not do is reported as such.
 pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result<T, Failure> {
     result.map_err(|mistakes| match given {
         Some(given) => Failure::at_option(&option(given), mistakes),

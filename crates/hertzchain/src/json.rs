@@ -318,7 +318,7 @@ fn point<'a>(point: &'a BatchShot, units: Units, plan: &Plan) -> PointView<'a> {
 }
 
 /// A fit of times against speed, with its standard errors and with what the
-/// accuracies of the times alone leave open. Two speeds tell no errors and no
+/// accuracies of the times alone leave open. Two speeds determine no errors and no
 /// R²: null.
 #[must_use]
 pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -> Json {

@@ -55,7 +55,7 @@ pub struct UseFromRust;
 
 /// What most programs need, by one `use`.
 pub mod prelude {
-    pub use crate::fit::{Fitted, fit};
+    pub use crate::fit::{FitResult, fit};
     pub use crate::measure::{MeasureResult, measure};
     pub use crate::options::{FitOptions, MeasureOptions, from_json};
     pub use crate::{Failure, inference};

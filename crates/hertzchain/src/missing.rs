@@ -1,4 +1,4 @@
-//! Why there is no time of flight or no power law, in the same words wherever it is told.
+//! Why there is no time of flight or no power law, in the same words wherever it is reported.
 
 use crate::quantity::Style;
 use hertzchain_chain::FarEnd;

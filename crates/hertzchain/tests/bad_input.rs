@@ -13,7 +13,7 @@ fn run(arguments: &[&str]) -> Output {
     program.args(arguments).output().unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn reported(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn file(name: &str, text: impl AsRef<[u8]>) -> PathBuf {
     path
 }
 
-/// What is told when a file with this text is checked: one report, code 2.
+/// What is reported when a file with this text is checked: one report, code 2.
 fn one_report(name: &str, text: impl AsRef<[u8]>) -> String {
     let path = file(name, text);
     refused(&["check", path.to_str().unwrap()])
@@ -33,7 +33,7 @@ fn one_report(name: &str, text: impl AsRef<[u8]>) -> String {
 
 fn refused(arguments: &[&str]) -> String {
     let output = run(arguments);
-    let message = told(&output);
+    let message = reported(&output);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
     let reports = message.lines().filter(|line| is_report(line)).count();
     assert_eq!(reports, 1, "{message}");
@@ -83,7 +83,7 @@ fn a_warning_is_underlined_like_a_mistake_and_ends_well() {
         &["sweep", path, "--speeds", "0.5,1"],
     ] {
         let output = run(arguments);
-        let message = told(&output);
+        let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {message}");
         for part in ["⚠ the Poisson ratio", "warned.toml:14:17", "┬", "above 1/2"] {
             assert!(
@@ -181,7 +181,7 @@ fn a_dimensionless_experiment_takes_plain_numbers_only() {
             output.status.code(),
             Some(0),
             "{arguments:?}: {}",
-            told(&output)
+            reported(&output)
         );
     }
 }
@@ -222,7 +222,7 @@ fn hundreds_of_mistakes_are_told_twenty_at_a_time() {
         .collect();
     let path = file("many.toml", format!("{DRY}{gaps}"));
     let output = run(&["check", path.to_str().unwrap()]);
-    let message = told(&output);
+    let message = reported(&output);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(message.lines().filter(|line| is_report(line)).count(), 20);
     assert!(message.ends_with("… and 480 more mistakes\n"), "{message}");

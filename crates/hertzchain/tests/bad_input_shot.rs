@@ -12,7 +12,7 @@ fn run(arguments: &[&str]) -> Output {
     program.args(arguments).output().unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn reported(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
@@ -30,7 +30,7 @@ fn every_verb_refuses(name: &str, text: &str, marked: &str, words: &[&str]) {
     let path = path.to_str().unwrap();
     for verb in ["check", "theory", "shot"] {
         let output = run(&[verb, path]);
-        let message = told(&output);
+        let message = reported(&output);
         assert_eq!(output.status.code(), Some(2), "{verb} {name}: {message}");
         let reports = message.lines().filter(|line| line.starts_with("  ×"));
         assert_eq!(reports.count(), 1, "{verb}: {message}");
@@ -116,7 +116,7 @@ fn a_law_out_of_its_range_is_a_warning_beside_the_results() {
     let path = path.to_str().unwrap();
     for verb in ["check", "theory", "shot"] {
         let output = run(&[verb, path]);
-        let message = told(&output);
+        let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
         for part in [
             "⚠ two bodies",
@@ -146,7 +146,7 @@ fn a_solver_that_does_not_get_there_is_told_where_it_was_chosen() {
     let chosen_on_the_line = run(&line);
     for (output, place) in [(chosen_in_file, true), (chosen_on_the_line, false)] {
         assert_eq!(output.status.code(), Some(2));
-        let message = told(&output);
+        let message = reported(&output);
         assert!(message.contains("use the adaptive solver"), "{message}");
         assert_eq!(message.contains("[solver]"), place, "{message}");
     }
@@ -163,7 +163,7 @@ fn a_speed_of_the_command_line_is_refused_there_and_not_in_the_file() {
             ("1e5 m/s", "more than a bead's radius"),
         ] {
             let output = run(&[verb, "--preset", "dry", "--speed", speed]);
-            let message = told(&output);
+            let message = reported(&output);
             assert_eq!(output.status.code(), Some(2), "{verb}: {message}");
             let option = format!("error: --speed {speed}: ");
             assert!(message.starts_with(&option), "{verb}: {message}");
@@ -171,14 +171,14 @@ fn a_speed_of_the_command_line_is_refused_there_and_not_in_the_file() {
             assert!(!message.contains("dry.toml"), "{verb}: {message}");
         }
         let output = run(&[verb, "--preset", "hertz", "--speed", "60"]);
-        let message = told(&output);
+        let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
         assert!(
             message.contains("warning: --speed 60: two bodies"),
             "{verb}: {message}"
         );
     }
-    let message = told(&run(&["sweep", "-p", "dry", "--speeds", "1e9"]));
+    let message = reported(&run(&["sweep", "-p", "dry", "--speeds", "1e9"]));
     assert!(
         message.contains("no shot at 1e9 m/s: a shot at"),
         "{message}"

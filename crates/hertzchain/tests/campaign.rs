@@ -85,8 +85,8 @@ fn moment(seed: u64, attempt: u64, longest: Duration) -> Duration {
 #[test]
 fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
     let scratch = Scratch::new("killed");
-    let told = std::env::var("HERTZCHAIN_KILL_SEED").ok();
-    let seed = told.map_or_else(
+    let reported = std::env::var("HERTZCHAIN_KILL_SEED").ok();
+    let seed = reported.map_or_else(
         || RandomState::new().hash_one("moments"),
         |seed| seed.parse().unwrap(),
     );
@@ -244,7 +244,7 @@ fn measure_reads_separate_channels_as_it_reads_the_summed_one() {
     }
 }
 
-/// Told by the campaign, also of files that are there already, and by `measure` of each shot.
+/// Reported by the campaign, also of files that are there already, and by `measure` of each shot.
 #[test]
 fn shots_that_never_pass_the_level_are_told() {
     let scratch = Scratch::new("level");
@@ -254,16 +254,16 @@ fn shots_that_never_pass_the_level_are_told() {
     for _ in 0..2 {
         let output = scratch.run("high", &[]);
         assert!(output.status.success());
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(told.contains("32 shots never passed"), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(reported.contains("32 shots never passed"), "{reported}");
     }
     let output = Command::new(env!("CARGO_BIN_EXE_hertzchain"))
         .current_dir(&scratch.0)
         .args(["measure", "high", "--json"])
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert_eq!(told.matches("no trigger").count(), 32, "{told}");
+    let reported = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(reported.matches("no trigger").count(), 32, "{reported}");
 }
 
 #[test]
@@ -276,16 +276,16 @@ fn a_record_too_short_is_warned_of_and_a_rate_without_pulses_refused() {
     with("record = \"20 ms\"", "record = \"6 ms\"");
     let short = scratch.run("short", &[]);
     assert!(short.status.success());
-    let told = String::from_utf8_lossy(&short.stderr);
+    let reported = String::from_utf8_lossy(&short.stderr);
     assert!(
-        told.contains("warning: case `dry` at 0.1000 m/s: the record ends"),
-        "{told}"
+        reported.contains("warning: case `dry` at 0.1000 m/s: the record ends"),
+        "{reported}"
     );
     with("sampling = \"500 kHz\"", "sampling = \"1 kHz\"");
     let slow = scratch.run("slow", &[]);
     assert_eq!(slow.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&slow.stderr);
-    assert!(told.contains("sampled at 1 kHz"), "{told}");
+    let reported = String::from_utf8_lossy(&slow.stderr);
+    assert!(reported.contains("sampled at 1 kHz"), "{reported}");
     assert!(!scratch.0.join("slow").exists());
 }
 

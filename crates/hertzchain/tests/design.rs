@@ -29,7 +29,7 @@ fn a_design_ranks_what_to_measure() {
     );
     let fast = ["design", &data, "--free", "eta", "--speeds", "0.1,500"];
     assert!(refused(&with_errors(&fast)).contains("it looks like mm/s"));
-    // Errors of what the data leave open are not told as if they meant something.
+    // Errors of what the data leave open are not reported as if they meant something.
     let three = ["design", &data, "--free", "Y,nu,eta"];
     let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
     assert!(text.contains("Not determined so far"), "{text}");
@@ -38,17 +38,17 @@ fn a_design_ranks_what_to_measure() {
     let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
     let names = serde_json::json!(["combination 1", "combination 2"]);
     assert_eq!(found["parameters"], names);
-    let told = found["hopeless"].to_string();
+    let reported = found["hopeless"].to_string();
     for words in [
         "nu up 1.00 % with",
         "So none of Y, nu, eta can be tightened by itself",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(reported.contains(words), "{words}: {reported}");
     }
-    // A start from where no minimum is found tells nothing.
+    // A start from where no minimum is found determines nothing.
     let far = ["design", &data, "--free", "Y,eta,B", "--start", "B=1e5"];
-    let told = refused(&with_errors(&far));
-    assert!(told.contains("found no minimum"), "{told}");
+    let reported = refused(&with_errors(&far));
+    assert!(reported.contains("found no minimum"), "{reported}");
 }
 
 #[test]

@@ -27,16 +27,16 @@ fn an_exponent_can_be_free_alone_and_the_report_says_what_the_stiffness_then_is(
         "{value} {error}"
     );
     assert_eq!(exponent["lower"], 1.0);
-    let told = String::from_utf8(run(&with_errors(&fit)).stderr).unwrap();
+    let reported = String::from_utf8(run(&with_errors(&fit)).stderr).unwrap();
     for words in [
         "is free and",
         "its number 2.5e12 is kept",
         "N/m^2",
         "overlap of 1 m",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(reported.contains(words), "{words}: {reported}");
     }
-    assert!(told.contains(found["kept"][0].as_str().unwrap()), "{told}");
+    assert!(reported.contains(found["kept"][0].as_str().unwrap()), "{reported}");
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn an_exponent_can_be_set_alone() {
     assert_eq!(found["parameters"][0]["unit"], "N/m^1.9");
     assert_eq!(found["parameters"][0]["start"], 2.5e12);
     assert_eq!(found["kept"].as_array().unwrap().len(), 0);
-    // With nothing else said of the stiffness it is kept, and told.
+    // With nothing else said of the stiffness it is kept, and reported.
     let other = [
         "fit",
         &data,
@@ -63,10 +63,10 @@ fn an_exponent_can_be_set_alone() {
         "--free",
         "Y",
     ];
-    let told = String::from_utf8(run(&with_errors(&other)).stderr).unwrap();
+    let reported = String::from_utf8(run(&with_errors(&other)).stderr).unwrap();
     assert!(
-        told.contains("is set and") && told.contains("now N/m^1.9"),
-        "{told}"
+        reported.contains("is set and") && reported.contains("now N/m^1.9"),
+        "{reported}"
     );
 }
 
@@ -95,15 +95,15 @@ fn a_rival_can_have_a_free_exponent() {
         "--json",
     ];
     let found = json(&with_errors(&fit));
-    let rival = &found["comparison"]["models"][1];
+    let alternative = &found["comparison"]["models"][1];
     // The true exponent is 3/2, and the curve has no noise; both models hold it.
-    let exponent = rival["point"][0].as_f64().unwrap();
+    let exponent = alternative["point"][0].as_f64().unwrap();
     assert!((exponent - 1.5).abs() < 1e-3, "{found}");
     assert!(
-        rival["kept"][0]
+        alternative["kept"][0]
             .as_str()
             .unwrap()
             .contains(&EXPONENT.replace('1', "0")),
-        "{rival}"
+        "{alternative}"
     );
 }

@@ -94,10 +94,10 @@ fn a_posterior_of_too_many_parameters_says_before_it_begins_that_it_takes_its_ti
         "0",
     ];
     let output = run(&with_errors(&posterior));
-    let told = String::from_utf8(output.stderr).unwrap();
+    let reported = String::from_utf8(output.stderr).unwrap();
     assert!(
-        told.contains("19 parameters are free, and curves are interpolated for up to 18"),
-        "{told}"
+        reported.contains("19 parameters are free, and curves are interpolated for up to 18"),
+        "{reported}"
     );
 }
 

@@ -4,7 +4,7 @@
 use crate::common::{curve, file, folder, json, refused, run, with_errors};
 
 /// What a run says: its result and its warnings.
-fn told(arguments: &[&str]) -> [String; 2] {
+fn reported(arguments: &[&str]) -> [String; 2] {
     let output = run(arguments);
     [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap())
 }
@@ -36,7 +36,7 @@ fn a_model_that_does_not_follow_the_data_is_told_and_ranked() {
             .starts_with("hertz-viscoelastic")
     );
     assert!(aicc(0) > aicc(1) + 100.0, "{models:?}");
-    let [text, _] = told(&with_errors(&misfit));
+    let [text, _] = reported(&with_errors(&misfit));
     assert!(
         text.contains("warning: the model does not follow the data"),
         "{text}"
@@ -54,7 +54,7 @@ fn a_model_that_does_not_follow_the_data_is_told_and_ranked() {
         json(&with_errors(&[&fit[..], &["--json"]].concat()))["follows_data"],
         true
     );
-    let [text, _] = told(&with_errors(&fit));
+    let [text, _] = reported(&with_errors(&fit));
     assert!(!text.contains("warning"), "{text}");
 }
 
@@ -65,7 +65,7 @@ fn a_young_modulus_beside_a_stiffness_of_its_own_acts_through_the_relaxation_tim
     let data = curve(&folder, "dry");
     let warned = |more: &[&str]| {
         let fit = ["fit", &data, "-p", "dry", "--accuracy", "1e-5"];
-        let [_, warnings] = told(&with_errors(&[&fit[..], more].concat()));
+        let [_, warnings] = reported(&with_errors(&[&fit[..], more].concat()));
         warnings.contains("acts through the relaxation time A alone")
     };
     assert!(warned(&["--free", "Y,K"]));
@@ -122,9 +122,9 @@ fn longest_decimals(text: &str) -> (usize, &str) {
     (decimals(&longest), longest)
 }
 
-/// Nobody gave 0.008726646259971648 or 1.1000000000000003.
+/// no user gave 0.008726646259971648 or 1.1000000000000003.
 #[test]
-fn no_number_is_told_with_digits_that_nobody_gave() {
+fn no_number_is_told_with_digits_that_no user_gave() {
     let folder = folder("digits");
     let data = curve(&folder, "dry");
     let fit = ["fit", &data, "-p", "dry", "--free"];
@@ -167,7 +167,7 @@ fn no_number_is_told_with_digits_that_nobody_gave() {
             "young_modulus=213.1GPa",
         ],
     ];
-    texts.extend(told(&with_errors(&whole.concat())));
+    texts.extend(reported(&with_errors(&whole.concat())));
     let other = [
         "fit",
         &data,
@@ -178,7 +178,7 @@ fn no_number_is_told_with_digits_that_nobody_gave() {
         "--start",
         "Y=210.1GPa",
     ];
-    texts.extend(told(&with_errors(&other)));
+    texts.extend(reported(&with_errors(&other)));
     let design = [
         "design",
         &data,
@@ -189,7 +189,7 @@ fn no_number_is_told_with_digits_that_nobody_gave() {
         "--preloads",
         "0.3N",
     ];
-    texts.extend(told(&with_errors(&design)));
+    texts.extend(reported(&with_errors(&design)));
     for text in &texts {
         // Times of flight to their errors have eight; a ten-digit number below 1, twelve.
         let (count, number) = longest_decimals(text);
@@ -204,7 +204,7 @@ fn a_fit_with_as_many_numbers_as_parameters_reports_no_degrees_of_freedom() {
                 0.5,1e-4,7.5e-4,1e-7,7.9e-4,1e-7\n";
     let data = file(&folder, "one.csv", rows);
     let fit = ["fit", &data, "-p", "hertz-viscoelastic", "--free", "K,A"];
-    let [text, _] = told(&fit);
+    let [text, _] = reported(&fit);
     assert!(
         text.contains("ν = 0: as many numbers as parameters"),
         "{text}"

@@ -7,24 +7,24 @@ fn speeds_without_errors_are_warned_of_by_line() {
     let folder = folder("exact");
     let rows = "0.1,0,1.0274e-3,1e-7\n0.4,1e-3,7.9465e-4,1e-7\n1.0,,6.8166e-4,1e-7\n";
     let data = file(&folder, "data.csv", &format!("{HEAD}{rows}"));
-    let told = |more: &[&str]| {
+    let reported = |more: &[&str]| {
         let fit = ["fit", &data, "-p", "dry", "--free", "eta"];
         let output = run(&[&fit[..], more].concat());
         assert!(output.status.success());
         String::from_utf8(output.stderr).unwrap()
     };
-    let warning = told(&[]);
+    let warning = reported(&[]);
     assert!(
         warning.contains("lines 2, 4: speeds without an error"),
         "{warning}"
     );
     // A cell that is 0 is a cell; one that is empty is filled.
-    let warning = told(&["--speed-error", "1e-3"]);
+    let warning = reported(&["--speed-error", "1e-3"]);
     assert!(
         warning.contains("line 2: speeds without an error"),
         "{warning}"
     );
-    assert_eq!(told(&["--speed-error", "0"]), "");
+    assert_eq!(reported(&["--speed-error", "0"]), "");
     let message = refused(&["fit", &data, "--free", "eta", "--error-shots", "4"]);
     assert!(
         message.contains("expected a whole number from 6"),

@@ -72,7 +72,7 @@ fn rivals_know_what_is_set_and_known_in_the_fits_own_model() {
     ];
     assert!(run(&sweep).status.success());
     let data = out.join("sweep.csv");
-    // The same model by two names of its numbers: nothing may tell them apart.
+    // The same model by two names of its numbers: nothing may distinguish them.
     let fit = [
         "fit",
         data.to_str().unwrap(),
@@ -102,7 +102,7 @@ fn rivals_know_what_is_set_and_known_in_the_fits_own_model() {
     assert_eq!(own["point"][1], 80.0);
     assert_eq!(own["chi_square"], same["chi_square"]);
     assert_eq!(other["settings_left_out"], Value::Array(Vec::new()));
-    // A number that a rival has not is left out, and told.
+    // A number that a rival has not is left out, and reported.
     let fit = [
         "fit",
         data.to_str().unwrap(),
@@ -165,7 +165,7 @@ fn options_that_would_say_nothing_are_refused_at_once() {
 fn proposed(arguments: &[&str]) -> Vec<(String, f64, f64, f64)> {
     let found = json(&with_errors(arguments));
     let ranked = found["ranked"].as_array().unwrap().iter();
-    let told = |one: &Value| {
+    let reported = |one: &Value| {
         let number = |key: &str| one[key].as_f64().unwrap();
         let name = one["measure"].as_str().unwrap().to_owned();
         (
@@ -175,7 +175,7 @@ fn proposed(arguments: &[&str]) -> Vec<(String, f64, f64, f64)> {
             number("information_over_cost"),
         )
     };
-    ranked.map(told).collect()
+    ranked.map(reported).collect()
 }
 
 #[test]

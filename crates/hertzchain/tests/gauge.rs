@@ -44,7 +44,7 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     let out = out.to_str().unwrap();
     let sweep = ["sweep", &softer, "--speeds", "log:0.1:1.2:6", "--out", out];
     assert!(run(&sweep).status.success());
-    let told = |dry: &str| {
+    let reported = |dry: &str| {
         let gauge = [
             "gauge",
             &pump,
@@ -59,7 +59,7 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
         ];
         String::from_utf8(run(&with_errors(&gauge)).stdout).unwrap()
     };
-    let text = told(&format!("{out}/sweep.csv"));
+    let text = reported(&format!("{out}/sweep.csv"));
     let first = text.lines().next().unwrap();
     assert!(first.starts_with("warning: of the dry curve"), "{text}");
     assert!(
@@ -71,6 +71,6 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     // Under the verdict, where a long table ends, it is said again.
     let last = text.lines().last().unwrap();
     assert!(last.starts_with("warning: see the first lines"), "{text}");
-    let text = told(&curve(&folder, "dry"));
+    let text = reported(&curve(&folder, "dry"));
     assert!(!text.contains("warning"), "{text}");
 }

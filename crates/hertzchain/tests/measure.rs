@@ -14,8 +14,8 @@ fn measure(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 fn json(output: &Output) -> Value {
-    let told = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
+    let reported = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {reported}"))
 }
 
 fn folder(test: &str) -> PathBuf {
@@ -52,7 +52,7 @@ fn write(path: &Path, volts: &[f64]) {
 
 const SPEEDS: [f64; 3] = [0.2, 0.5, 1.0];
 
-/// Dry and wet shots at three speeds, and the table that tells them.
+/// Dry and wet shots at three speeds, and the table that determines them.
 fn shots(folder: &Path) {
     let mut list = "file,case,speed,speed error\n".to_owned();
     for (case, wet) in [("dry", 1.0), ("gear", 0.98)] {
@@ -128,8 +128,8 @@ fn a_bad_record_is_told_and_the_good_ones_are_measured() {
     fs::write(folder.join("lie.npy"), "1,2\n").unwrap();
     let output = measure(&folder, &["empty.csv", "good.csv", "lie.npy"]);
     assert_eq!(output.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(told.matches("refused: ").count(), 2, "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(reported.matches("refused: ").count(), 2, "{reported}");
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(printed.contains("723."), "{printed}");
 }
@@ -153,26 +153,26 @@ fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
     let folder = folder("digits");
     for name in ["one.csv", "two.csv"] {
         let rows = volts(0.5, 1.0).into_iter().enumerate();
-        // No sample at a tie of rounding, which would tell more.
+        // No sample at a tie of rounding, which would determine more.
         let time_s = |i: usize| (i as f64 - 400.0) * 1e-6 + 0.3e-6;
         let rows: String = rows
             .map(|(i, v)| format!("{:.5},{v:.6}\n", time_s(i)))
             .collect();
         fs::write(folder.join(name), format!("Time (s),Volts\n{rows}")).unwrap();
     }
-    let told = |more: &[&str]| {
+    let reported = |more: &[&str]| {
         let output = measure(&folder, &[&["one.csv", "two.csv"], more].concat());
         assert_eq!(output.status.code(), Some(0));
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
-    let open = told(&[]);
+    let open = reported(&[]);
     assert_eq!(
         open.matches("times are even only to 10 µs").count(),
         1,
         "{open}"
     );
     assert!(open.contains("--rate"), "{open}");
-    assert_eq!(told(&["--rate", "1MHz", "--low-pass", "0"]), "");
+    assert_eq!(reported(&["--rate", "1MHz", "--low-pass", "0"]), "");
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn every_method_agrees_on_pulses_of_one_shape() {
     }
 }
 
-/// Two columns, and what of them is told on standard error.
+/// Two columns, and what of them is reported on standard error.
 fn told_of_two_columns(folder: &Path, arguments: &[&str]) -> String {
     let rows = volts(0.5, 1.0);
     let rows = rows
@@ -239,10 +239,10 @@ fn told_of_two_columns(folder: &Path, arguments: &[&str]) -> String {
 #[test]
 fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
     let folder = folder("unit");
-    let told = told_of_two_columns(&folder, &[]);
+    let reported = told_of_two_columns(&folder, &[]);
     assert!(
-        told.contains("taken as times in s") && told.contains("--time-unit us"),
-        "{told}"
+        reported.contains("taken as times in s") && reported.contains("--time-unit us"),
+        "{reported}"
     );
     let output = measure(&folder, &["two.csv", "--time-unit", "us", "--json"]);
     let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
@@ -276,19 +276,19 @@ fn a_continuous_recording_is_cut_and_the_cut_is_told() {
     let level = measure(&folder, &["long.csv", "--level", "0.3", "--json"]);
     assert_eq!(json(&level)["shots"].as_array().unwrap().len(), 2);
     let never = measure(&folder, &["long.csv", "--level", "-7"]);
-    let told = String::from_utf8_lossy(&never.stderr).into_owned();
-    assert!(told.contains("never passes the level of -7 V"), "{told}");
+    let reported = String::from_utf8_lossy(&never.stderr).into_owned();
+    assert!(reported.contains("never passes the level of -7 V"), "{reported}");
     assert_eq!(never.status.code(), Some(2));
 }
 
 #[test]
 fn three_channels_of_a_shot_are_one_too_many() {
     let folder = folder("three");
-    let told = told_of_two_columns(
+    let reported = told_of_two_columns(
         &folder,
         &["--channel", "1", "--channel", "1", "--channel", "1"],
     );
-    assert!(told.contains("at most two channels"), "{told}");
+    assert!(reported.contains("at most two channels"), "{reported}");
 }
 
 #[test]
@@ -298,9 +298,9 @@ fn lines_of_the_table_that_fit_no_record_are_told() {
     let list = "file,speed\n\"shot, 1.csv\",0.5\nshot-2.csv,0.7\n";
     fs::write(folder.join("list.csv"), list).unwrap();
     let output = measure(&folder, &["shot, 1.csv", "--shots", "list.csv"]);
-    let told = String::from_utf8_lossy(&output.stderr);
+    let reported = String::from_utf8_lossy(&output.stderr);
     let expected = "line 3: shot-2.csv is none of the files given (shot, 1.csv)";
-    assert!(told.contains(expected), "{told}");
+    assert!(reported.contains(expected), "{reported}");
     assert_eq!(output.status.code(), Some(0));
 }
 
@@ -315,7 +315,7 @@ fn shots_that_are_the_same_have_no_spread_of_rounding() {
     fs::write(folder.join("list.txt"), list).unwrap();
     let output = measure(&folder, &[".", "--shots", "list.txt"]);
     let printed = String::from_utf8_lossy(&output.stdout);
-    // Equal times have no spread: what is told of their means is what shots share, which is less
+    // Equal times have no spread: what is reported of their means is what shots share, which is less
     // than the error of one.
     let spreads = printed.lines().filter(|line| line.contains("  0  "));
     assert_eq!(spreads.count(), 2, "{printed}");
@@ -336,11 +336,11 @@ fn an_odd_unit_of_times_is_named_and_not_called_absent() {
     let text = "Time (shakes),sum\n".to_owned() + &rows.collect::<String>();
     fs::write(folder.join("odd.csv"), text).unwrap();
     let refused = measure(&folder, &["odd.csv"]);
-    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    let reported = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        told.contains("shakes") && told.contains("--time-unit"),
-        "{told}"
+        reported.contains("shakes") && reported.contains("--time-unit"),
+        "{reported}"
     );
     let given = measure(&folder, &["odd.csv", "--time-unit", "us"]);
     assert_eq!(given.status.code(), Some(0));
@@ -388,15 +388,15 @@ fn shots_and_speeds_without_times_are_told_counted_and_in_the_exit_code() {
     let table = fs::read_to_string(folder.join("out/speeds.csv")).unwrap();
     let lost = table.lines().last().unwrap();
     assert!(lost.starts_with("gear,5e-1,,0,2,,"), "{table}");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let reported = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        told.contains("2 of 5") && told.contains("no time of flight"),
-        "{told}"
+        reported.contains("2 of 5") && reported.contains("no time of flight"),
+        "{reported}"
     );
 }
 
-/// Fits of shots at speeds whose errors are told or not.
+/// Fits of shots at speeds whose errors are reported or not.
 fn fits(folder: &Path, speeds: &[f64], error: &str) -> String {
     let mut list = "file,speed,speed error\n".to_owned();
     for (number, speed) in speeds.iter().enumerate() {
@@ -435,11 +435,11 @@ fn a_power_law_is_judged_by_errors_of_speeds_only_where_these_are_known() {
             &[0.2, 0.5, 1.0],
             if name == "known" { "1e-6" } else { "" },
         );
-        let told = measure(
+        let reported = measure(
             &folder,
             &[".", "--shots", "list.txt", "--json", "--out", "out"],
         );
-        let law = &json(&told)["cases"][0]["power_law_incident"];
+        let law = &json(&reported)["cases"][0]["power_law_incident"];
         assert_eq!(law["supported"], supported, "{law}");
         let why = law["supported_unknown_because"].as_str();
         assert_eq!(why.is_some(), name == "unknown", "{law}");
@@ -469,9 +469,9 @@ fn a_low_pass_above_half_the_rate_is_told_once() {
     shots(&folder);
     let output = measure(&folder, &[".", "--shots", "list.txt", "--smooth", "2MHz"]);
     assert_eq!(output.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(told.matches("half the sampling rate").count(), 1, "{told}");
-    assert!(told.contains("sampled at 1000000 Hz"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(reported.matches("half the sampling rate").count(), 1, "{reported}");
+    assert!(reported.contains("sampled at 1000000 Hz"), "{reported}");
     assert!(output.stdout.is_empty());
 }
 

@@ -12,17 +12,17 @@ fn piped(test: &str, arguments: &[&str], input: &str) -> (Option<i32>, String, u
     let program = program.args(arguments).env("TMPDIR", &scratch);
     let program = program.stdin(fs::File::open(input).unwrap());
     let done = program.stdout(Stdio::null()).output().unwrap();
-    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    let described = String::from_utf8_lossy(&done.stderr).into_owned();
     let left = fs::read_dir(scratch).unwrap().count();
-    (done.status.code(), told, left)
+    (done.status.code(), described, left)
 }
 
 #[test]
 fn a_table_from_standard_input_is_fitted_and_no_copy_of_it_stays() {
     let table = curve(&folder("piped-table"), "dry");
     let arguments = [&["fit", "-", "-p", "dry", "--free", "eta"][..], &ERRORS].concat();
-    let (code, told, left) = piped("piped-fit", &arguments, &table);
-    assert_eq!((code, left), (Some(0), 0), "{told}");
+    let (code, described, left) = piped("piped-fit", &arguments, &table);
+    assert_eq!((code, left), (Some(0), 0), "{described}");
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
         }
     }
     let shots = file(&folder, "shots.csv", &table);
-    let fitted = |more: &[&str]| {
+    let fit_result = |more: &[&str]| {
         let begin = [
             "fit",
             "-m",
@@ -122,9 +122,9 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
         json(&words)
     };
     let bare = path("bare");
-    let found = fitted(&[&bare, "--shots", &shots]);
+    let found = fit_result(&[&bare, "--shots", &shots]);
     // The file's own speeds, digit by digit, make the same fit as those of the table.
-    let own = fitted(&[&records]);
+    let own = fit_result(&[&records]);
     assert_eq!(found["records"].as_array().unwrap().len(), 3);
     for at in [0, 1] {
         let [one, other] = [&found, &own].map(|fit| {
@@ -147,7 +147,7 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
             line.starts_with(scope.file_name().unwrap().to_str().unwrap()) && line.contains(",dry,")
         });
         if dry {
-            let found = fitted(&[scope.to_str().unwrap(), "--shots", &shots]);
+            let found = fit_result(&[scope.to_str().unwrap(), "--shots", &shots]);
             assert_eq!(found["records"].as_array().unwrap().len(), 1);
         }
     }

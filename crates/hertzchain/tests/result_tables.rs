@@ -220,9 +220,9 @@ fn tables_of_a_posterior_agree_with_its_json_and_with_each_other() {
     for at in 0..2 {
         let values = samples.iter().map(|line| line[at].parse::<f64>().unwrap());
         let mean = values.sum::<f64>() / samples.len() as f64;
-        let told = all[at]["mean"].as_f64().unwrap();
+        let reported = all[at]["mean"].as_f64().unwrap();
         // Sums of the same numbers in another order: rounding.
-        assert!((mean / told - 1.0).abs() < 1e-9, "{mean} {told}");
+        assert!((mean / reported - 1.0).abs() < 1e-9, "{mean} {reported}");
     }
 }
 
@@ -231,7 +231,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     let folder = folder("other-tables");
     // Few of this oil's speeds allow several pairs: laws go through the others.
     let (dry, motor) = (curve(&folder, "dry"), curve(&folder, "motor"));
-    let (gauged, designed) = (folder.join("gauged"), folder.join("designed"));
+    let (run_gauge, run_design) = (folder.join("gauged"), folder.join("designed"));
     let gauge = [
         "gauge",
         &motor,
@@ -239,7 +239,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         &dry,
         "--json",
         "-o",
-        gauged.to_str().unwrap(),
+        run_gauge.to_str().unwrap(),
     ];
     let found = json(&with_errors(&gauge));
     for (column, pointer) in [
@@ -248,10 +248,10 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         ("possible", "/possible"),
         ("farthest_standard_errors", "/farthest/standard_errors"),
     ] {
-        holds(&gauged, "oils.csv", column, &found["oils"], pointer);
+        holds(&run_gauge, "oils.csv", column, &found["oils"], pointer);
     }
     holds(
-        &gauged,
+        &run_gauge,
         "dry.csv",
         "standard_error",
         &found["dry"],
@@ -262,13 +262,13 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         found["relaxation_law"].clone(),
     ]);
     holds(
-        &gauged,
+        &run_gauge,
         "laws.csv",
         "exponent_error",
         &laws,
         "/exponent_error",
     );
-    let (titles, pairs) = table(&gauged, "contacts.csv");
+    let (titles, pairs) = table(&run_gauge, "contacts.csv");
     let taken = titles.iter().position(|title| title == "taken").unwrap();
     let taken: Vec<_> = pairs.iter().filter(|line| line[taken] == "true").collect();
     let rows = found["contacts"].as_array().unwrap().iter();
@@ -290,7 +290,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         .map(|row| row["others"].as_array().unwrap().len())
         .sum();
     assert_eq!(pairs.len(), 6 + others);
-    let (_, summary) = table(&gauged, "summary.csv");
+    let (_, summary) = table(&run_gauge, "summary.csv");
     assert_eq!(Some(summary[0][1].as_str()), found["verdict"].as_str());
 
     let design = [
@@ -302,13 +302,13 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         "eta,B",
         "--json",
         "-o",
-        designed.to_str().unwrap(),
+        run_design.to_str().unwrap(),
     ];
     let found = json(&with_errors(&design));
     for (name, key) in [("design.csv", "ranked"), ("series.csv", "series")] {
-        holds(&designed, name, "measure", &found[key], "/measure");
+        holds(&run_design, name, "measure", &found[key], "/measure");
         holds(
-            &designed,
+            &run_design,
             name,
             "B_error (kg s/m^2)",
             &found[key],
@@ -316,7 +316,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         );
     }
     holds(
-        &designed,
+        &run_design,
         "now.csv",
         "standard_error",
         &found["standard_errors_now"],

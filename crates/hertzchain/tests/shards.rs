@@ -30,8 +30,8 @@ impl Scratch {
 
     fn done(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{arguments:?}: {told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {reported}");
         String::from_utf8(output.stdout).unwrap()
     }
 
@@ -77,10 +77,10 @@ fn merged_shards_of_a_sweep_are_the_files_and_the_words_of_the_sweep() {
     let whole = scratch.done(&with(&["--out", "whole"]));
     scratch.done(&with(&["--shard", "2/3", "--out", "a"]));
     scratch.done(&with(&["--shard", "1/3", "--out", "b", "--threads", "1"]));
-    let told = scratch.refused(&["merge", "a", "b", "--out", "merged"]);
+    let reported = scratch.refused(&["merge", "a", "b", "--out", "merged"]);
     assert!(
-        told.contains("1 of 3 shards") && told.contains("--shard 3/3"),
-        "{told}"
+        reported.contains("1 of 3 shards") && reported.contains("--shard 3/3"),
+        "{reported}"
     );
     assert!(!scratch.0.join("merged").exists());
     scratch.done(&with(&["--shard", "3/3", "--out", "b"]));
@@ -92,23 +92,23 @@ fn merged_shards_of_a_sweep_are_the_files_and_the_words_of_the_sweep() {
     assert_eq!(files.len(), 3);
     assert!(scratch.files("merged") == files);
     let output = scratch.run(&["merge", "a", "b", "--out", "merged"]);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.contains("no shot at"), "{told}");
+    let reported = String::from_utf8(output.stderr).unwrap();
+    assert!(reported.contains("no shot at"), "{reported}");
 }
 
 #[test]
 fn shards_need_a_folder_and_belong_to_one_run() {
     let scratch = Scratch::new("refused");
-    let told = scratch.refused(&["sweep", "-p", "hertz", "--shard", "1/2"]);
-    assert!(told.contains("--out"), "{told}");
+    let reported = scratch.refused(&["sweep", "-p", "hertz", "--shard", "1/2"]);
+    assert!(reported.contains("--out"), "{reported}");
     for speeds in ["0.5,1", "0.5,0.9"] {
         let shard = ["--shard", "1/2", "--out", "mixed"];
         scratch.done(&[&["sweep", "-p", "hertz", "--speeds", speeds][..], &shard].concat());
     }
-    let told = scratch.refused(&["merge", "mixed", "--out", "merged"]);
-    assert!(told.contains("2 different runs"), "{told}");
-    let told = scratch.refused(&["merge", "nowhere", "--out", "merged"]);
-    assert!(told.contains("nowhere"), "{told}");
+    let reported = scratch.refused(&["merge", "mixed", "--out", "merged"]);
+    assert!(reported.contains("2 different runs"), "{reported}");
+    let reported = scratch.refused(&["merge", "nowhere", "--out", "merged"]);
+    assert!(reported.contains("nowhere"), "{reported}");
 }
 
 #[test]
@@ -120,12 +120,12 @@ fn merged_parts_of_a_campaign_are_the_files_of_the_campaign() {
         [&["campaign", "small.toml"][..], &out].concat()
     };
     scratch.done(&part("1/2", "one"));
-    let told = scratch.refused(&["merge", "one", "--out", "merged"]);
-    assert!(told.contains("3 of 6 series are missing"), "{told}");
+    let reported = scratch.refused(&["merge", "one", "--out", "merged"]);
+    assert!(reported.contains("3 of 6 series are missing"), "{reported}");
     scratch.done(&part("2/2", "two"));
     scratch.done(&["merge", "one", "two", "--out", "merged"]);
     scratch.done(&["campaign", "small.toml", "--out", "eight", "--seed", "8"]);
     assert!(scratch.files("merged") == scratch.files("eight"));
-    let told = scratch.refused(&["merge", "one", "whole", "--out", "mixed"]);
-    assert!(told.contains("another campaign"), "{told}");
+    let reported = scratch.refused(&["merge", "one", "whole", "--out", "mixed"]);
+    assert!(reported.contains("another campaign"), "{reported}");
 }

@@ -1,4 +1,4 @@
-//! Sweeps that have little to tell say so.
+//! Sweeps that have little to determine say so.
 
 use serde_json::Value;
 use std::process::{Command, Output};
@@ -17,7 +17,7 @@ fn two_speeds_give_a_power_law_without_errors() {
     let output = sweep(&["-p", "hertz", "--speeds", "0.5,1"]);
     let printed = text(&output.stdout);
     assert!(
-        printed.contains("two speeds, which tell no errors"),
+        printed.contains("two speeds, which determine no errors"),
         "{printed}"
     );
     assert!(
@@ -53,9 +53,9 @@ fn a_sweep_in_json_says_why_it_has_no_energy_budget() {
 fn a_sweep_without_a_shot_tells_why_and_prints_no_empty_table() {
     let output = sweep(&["-p", "pump", "--speeds", "1e-30,1e-29"]);
     assert_eq!(output.status.code(), Some(2));
-    let (printed, told) = (text(&output.stdout), text(&output.stderr));
+    let (printed, reported) = (text(&output.stdout), text(&output.stderr));
     assert_eq!(printed, "");
-    assert_eq!(told.matches("no shot at").count(), 2, "{told}");
+    assert_eq!(reported.matches("no shot at").count(), 2, "{reported}");
 }
 
 #[test]
@@ -88,8 +88,8 @@ fn a_fit_ends_where_its_errors_do_and_has_none_below_the_accuracy_of_the_times()
     let printed = text(&sweep(&hertz[..4]).stdout);
     // The same as in JSON, in µs to two digits.
     let error = 1e6 * of("prefactor_accuracy_s");
-    let told = format!("ToF = (630.84158 ± {error:.5}) µs");
-    assert!(printed.contains(&told), "{told}: {printed}");
+    let reported = format!("ToF = (630.84158 ± {error:.5}) µs");
+    assert!(printed.contains(&reported), "{reported}: {printed}");
 }
 
 #[test]
@@ -122,10 +122,10 @@ fn threads_are_counted_from_1() {
     for count in ["0", "-3", "many", "1e9"] {
         let output = sweep(&["--threads", count]);
         assert_eq!(output.status.code(), Some(2));
-        let told = text(&output.stderr);
+        let reported = text(&output.stderr);
         assert!(
-            told.contains("expected a whole number from 1 to 1024"),
-            "{told}"
+            reported.contains("expected a whole number from 1 to 1024"),
+            "{reported}"
         );
     }
 }

@@ -1,18 +1,18 @@
 //! Campaign, recordings, times of flight, and back to the model that made them.
 
-#[path = "../examples/whole_loop/judged.rs"]
-#[allow(dead_code, reason = "the example tells more")]
-mod judged;
+#[path = "../examples/whole_loop/evaluated.rs"]
+#[allow(dead_code, reason = "the example determines more")]
+mod evaluated;
 
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square, coverage};
-use judged::{Curve, Judged, TIMES, agreement, by_speed, judge, run};
+use evaluated::{Curve, Evaluated, TIMES, agreement, by_speed, evaluate, run};
 use std::fs;
 
 /// What begins a case of a campaign.
 const CASE: &str = "[[campaign.cases]]\n";
 
-/// The paper's rig with one case of its own, four speeds and short records, changed as told.
+/// The paper's rig with one case of its own, four speeds and short records, changed as reported.
 fn only(case: &str, changes: &[(&str, &str)]) -> String {
     let paper = include_str!("../../../experiments/paper.toml");
     let mut parts = paper.split(CASE);
@@ -47,13 +47,13 @@ const COMPACT: [(&str, &str); 6] = [
 ];
 
 /// Recordings of a campaign, one a seed, as they are measured.
-fn judged(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec<Judged>> {
+fn evaluated(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec<Evaluated>> {
     let under = std::env::temp_dir().join(format!("hertzchain-{name}-{}", std::process::id()));
     let folders = run(text, 1..=seeds, &under).unwrap();
-    let each = |options: &Options| -> Vec<Judged> {
+    let each = |options: &Options| -> Vec<Evaluated> {
         let folders = folders.iter();
         folders
-            .flat_map(|folder| judge(folder, options).unwrap())
+            .flat_map(|folder| evaluate(folder, options).unwrap())
             .collect()
     };
     let all = options.iter().map(each);
@@ -68,15 +68,15 @@ const LEAST: f64 = 1e-3;
 /// Departures are as large as stated errors let chance make them, and no smaller: below
 /// [`LEAST`] errors are stated too small, above the rest of 1 too large. The latter takes errors
 /// seven times too large with four means, and 1.7 times with 24 shots.
-fn by_chance(judged: &ChiSquare, name: &str) {
+fn by_chance(evaluated: &ChiSquare, name: &str) {
     let band = LEAST..1.0 - LEAST;
-    assert!(band.contains(&judged.probability), "{name}: {judged:?}");
+    assert!(band.contains(&evaluated.probability), "{name}: {evaluated:?}");
 }
 
 /// Chi-squares of both times against what they are held to at all four speeds.
-fn against(shots: &[Judged], curve: Curve) -> [ChiSquare; 2] {
+fn against(shots: &[Evaluated], curve: Curve) -> [ChiSquare; 2] {
     [0, 1].map(|time| {
-        let all: Vec<&Judged> = shots.iter().collect();
+        let all: Vec<&Evaluated> = shots.iter().collect();
         let rows = by_speed(&all, time, curve);
         assert_eq!(rows.len(), 4);
         agreement(&rows).unwrap()
@@ -84,17 +84,17 @@ fn against(shots: &[Judged], curve: Curve) -> [ChiSquare; 2] {
 }
 
 /// Both times agree with what they are held to at every speed.
-fn agree_with(shots: &[Judged], curve: Curve) {
-    for (judged, name) in against(shots, curve).iter().zip(TIMES) {
-        by_chance(judged, name);
+fn agree_with(shots: &[Evaluated], curve: Curve) {
+    for (evaluated, name) in against(shots, curve).iter().zip(TIMES) {
+        by_chance(evaluated, name);
     }
 }
 
 #[test]
 fn measured_times_of_a_compact_chain_are_the_models_at_every_speed() {
-    let shots = judged("compact", &dry(&COMPACT), 6, &[Options::default()]).remove(0);
+    let shots = evaluated("compact", &dry(&COMPACT), 6, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 24);
-    agree_with(&shots, judged::COMPACT);
+    agree_with(&shots, evaluated::COMPACT);
     for (time, name) in TIMES.iter().enumerate() {
         by_chance(&against_truth(&shots, time), name);
     }
@@ -106,10 +106,10 @@ fn measured_times_of_a_compact_chain_are_the_models_at_every_speed() {
 /// have 87 % within one, two thirds as large 49 %.
 #[test]
 fn stated_errors_of_compact_chains_cover_the_models_curve() {
-    let shots = judged("coverage", &dry(&COMPACT), 40, &[Options::default()]).remove(0);
+    let shots = evaluated("coverage", &dry(&COMPACT), 40, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 160);
     for (time, name) in TIMES.iter().enumerate() {
-        let of_curve = shots.iter().map(|shot| shot.pull(time, judged::COMPACT));
+        let of_curve = shots.iter().map(|shot| shot.pull(time, evaluated::COMPACT));
         let errors = shots.iter().filter_map(|shot| shot.error(time));
         // The recorded shots' own times: without the photogate's error, which is most of the other.
         let of_truth = errors.map(|error| error.value / error.sigma);
@@ -126,9 +126,9 @@ fn stated_errors_of_compact_chains_cover_the_models_curve() {
 /// Gear oil is the worst: the wall's pulse is long, flat and on a slope, the return split.
 #[test]
 fn measured_times_of_a_compact_chain_in_gear_oil_are_the_models_at_every_speed() {
-    let shots = judged("gear", &only("gear", &COMPACT), 3, &[Options::default()]).remove(0);
+    let shots = evaluated("gear", &only("gear", &COMPACT), 3, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 12);
-    agree_with(&shots, judged::COMPACT);
+    agree_with(&shots, evaluated::COMPACT);
 }
 
 /// With push, slope, stop, gaps as laid and taps: what keeps the preset's times from the
@@ -140,14 +140,14 @@ fn measured_times_of_a_tapped_chain_that_friction_hardly_holds_are_the_models() 
         ("shots = 20", "shots = 6"),
         ("taps = 40", "taps = 3"),
     ];
-    let shots = judged("tapped", &dry(&changes), 1, &[Options::default()]).remove(0);
+    let shots = evaluated("tapped", &dry(&changes), 1, &[Options::default()]).remove(0);
     assert_eq!(shots.len(), 24);
-    agree_with(&shots, judged::COMPACT);
+    agree_with(&shots, evaluated::COMPACT);
 }
 
 /// Friction that could hold nearly three times the push, and taps that close the chain: the
 /// model's curve of the chain in equilibrium is missed. The model with the gaps and loads that the
-/// campaign's own true values tell, computed anew at the measured speed, is what is measured; so
+/// campaign's own true values determine, computed anew at the measured speed, is what is measured; so
 /// are the times that the recorded shots themselves took.
 #[test]
 fn measured_times_of_a_tapped_chain_are_the_models_with_its_own_loads_and_not_those_of_equilibrium()
@@ -157,16 +157,16 @@ fn measured_times_of_a_tapped_chain_are_the_models_with_its_own_loads_and_not_th
         ("shots = 20", "shots = 6"),
         ("taps = 40", "taps = 12"),
     ];
-    let shots = judged("own", &dry(&changes), 1, &[Options::default()]).remove(0);
-    agree_with(&shots, judged::HELD);
-    agree_with(&shots, judged::OWN);
-    for (judged, name) in against(&shots, judged::COMPACT).iter().zip(TIMES) {
-        assert!(judged.probability < LEAST, "{name}: {judged:?}");
+    let shots = evaluated("own", &dry(&changes), 1, &[Options::default()]).remove(0);
+    agree_with(&shots, evaluated::HELD);
+    agree_with(&shots, evaluated::OWN);
+    for (evaluated, name) in against(&shots, evaluated::COMPACT).iter().zip(TIMES) {
+        assert!(evaluated.probability < LEAST, "{name}: {evaluated:?}");
     }
 }
 
 /// Times of flight by stated errors, against the true ones of the same shots.
-fn against_truth(shots: &[Judged], time: usize) -> ChiSquare {
+fn against_truth(shots: &[Evaluated], time: usize) -> ChiSquare {
     let errors: Vec<Estimate> = shots.iter().filter_map(|shot| shot.error(time)).collect();
     assert_eq!(errors.len(), shots.len());
     chi_square(&errors, &vec![0.0; errors.len()], 0).unwrap()
@@ -181,10 +181,10 @@ fn a_strong_high_pass_moves_times_of_flight_and_the_recordings_own_corner_puts_t
         keep_droop: true,
         ..Options::default()
     };
-    let both = judged("droop", &dry(&changes), 4, &[untold, Options::default()]);
+    let both = evaluated("droop", &dry(&changes), 4, &[untold, Options::default()]);
     for (time, name) in TIMES.iter().enumerate() {
-        let [untold, told] = [0, 1].map(|at: usize| against_truth(&both[at], time));
-        assert!(told.probability > LEAST, "{name}: {told:?}");
+        let [untold, reported] = [0, 1].map(|at: usize| against_truth(&both[at], time));
+        assert!(reported.probability > LEAST, "{name}: {reported:?}");
         assert!(untold.probability < LEAST, "{name}: {untold:?}");
     }
 }

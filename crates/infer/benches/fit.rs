@@ -33,7 +33,7 @@ fn dry() -> CurveProblem {
     CurveProblem::new(dry.model().clone(), dry.data().clone(), parameters).unwrap()
 }
 
-fn fitted(dry: &CurveProblem) -> (Fit, Covariance) {
+fn fit_result(dry: &CurveProblem) -> (Fit, Covariance) {
     let best = fit(dry, &Fitting::default()).unwrap();
     let covariance = Covariance::new(dry.parameters(), &best);
     (best, covariance)
@@ -42,13 +42,13 @@ fn fitted(dry: &CurveProblem) -> (Fit, Covariance) {
 #[divan::bench]
 fn fit_with_covariance(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    bencher.bench_local(|| fitted(black_box(&dry)));
+    bencher.bench_local(|| fit_result(black_box(&dry)));
 }
 
 #[divan::bench(sample_count = 20)]
 fn profiles_of_both(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    let (best, covariance) = fitted(&dry);
+    let (best, covariance) = fit_result(&dry);
     let how = Profiling::default();
     bencher.bench_local(|| profile(&dry, &best, &covariance, &[0, 1], &how).unwrap());
 }
@@ -56,7 +56,7 @@ fn profiles_of_both(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 10)]
 fn surrogate(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    let (best, covariance) = fitted(&dry);
+    let (best, covariance) = fit_result(&dry);
     bencher.bench_local(|| Surrogate::new(&dry, &best, &covariance).unwrap());
 }
 
@@ -78,14 +78,14 @@ fn likelihoods(bencher: Bencher<'_, '_>, problem: &dyn Problem, best: &Fit, sd: 
 #[divan::bench]
 fn likelihoods_of_the_model(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    let (best, covariance) = fitted(&dry);
+    let (best, covariance) = fit_result(&dry);
     likelihoods(bencher, &dry, &best, &covariance.sd);
 }
 
 #[divan::bench]
 fn likelihoods_of_the_surrogate(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    let (best, covariance) = fitted(&dry);
+    let (best, covariance) = fit_result(&dry);
     let found = Surrogate::new(&dry, &best, &covariance).unwrap();
     likelihoods(bencher, &found, &best, &covariance.sd);
 }
@@ -112,7 +112,7 @@ fn pump(count: usize) -> CurveProblem {
 #[divan::bench(args = [5, 8], sample_count = 1)]
 fn surrogate_of_many(bencher: Bencher<'_, '_>, count: usize) {
     let pump = pump(count);
-    let (best, covariance) = fitted(&pump);
+    let (best, covariance) = fit_result(&pump);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     let pool = pool.unwrap();
     bencher.bench_local(|| pool.install(|| Surrogate::new(&pump, &best, &covariance).unwrap()));
@@ -122,7 +122,7 @@ fn surrogate_of_many(bencher: Bencher<'_, '_>, count: usize) {
 #[divan::bench(args = [5, 8], sample_count = 10)]
 fn likelihoods_of_many(bencher: Bencher<'_, '_>, count: usize) {
     let pump = pump(count);
-    let (best, covariance) = fitted(&pump);
+    let (best, covariance) = fit_result(&pump);
     let found = Surrogate::new(&pump, &best, &covariance).unwrap();
     eprintln!(
         "{count} numbers: right to {:.3} standard errors, computed at {:?} m/s",
@@ -139,7 +139,7 @@ const STEPS: u64 = 15_625;
 #[divan::bench(sample_count = 1)]
 fn a_million_likelihoods_by_two_threads(bencher: Bencher<'_, '_>) {
     let dry = dry();
-    let (best, covariance) = fitted(&dry);
+    let (best, covariance) = fit_result(&dry);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     let pool = pool.unwrap();
     bencher.bench_local(|| {

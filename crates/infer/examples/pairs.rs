@@ -43,15 +43,15 @@ struct Counts {
     none: usize,
     /// True pair among those listed.
     listed: usize,
-    /// Rows of a pair told first.
-    told: usize,
-    /// True pair told first.
+    /// Rows of a pair reported first.
+    reported: usize,
+    /// True pair reported first.
     right: usize,
-    /// Pairs told first that are beside the true one.
+    /// Pairs reported first that are beside the true one.
     beside: usize,
     /// Rows whose branch is not known.
     unknown: usize,
-    /// Wrong pairs told first, by whether neighbours chose.
+    /// Wrong pairs reported first, by whether neighbours chose.
     wrong_only: usize,
     wrong_smooth: usize,
 }
@@ -61,7 +61,7 @@ impl Counts {
         self.rows += row.rows;
         self.none += row.none;
         self.listed += row.listed;
-        self.told += row.told;
+        self.reported += row.reported;
         self.right += row.right;
         self.beside += row.beside;
         self.unknown += row.unknown;
@@ -95,7 +95,7 @@ impl Counts {
         match contact.branch {
             Branch::Unknown => self.unknown = 1,
             branch => {
-                self.told = 1;
+                self.reported = 1;
                 self.right = usize::from(first < NEAR);
                 self.beside = usize::from((NEAR..FAR).contains(&first));
                 let wrong = usize::from(first >= FAR);
@@ -129,7 +129,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dry_model = preset("dry")?;
     let dry = Truth::of(&dry_model, &speeds);
     println!(
-        "| oil, data | rows | no pair | true one listed | told first | within 3 errors | 3 to 5 off | wrong, no other listed | wrong, by neighbours | branch open |"
+        "| oil, data | rows | no pair | true one listed | reported first | within 3 errors | 3 to 5 off | wrong, no other listed | wrong, by neighbours | branch open |"
     );
     for (name, oil) in OILS.into_iter().zip(known_oils()?) {
         let wet_model = preset(name)?;
@@ -193,7 +193,7 @@ fn counted(
     Ok(all.fold(Counts::default(), |sum, row| sum.and(&row)))
 }
 
-/// What a row tells that is not the truth.
+/// What a row determines that is not the truth.
 fn words(row: &WetRow, exact: [f64; 2]) -> String {
     match &row.contact {
         Err(why) => why.clone(),
@@ -229,7 +229,7 @@ fn print(name: &str, ratios: bool, of: &Counts) {
         of.rows,
         of.none,
         of.listed,
-        of.told,
+        of.reported,
         of.right,
         of.beside,
         of.wrong_only,

@@ -94,7 +94,7 @@ pub fn design(
     check(parameters.len(), candidates, targets)?;
     if !fit.ending.converged() {
         return Err(InferError::NotConverged(format!(
-            "the fit to the data so far found no minimum ({}): what would tell most is not known where \
+            "the fit to the data so far found no minimum ({}): what would determine most is not known where \
              it ended; start nearer (--start), and look at `hertzchain fit` first",
             fit.ending
         )));

@@ -35,12 +35,12 @@ pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
 /// Chi-square of standardised residuals and the fitted number of parameters.
 pub(crate) fn chi_square_of(
     residuals: impl Iterator<Item = f64>,
-    fitted: usize,
+    fit_result: usize,
 ) -> Option<ChiSquare> {
     let rows: Vec<Estimate> = residuals
         .map(|value| Estimate { value, sigma: 1.0 })
         .collect();
-    chi_square(&rows, &vec![0.0; rows.len()], fitted)
+    chi_square(&rows, &vec![0.0; rows.len()], fit_result)
 }
 
 impl Goodness {

@@ -198,7 +198,7 @@ impl Scaled {
         }
     }
 
-    /// Singular values, and up to where they cannot be told from 0.
+    /// Singular values, and up to where they cannot be distinguished from 0.
     pub(crate) fn decomposed(&self) -> (Svd, f64) {
         (svd(&self.columns), norm(&self.errors))
     }

@@ -27,7 +27,7 @@ pub use compare::{
 };
 pub use covariance::Covariance;
 pub use curve::{
-    Advice, Choices, CurveProblem, ExpectedErrors, FittedCurve, Joint, Kind, Model, Part,
+    Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part,
     Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
 };
 pub use data::{

@@ -27,7 +27,7 @@ pub(crate) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
 const CHOLESKY_ROUNDING: f64 = 1e-14;
 
 /// L with L Lᵀ = the matrix, row by row up to the diagonal; none if it is not
-/// positive definite as far as rounding tells.
+/// positive definite as far as rounding matters.
 pub(crate) fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let mut lower: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
     for (at, entries) in matrix.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What the data cannot tell apart, which model they support, what to measure next.
+//! What the data cannot determine apart, which model they support, what to measure next.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -11,7 +11,7 @@ use hertzchain_infer::{
     Loss, Parameter, Problem, compare, cross_validate, design, fit,
 };
 
-fn fitted(problem: &dyn Problem) -> Fit {
+fn fit_result(problem: &dyn Problem) -> Fit {
     fit(problem, &Fitting::default()).unwrap()
 }
 
@@ -28,10 +28,10 @@ fn a_product_is_one_number_and_the_words_say_so() {
         1,
         |p: &[f64], x: f64| 0.01 * p[0] * p[1] * p[2] * x,
     );
-    let found = fitted(&data);
-    let told = Identifiability::new(&data.parameters, &found, |i| data.residual_label(i));
-    assert_eq!((told.determined(), told.unidentifiable.len()), (1, 2));
-    for confusion in &told.unidentifiable {
+    let found = fit_result(&data);
+    let reported = Identifiability::new(&data.parameters, &found, |i| data.residual_label(i));
+    assert_eq!((reported.determined(), reported.unidentifiable.len()), (1, 2));
+    for confusion in &reported.unidentifiable {
         assert!(confusion.standard_error.is_infinite());
         // In a combination that leaves a product, relative changes sum to 0;
         // rounding and the error of differences.
@@ -70,7 +70,7 @@ fn a_product_is_one_number_and_the_words_say_so() {
         .map(|(p, q)| (q.scale.max(p.abs()) / p).powi(2));
     let expected = (size.sum::<f64>() * ratio.sum::<f64>()).sqrt();
     // Differences' error.
-    assert!((told.singular_values[0] / expected - 1.0).abs() < 1e-6);
+    assert!((reported.singular_values[0] / expected - 1.0).abs() < 1e-6);
     let covariance = Covariance::new(&data.parameters, &found);
     assert!(covariance.sd.iter().all(|sd| sd.is_infinite()));
     // The product itself is known: relative derivatives along it.
@@ -86,10 +86,10 @@ fn weakly_determined_combinations_have_a_standard_error_in_words() {
     let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
     // Points so near each other that offset and slope hardly differ.
     let data = Curve::drawn(free, &spaced(0.99, 1.01, 9), 0.02, &[1.0, 1.0], 1, straight);
-    let found = fitted(&data);
-    let told = Identifiability::new(&data.parameters, &found, |i| format!("row {}", i + 1));
-    assert_eq!(told.unidentifiable.len(), 1);
-    let confusion = &told.unidentifiable[0];
+    let found = fit_result(&data);
+    let reported = Identifiability::new(&data.parameters, &found, |i| format!("row {}", i + 1));
+    assert_eq!(reported.unidentifiable.len(), 1);
+    let confusion = &reported.unidentifiable[0];
     assert!(
         (1.0..3.0).contains(&confusion.standard_error),
         "{}",
@@ -126,10 +126,10 @@ fn polynomial(order: usize, seed: u64) -> impl Problem {
 fn left_out_points_of_linear_models_are_foretold_as_the_hat_matrix_says() {
     for order in 1..3 {
         let data = polynomial(order, 2);
-        let found = fitted(&data);
-        let told = cross_validate(&data, &found, &Folding::default()).unwrap();
+        let found = fit_result(&data);
+        let reported = cross_validate(&data, &found, &Folding::default()).unwrap();
         let covariance = Covariance::new(data.parameters(), &found);
-        for (row, square) in told.rows.iter().enumerate() {
+        for (row, square) in reported.rows.iter().enumerate() {
             // Leave-one-out residual r/(1 − h), h = jᵀ C j.
             let slopes: Vec<f64> = found.jacobian.columns.iter().map(|c| c[row]).collect();
             let hat = covariance.sd_of(&slopes).powi(2);
@@ -137,14 +137,14 @@ fn left_out_points_of_linear_models_are_foretold_as_the_hat_matrix_says() {
             // 4e-5 standard errors of each optimum, times residuals up to 5.
             assert!((square - expected).abs() < 1e-3 * (1.0 + expected), "{row}");
         }
-        assert_eq!((told.folds, told.unconverged), (15, 0));
+        assert_eq!((reported.folds, reported.unconverged), (15, 0));
     }
 }
 
 #[test]
 fn the_right_model_is_supported_and_the_sentence_says_by_how_much() {
     let problems: Vec<_> = (0..4).map(|order| polynomial(order, 4)).collect();
-    let fits: Vec<Fit> = problems.iter().map(|p| fitted(p)).collect();
+    let fits: Vec<Fit> = problems.iter().map(|p| fit_result(p)).collect();
     let crosses: Vec<_> = problems
         .iter()
         .zip(&fits)
@@ -191,7 +191,7 @@ fn the_right_model_is_supported_and_the_sentence_says_by_how_much() {
 #[test]
 fn models_that_cannot_be_compared_are_named() {
     let (line, parabola) = (polynomial(1, 4), polynomial(2, 4));
-    let (first, mut second) = (fitted(&line), fitted(&parabola));
+    let (first, mut second) = (fit_result(&line), fit_result(&parabola));
     let refused = |second: &Fit| {
         let of = |name, fit| Compared {
             name,
@@ -228,7 +228,7 @@ fn models_that_cannot_be_compared_are_named() {
 #[test]
 fn folds_keep_groups_together_and_follow_the_seed() {
     let data = polynomial(2, 4);
-    let found = fitted(&data);
+    let found = fit_result(&data);
     let pairs: Vec<usize> = (0..15).map(|row| row / 2).collect();
     let how = |parts, seed| Folding {
         groups: pairs.clone(),
@@ -270,33 +270,33 @@ fn designs_rank_by_what_linear_regression_would_gain() {
     let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
     let x = spaced(0.0, 1.0, 5);
     let data = Curve::drawn(free, &x, 0.2, &[1.0, 1.0], 3, straight);
-    let found = fitted(&data);
+    let found = fit_result(&data);
     let candidates = [
         candidate("middle", 0.5, 1.0),
         candidate("far", 3.0, 1.0),
         candidate("dear", 4.0, 3.0),
     ];
-    let told = design(&data.parameters, &found, &candidates, &[1], 3).unwrap();
+    let reported = design(&data.parameters, &found, &candidates, &[1], 3).unwrap();
     let slope_sd = |extra: &[f64]| {
         let all: Vec<f64> = x.iter().chain(extra).copied().collect();
         let mean = all.iter().sum::<f64>() / all.len() as f64;
         0.2 / all.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt()
     };
     // Assumed knowledge of 10⁴ scales, squared; differences' rounding.
-    assert!((told.before[0] / slope_sd(&[]) - 1.0).abs() < 1e-7);
-    let order: Vec<usize> = told.ranked.iter().map(|e| e.candidate).collect();
+    assert!((reported.before[0] / slope_sd(&[]) - 1.0).abs() < 1e-7);
+    let order: Vec<usize> = reported.ranked.iter().map(|e| e.candidate).collect();
     assert_eq!(order, [1, 2, 0]);
-    for expected in &told.ranked {
+    for expected in &reported.ranked {
         let x = [0.5, 3.0, 4.0][expected.candidate];
         assert!((expected.after[0] / slope_sd(&[x]) - 1.0).abs() < 1e-7);
         let gain = (slope_sd(&[]) / slope_sd(&[x])).ln();
         assert!((expected.gain - gain).abs() < 1e-7);
     }
     // The middle adds nothing to a slope.
-    assert!(told.ranked[2].gain.abs() < 1e-7);
-    assert_eq!(told.greedy[0].candidate, 1);
+    assert!(reported.ranked[2].gain.abs() < 1e-7);
+    assert_eq!(reported.greedy[0].candidate, 1);
     assert!(
-        told.greedy
+        reported.greedy
             .windows(2)
             .all(|pair| pair[1].after[0] < pair[0].after[0])
     );
@@ -312,7 +312,7 @@ fn designs_say_what_would_determine_the_undetermined() {
         1,
         |p: &[f64], x: f64| p[0] * p[1] * x,
     );
-    let found = fitted(&data);
+    let found = fit_result(&data);
     let alone = Candidate {
         name: "a alone".into(),
         rows: vec![vec![10.0, 0.0]],
@@ -325,12 +325,12 @@ fn designs_say_what_would_determine_the_undetermined() {
         doubts: Vec::new(),
         cost: 1.0,
     };
-    let told = design(&data.parameters, &found, &[more, alone.clone()], &[0, 1], 1).unwrap();
-    assert!(told.before.iter().all(|sd| sd.is_infinite()));
-    assert_eq!(told.ranked[0].candidate, 1);
-    assert!(told.ranked[1].after.iter().all(|sd| sd.is_infinite()));
+    let reported = design(&data.parameters, &found, &[more, alone.clone()], &[0, 1], 1).unwrap();
+    assert!(reported.before.iter().all(|sd| sd.is_infinite()));
+    assert_eq!(reported.ranked[0].candidate, 1);
+    assert!(reported.ranked[1].after.iter().all(|sd| sd.is_infinite()));
     // a alone, to a tenth. Assumed knowledge, squared.
-    assert!((told.ranked[0].after[0] - 0.1).abs() < 1e-6);
+    assert!((reported.ranked[0].after[0] - 0.1).abs() < 1e-6);
     let refused = |candidates: &[Candidate], targets: &[usize]| {
         let error = design(&data.parameters, &found, candidates, targets, 0).unwrap_err();
         error.to_string()
@@ -351,7 +351,7 @@ fn product() -> (Product, Fit) {
     let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
     let model: fn(&[f64], f64) -> f64 = |p: &[f64], x: f64| p[0] * p[1] * p[1] * x;
     let data = Curve::drawn(free, &spaced(1.0, 2.0, 9), 1e-3, &[1.0, 1.0], 1, model);
-    let found = fitted(&data);
+    let found = fit_result(&data);
     (data, found)
 }
 
@@ -367,19 +367,19 @@ fn a_design_ranks_for_what_can_be_determined_where_parameters_can_not() {
         cost: 1.0,
     };
     let candidates = [noisy("near", 1e5), noisy("far", 3e7)];
-    let told = design(&data.parameters, &found, &candidates, &[0, 1], 2).unwrap();
-    assert_eq!(told.not_identifiable, [0, 1]);
-    assert_eq!(told.open, ["a up 1.00 % with b down 0.50 %"]);
+    let reported = design(&data.parameters, &found, &candidates, &[0, 1], 2).unwrap();
+    assert_eq!(reported.not_identifiable, [0, 1]);
+    assert_eq!(reported.open, ["a up 1.00 % with b down 0.50 %"]);
     let words = "b up 1.00 % with a up 0.50 %".to_owned();
-    assert_eq!(told.aims, [Aim::Combination(words)]);
-    assert_eq!(told.ranked[0].candidate, 1);
+    assert_eq!(reported.aims, [Aim::Combination(words)]);
+    assert_eq!(reported.ranked[0].candidate, 1);
     // (a + 2b)/√5 to 1/(√5 · 3e7), the data's share of that and a, b off 1 left out.
     let exact = 1.0 / (5.0_f64.sqrt() * 3e7);
     assert!(
-        (told.ranked[0].after[0] / exact - 1.0).abs() < 5e-3,
-        "{told:?}"
+        (reported.ranked[0].after[0] / exact - 1.0).abs() < 5e-3,
+        "{reported:?}"
     );
-    assert!(told.before[0].is_finite());
+    assert!(reported.before[0].is_finite());
 }
 
 #[test]

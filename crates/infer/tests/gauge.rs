@@ -136,7 +136,7 @@ fn a_wet_curve_in_the_dry_ones_place_is_told() {
         own: &[],
         accuracy: 1e-5,
     };
-    let told = |[dry, wet]: [&Experiment; 2]| {
+    let reported = |[dry, wet]: [&Experiment; 2]| {
         let gauge = Gauge::new(
             &chains,
             Truth::of(dry, &SPEEDS_M_S).measured(21),
@@ -145,12 +145,12 @@ fn a_wet_curve_in_the_dry_ones_place_is_told() {
         let gauge = gauge.unwrap();
         gauge.doubts(&gauge.verdict(&[]).unwrap())
     };
-    let swapped = told([&wet_model, &dry_model]).unwrap();
+    let swapped = reported([&wet_model, &dry_model]).unwrap();
     assert!(
         swapped.contains("--dry names the curve of the dry chain"),
         "{swapped}"
     );
-    assert_eq!(told([&dry_model, &wet_model]), None);
+    assert_eq!(reported([&dry_model, &wet_model]), None);
 }
 
 /// What is done already is not advised: a load for each chain, but returns are used.
@@ -197,7 +197,7 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
     assert_eq!(gauge.to_add(), None);
 }
 
-/// Below 0.15 m/s another pair has the smaller A: neighbours tell which is the true one.
+/// Below 0.15 m/s another pair has the smaller A: neighbours determine which is the true one.
 #[test]
 fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
     let pump = preset("pump").unwrap();
@@ -255,8 +255,8 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
         .filter(|row| !row.contact.as_ref().unwrap().is_known());
     assert!(open.count() > 0, "{rows:?}");
     assert!(GaugeLaws::through(&rows).is_err());
-    let told = gauge.ambiguous(&rows).unwrap();
-    assert!(told.contains("Branch ambiguous at 0.0759"), "{told}");
+    let reported = gauge.ambiguous(&rows).unwrap();
+    assert!(reported.contains("Branch ambiguous at 0.0759"), "{reported}");
 }
 
 /// A ratio of peaks beside both times: a third equation for two numbers.
@@ -264,7 +264,7 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
 fn a_row_that_no_pair_gives_is_told_as_such() {
     let pump = preset("pump").unwrap();
     let truth = Truth::of(&pump, &[0.0967]);
-    let told = |times: f64| {
+    let reported = |times: f64| {
         let noise = Noise {
             speed_m_s: 1e-5,
             time_s: 1e-8,
@@ -278,7 +278,7 @@ fn a_row_that_no_pair_gives_is_told_as_such() {
         });
         gauge(wet, 9).rows().remove(0).contact
     };
-    let contact = told(1.0).unwrap();
+    let contact = reported(1.0).unwrap();
     let (_, a) = known_oils()
         .unwrap()
         .remove(2)
@@ -290,7 +290,7 @@ fn a_row_that_no_pair_gives_is_told_as_such() {
             .any(|pair| (pair.ln[1] - a.ln()).abs() < 0.1),
         "{contact:?}"
     );
-    let why = told(3.0).unwrap_err();
+    let why = reported(3.0).unwrap_err();
     assert!(why.contains("does not follow"), "{why}");
 }
 
@@ -339,6 +339,6 @@ fn a_users_oil_may_be_given_by_its_contact() {
     let text =
         "name,young_modulus_pa,poisson_prefactor,viscosity_prefactor_pa_s\nmine,2e11,1.2,6e4\n";
     let error = oils("mine.csv", text).unwrap_err().to_string();
-    let told = "mine.csv, line 2: poisson_prefactor is 1.2";
-    assert!(error.starts_with(told), "{error}");
+    let reported = "mine.csv, line 2: poisson_prefactor is 1.2";
+    assert!(error.starts_with(reported), "{error}");
 }

@@ -89,13 +89,13 @@ fn laws_come_back_from_incident_times_alone_where_speeds_are_known_well() {
         "{middle:?}"
     );
     assert!(middle.ln_sd[0] < 0.03, "{middle:?}");
-    // A is known to some fifth even so, which is too little to judge oils by.
+    // A is known to some fifth even so, which is too little to evaluate oils by.
     assert!(!form.is_sufficient());
     let said = said(&gauge, &form);
     assert!(said.starts_with("It is mine"), "{said}");
 }
 
-/// At the paper's noise incident times do not tell K from A: the laws lie in a valley, and
+/// At the paper's noise incident times do not determine K from A: the laws lie in a valley, and
 /// oils are held against whole curves.
 #[test]
 fn incident_times_at_the_papers_noise_leave_a_valley_and_say_so() {
@@ -126,7 +126,7 @@ fn reflected_times_make_the_laws_tighter() {
     assert!(said.starts_with("It is mine"), "{said}");
     for (pull, at) in pulls(&both).into_iter().zip(0..) {
         assert!(pull.abs() < 3.5, "{pull}: {both:?}");
-        // By far: what incident times confuse, returns tell.
+        // By far: what incident times confuse, returns determine.
         assert!(
             both.sd()[at] < 0.5 * one.sd()[at],
             "{:?} {:?}",

@@ -229,10 +229,10 @@ fn a_start_where_the_model_fails_is_told_with_its_values() {
         }
     }
     let free = vec![Parameter::new("Y", "Pa", 213.0)];
-    let told = fit(&Fails(free), &Fitting::default())
+    let reported = fit(&Fails(free), &Fitting::default())
         .unwrap_err()
         .to_string();
     let expected = "no residuals at the start: with Y = 2.1300e2 Pa: beads overlap";
-    assert!(told.starts_with(expected), "{told}");
-    assert!(told.contains("--start"), "{told}");
+    assert!(reported.starts_with(expected), "{reported}");
+    assert!(reported.contains("--start"), "{reported}");
 }

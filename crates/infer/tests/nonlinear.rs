@@ -86,8 +86,8 @@ fn jacobian_by_two_step_sizes_tells_how_far_it_is_right() {
         // Steps of 0.007: disagreement (k x h)²/2, extrapolation leaves its square.
         assert!(error < 1e-6 * 20.0, "{i} {error}");
     }
-    let told = found.jacobian.disagreement[1];
-    assert!((1e-6..1e-2).contains(&told), "{told}");
+    let reported = found.jacobian.disagreement[1];
+    assert!((1e-6..1e-2).contains(&reported), "{reported}");
 }
 
 /// Coverage of both kinds of intervals of both parameters of a decay.
@@ -206,7 +206,7 @@ fn a_profile_that_meets_a_better_fit_says_so() {
     let agreeing = best.agreeing_starts();
     assert!((1..8).contains(&agreeing), "{agreeing}");
     // The shallower one, near 3, costs (0.2 · 6)² = 1.44 less what a little of the way back
-    // gains: it fits as well, and is told once however many starts came to it.
+    // gains: it fits as well, and is reported once however many starts came to it.
     let sd = Covariance::new(&spread.parameters, &best).sd;
     let others = best.other_minima(&sd);
     let [(other, count)] = others[..] else {

@@ -133,7 +133,7 @@ fn records_that_cannot_be_fitted_say_why() {
     let flat = vec![vec![0.0; 3000]];
     let error = of(Some(speed), &flat).unwrap_err().to_string();
     assert!(error.starts_with("shot: "), "{error}");
-    // Without anything before the passing pulse, nothing tells the noise.
+    // Without anything before the passing pulse, nothing determines the noise.
     let cut = vec![volts[0][760..].to_vec()];
     assert!(of(Some(speed), &cut).is_err());
 }

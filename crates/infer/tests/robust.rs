@@ -33,7 +33,7 @@ fn line(errors: &[f64]) -> Line {
     }
 }
 
-fn fitted(data: &Line, loss: Loss) -> (Fit, Covariance) {
+fn fit_result(data: &Line, loss: Loss) -> (Fit, Covariance) {
     let how = Fitting {
         loss,
         ..Fitting::default()
@@ -59,14 +59,14 @@ fn without_outliers_or_freedom_errors_are_those_of_least_squares() {
     let lucky: Vec<f64> = normals(3, 12).iter().map(|e| 0.2 * e).collect();
     for errors in [lucky, vec![0.4, -1.1]] {
         let data = line(&errors);
-        let (_, plain) = fitted(&data, Loss::Squares);
+        let (_, plain) = fit_result(&data, Loss::Squares);
         for scale in [1.345, 3.0] {
             for loss in [
                 Loss::Huber { scale },
                 Loss::SoftL1 { scale },
                 Loss::Cauchy { scale },
             ] {
-                let (_, robust) = fitted(&data, loss);
+                let (_, robust) = fit_result(&data, loss);
                 assert_eq!(robust.loss_factor, 1.0, "{loss:?}");
                 for (robust, plain) in robust.sd.iter().zip(&plain.sd) {
                     // Both Jacobians are exact but for rounding over their steps.
@@ -82,16 +82,16 @@ fn a_prior_keeps_its_own_error_among_outliers() {
     let prior_sd = 1e-3;
     for seed in 0..20 {
         let mut data = line(&with_outliers(seed, 25));
-        let (_, free) = fitted(&data, HUBER);
+        let (_, free) = fit_result(&data, HUBER);
         assert!(free.loss_factor >= 1.0);
         let known = Parameter::new("b", "m/s", -2.0);
         data.parameters[1] = known.with_prior(Prior::Normal {
             mean: -2.0,
             sd: prior_sd,
         });
-        let (_, held) = fitted(&data, HUBER);
-        let (_, plain) = fitted(&data, Loss::Squares);
-        // The data's own error, some 0.05, tells next to nothing beside it: 2 (1e-3/0.05)².
+        let (_, held) = fit_result(&data, HUBER);
+        let (_, plain) = fit_result(&data, Loss::Squares);
+        // The data's own error, some 0.05, determines next to nothing beside it: 2 (1e-3/0.05)².
         assert!((held.sd[1] / prior_sd - 1.0).abs() < 2e-3, "{}", held.sd[1]);
         // Weighing data otherwise than by their errors cannot make an estimate better.
         for at in 0..2 {
@@ -106,7 +106,7 @@ fn intervals_cover_the_truth_as_often_as_they_say_among_outliers() {
     let sets = 400;
     let mut within = [[0.0; 2]; 2];
     for seed in 0..sets {
-        let (found, covariance) = fitted(&line(&with_outliers(seed, 25)), HUBER);
+        let (found, covariance) = fit_result(&line(&with_outliers(seed, 25)), HUBER);
         for (at, truth) in [5.0, -2.0].into_iter().enumerate() {
             let away = ((found.point[at] - truth) / covariance.sd[at]).abs();
             for (level, times) in [1.0, 1.96].into_iter().enumerate() {

@@ -120,16 +120,16 @@ fn intervals_by_covariance_hold_the_truth_as_often_as_they_say() {
 
 #[test]
 fn so_do_those_of_errors_from_the_scatter_of_twenty_shots() {
-    let told = pulls(600, |truth, seed| truth.measured_by_shots(seed, true));
+    let reported = pulls(600, |truth, seed| truth.measured_by_shots(seed, true));
     let untold = pulls(600, |truth, seed| truth.measured_by_shots(seed, false));
-    for (told, untold) in told.iter().zip(&untold) {
+    for (reported, untold) in reported.iter().zip(&untold) {
         for (factor, share) in [(1.0, 0.6827), (1.96, 0.95)] {
-            let off = off(told, factor, share);
+            let off = off(reported, factor, share);
             assert!(off.abs() < 3.0, "{factor}: {off}");
         }
         // The same data sets: taken as known, errors are too small in nearly all of them.
         let squares = |pulls: &[f64]| pulls.iter().map(|pull| pull * pull).sum::<f64>();
-        let ratio = (squares(untold) / squares(told)).sqrt();
+        let ratio = (squares(untold) / squares(reported)).sqrt();
         // Between one error a row, √(19/15), and two that are alike, √(38/34).
         assert!((1.05..1.13).contains(&ratio), "{ratio}");
     }
@@ -156,21 +156,21 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let data = Truth::of(&viscoelastic, &[0.5]).measured(3);
     let three = model(&viscoelastic, &["Y", "nu", "eta"]);
     let parameters = three.numbers().parameters(&[0.5]);
-    // One speed tells two numbers: three can't even be asked for.
+    // One speed determines two numbers: three can't even be asked for.
     let few = hertzchain_infer::CurveProblem::new(three.clone(), data.clone(), parameters);
-    let told = few.unwrap_err().to_string();
+    let reported = few.unwrap_err().to_string();
     for words in [
         "2 measured values for 3 free",
         "enter only through K and A",
         "--free K,A",
         "K = 8.7926e9 N/m^1.5, A = 3.3853e-7 s",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(reported.contains(words), "{words}: {reported}");
     }
     // Those of the example, by hand from both equations of the materials.
     let other = preset("hertz-viscoelastic").unwrap();
     let [young, eta] = ["Y = ", "eta = "].map(|key| {
-        let rest = told.rsplit(key).next().unwrap();
+        let rest = reported.rsplit(key).next().unwrap();
         rest.split(' ').next().unwrap().parse::<f64>().unwrap()
     });
     let other = other.set(&[
@@ -182,7 +182,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let incident = |curve: &[Predicted]| curve[0][0].unwrap();
     // Five digits are shown, of which times of flight depend on the 2/5th power.
     assert!((incident(&curve) / incident(&same) - 1.0).abs() < 1e-4);
-    // Nor do more speeds tell three.
+    // Nor do more speeds determine three.
     let data = Truth::of(&viscoelastic, &speeds_m_s(8)).measured(3);
     let three = problem(&three, data.clone());
     let best = fit(&three, &Fitting::default()).unwrap();
@@ -197,7 +197,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let words = advice.words();
     assert!(words[0].contains("enter only through K and A"), "{words:?}");
     assert!(words[1].starts_with("no further data"), "{words:?}");
-    // K and A they do tell.
+    // K and A they do determine.
     let two = problem(&model(&viscoelastic, &["K", "A"]), data);
     let best = fit(&two, &Fitting::default()).unwrap();
     let found = Identifiability::new(two.parameters(), &best, |at| two.residual_label(at));

@@ -93,9 +93,9 @@ fn the_shots_of_each_row_are_read_by_themselves() {
     let data = read(&few, Scatter::AsTold).unwrap();
     assert_eq!(data.lines_of_few_shots(), [2]);
     let wrong = read(&format!("{shots}0.5,1e-3,2.5,7e-4,1e-7\n"), Scatter::AsTold);
-    let told = wrong.unwrap_err().to_string();
+    let reported = wrong.unwrap_err().to_string();
     assert_eq!(
-        told,
+        reported,
         "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one"
     );
 }

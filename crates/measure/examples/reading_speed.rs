@@ -3,7 +3,7 @@
 //!
 //! Writes one recording of 16-bit samples at 1 MS/s, 100,000 a shot as those of a
 //! campaign, without compression as NPY, WAV and HDF5, and measures each from the file to
-//! both times of flight of every shot; tells also the most memory that was needed meanwhile.
+//! both times of flight of every shot; reports also the most memory that was needed meanwhile.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 #[path = "../tests/signal/common/mod.rs"]
@@ -40,9 +40,9 @@ fn main() -> Anyhow {
         .build_global()?;
     let folder = std::env::temp_dir().join(format!("hertzchain-throughput-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
-    let told = all(&folder, shots, threads);
+    let reported = all(&folder, shots, threads);
     fs::remove_dir_all(&folder)?;
-    told
+    reported
 }
 
 fn all(folder: &Path, shots: usize, threads: usize) -> Anyhow {
@@ -96,7 +96,7 @@ fn shot(seed: u64) -> Vec<i16> {
     scene.summed().iter().map(digits).collect()
 }
 
-/// Measures a file of so many megabytes of samples and tells how long it took.
+/// Measures a file of so many megabytes of samples and reports how long it took.
 fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usize) -> Anyhow {
     let files: [PathBuf; 1] = [path.to_owned()];
     // The kernel begins anew with its record of the most memory.
@@ -122,7 +122,7 @@ fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usi
     Ok(())
 }
 
-/// What all threads have had of processors so far, in s, where the system tells: on a
+/// What all threads have had of processors so far, in s, where the system reports it: on a
 /// machine with other work, time on the clock says little.
 fn processor_s() -> Option<f64> {
     let line = fs::read_to_string("/proc/self/stat").ok()?;

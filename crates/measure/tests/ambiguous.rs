@@ -1,4 +1,4 @@
-//! Shots of one speed tell together which fragment of their returns is the largest.
+//! Shots of one speed determine together which fragment of their returns is the largest.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::signal::{Channels, Flight, Shape, SignalOptions, measure};
@@ -76,8 +76,8 @@ fn one_fragment_is_chosen_for_all_shots_of_a_speed() {
     assert!(wrong > 0);
 }
 
-/// Nobody can tell which of two equal fragments is the largest: hardly a time is left. By chance
-/// twenty shots tell a difference that is none once in 370 times.
+/// no user can determine which of two equal fragments is the largest: hardly a time is left. By chance
+/// twenty shots determine a difference that is none once in 370 times.
 #[test]
 fn returns_of_equal_fragments_have_no_time() {
     for first in [100, 120, 140] {

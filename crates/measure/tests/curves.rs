@@ -33,7 +33,7 @@ fn samples(incident: f64, height: f64, seed: u64) -> Vec<i16> {
     (0..4000).map(sample).collect()
 }
 
-fn info(case: &str, told: &[(&str, &str)]) -> SeriesInfo {
+fn info(case: &str, reported: &[(&str, &str)]) -> SeriesInfo {
     SeriesInfo {
         channels: SeriesChannels::Summed,
         interval_s: 1e-6,
@@ -48,7 +48,7 @@ fn info(case: &str, told: &[(&str, &str)]) -> SeriesInfo {
         long_names: &[],
         more: [("measured_speed_error_m_s", "0.001")]
             .iter()
-            .chain(told)
+            .chain(reported)
             .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
             .collect(),
     }
@@ -107,16 +107,16 @@ fn series(folder: &Path, case: &str, speed_m_s: f64, height: f64) -> PathBuf {
     told_series(folder, case, speed_m_s, height, &[])
 }
 
-/// The same, of which the file tells more.
+/// The same, of which the file determines more.
 fn told_series(
     folder: &Path,
     case: &str,
     speed_m_s: f64,
     height: f64,
-    told: &[(&str, &str)],
+    reported: &[(&str, &str)],
 ) -> PathBuf {
     let path = folder.join(format!("{case}-{speed_m_s}.h5"));
-    let mut writer = SeriesWriter::create(&path, &info(case, told)).unwrap();
+    let mut writer = SeriesWriter::create(&path, &info(case, reported)).unwrap();
     for shot in 0..5_u64 {
         let incident = 630.0 * speed_m_s.powf(-0.2) + 0.2 * (shot as f64 - 2.0);
         push(
@@ -136,15 +136,15 @@ fn measured(files: &[PathBuf]) -> Measurement {
 #[test]
 fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_options_say_more() {
     let folder = folder("high-pass");
-    let told = [("high_pass_hz", "160")];
-    let files = [told_series(&folder, "dry", 0.5, 9000.0, &told)];
+    let reported = [("high_pass_hz", "160")];
+    let files = [told_series(&folder, "dry", 0.5, 9000.0, &reported)];
     let flights = |options: &Options| {
         let measured = measure(&files, options, &());
         let notes = measured.notes.iter();
-        let told = notes.filter(|note| note.text.contains("high-pass of 160 Hz"));
-        let told = told.count();
+        let reported = notes.filter(|note| note.text.contains("high-pass of 160 Hz"));
+        let reported = reported.count();
         let flights = measured.shots.into_iter().map(|shot| shot.flight.unwrap());
-        (told, flights.collect::<Vec<Flight>>())
+        (reported, flights.collect::<Vec<Flight>>())
     };
     let given = |hz: f64| Options {
         measuring: SignalOptions {
@@ -161,8 +161,8 @@ fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_opti
     assert_eq!((unasked.0, of_options.0), (1, 0));
     assert_eq!(unasked.1, of_options.1);
     for other in [given(80.0), kept] {
-        let (told, flights) = flights(&other);
-        assert_eq!(told, 0);
+        let (reported, flights) = flights(&other);
+        assert_eq!(reported, 0);
         assert_ne!(flights, unasked.1);
     }
 }
@@ -278,7 +278,7 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
 fn shots_without_a_time_or_a_speed_of_their_own_are_counted_as_left_out_of_their_speed() {
     let folder = folder("left-out");
     let mut shots = measured(&[series(&folder, "dry", 0.5, 9000.0)]).shots;
-    // What a photogate with a large error may tell.
+    // What a photogate with a large error may determine.
     shots[0].speed_m_s.as_mut().unwrap().value = -0.1;
     shots[1].flight = Err(MeasureError::TooShort(3, 30));
     let curves = Curves::of(&shots, &Grouping::default());
@@ -506,12 +506,12 @@ fn lines_and_shots_that_do_not_find_each_other_are_told() {
         list: Some(ShotList::parse(list).unwrap()),
         ..Options::default()
     };
-    let told = measure(&files, &options, &()).unmatched;
-    assert_eq!(told.len(), 3, "{told:?}");
-    assert_eq!(told[0], "line 3: an earlier line is about the same");
-    assert_eq!(told[1], "line 4: dry-0.5.h5 has no shot 9");
+    let reported = measure(&files, &options, &()).unmatched;
+    assert_eq!(reported.len(), 3, "{reported:?}");
+    assert_eq!(reported[0], "line 3: an earlier line is about the same");
+    assert_eq!(reported[1], "line 4: dry-0.5.h5 has no shot 9");
     assert_eq!(
-        told[2],
+        reported[2],
         "line 5: no.h5 is none of the files given (dry-0.5.h5)"
     );
 }

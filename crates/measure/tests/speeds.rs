@@ -1,4 +1,4 @@
-//! Files that tell the speeds of several shots: which shot gets which.
+//! Files that determine the speeds of several shots: which shot gets which.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 use hertzchain_measure::records::{Parts, ReadOptions};

@@ -4,14 +4,14 @@
 //! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked
 //! cargo run --release -p hertzchain-study --example accuracy -- steps  # by step
 //! cargo run --release -p hertzchain-study --example accuracy -- rounding
-//! cargo run --release -p hertzchain-study --example accuracy -- judges
+//! cargo run --release -p hertzchain-study --example accuracy -- evaluates
 //! ```
 //!
 //! Errors are the larger ones of both times of flight, against the wave loop
 //! at 1e-11, over eleven speeds. Force passes are means over these speeds: of a
-//! sweep, those that stayed in the ensemble, without the shots that judge them.
+//! sweep, those that stayed in the ensemble, without the shots that evaluate them.
 //! Rounding is what single precision changes at equal steps. Judges are the two
-//! longer steps by which a sweep tells how good a shot is: how many of the 66
+//! longer steps by which a sweep reports how good a shot is: how many of the 66
 //! pass, and the largest error of those that do over what was asked.
 
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
@@ -48,9 +48,9 @@ fn main() -> Result<()> {
         None => by_accuracy(),
         Some("steps") => by_step(),
         Some("rounding") => rounding(),
-        Some("judges") => judges(),
+        Some("evaluates") => evaluates(),
         Some(other) => {
-            Err(format!("`{other}` is none of `steps`, `rounding`, `judges`, nor nothing").into())
+            Err(format!("`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing").into())
         }
     }
 }
@@ -90,7 +90,7 @@ fn errors(flights: impl Iterator<Item = Option<Flight>>, exact: &[Shot]) -> Vec<
 }
 
 /// The largest error, where it is, and how many shots have none.
-fn told(errors: &[Option<f64>]) -> String {
+fn reported(errors: &[Option<f64>]) -> String {
     let known = errors
         .iter()
         .zip(SPEEDS_M_S)
@@ -122,7 +122,7 @@ fn by_accuracy() -> Result<()> {
             let of_wave = mean_passes(wave.iter().map(|shot| &shot.work));
             let [error, wave] = [&sweep, &wave].map(|shots| {
                 let flights = shots.iter().map(|shot| shot.flight);
-                told(&errors(flights, &exact))
+                reported(&errors(flights, &exact))
             });
             println!(
                 "| {name} | {accuracy:.0e} | {error} | {passes:.0} | {inside} | {wave} | {of_wave:.0} |"
@@ -152,7 +152,7 @@ fn by_step() -> Result<()> {
             for (name, exact) in CASES.iter().zip(&exact) {
                 let flown = flown(name, step, kind, End::Reflected)?;
                 let flights = flown.into_iter().map(|flown| flight(flown?));
-                row += &format!(" {} |", told(&errors(flights, exact)));
+                row += &format!(" {} |", reported(&errors(flights, exact)));
             }
             for end in [End::Reflected, End::Passed] {
                 let flown = flown("dry", step, kind, end)?;
@@ -220,7 +220,7 @@ const TRIED: [(f64, Precision, bool, [f64; 6]); 5] = [
     ),
 ];
 
-fn judges() -> Result<()> {
+fn evaluates() -> Result<()> {
     println!("| asked | precision | openings | step | pass | largest error over asked |");
     let exact = CASES.iter().map(|name| one_by_one(name, EXACT));
     let exact = exact.collect::<Result<Vec<_>>>()?;
@@ -238,8 +238,8 @@ fn judges() -> Result<()> {
                 let longer = longer.into_iter().collect::<Result<Vec<_>>>()?;
                 let passes = |at: usize| {
                     let own = own[at]?;
-                    let change = |(judge, counts): &(Vec<Option<Flight>>, f64)| {
-                        Some(counts * own.change(&judge[at]?))
+                    let change = |(evaluate, counts): &(Vec<Option<Flight>>, f64)| {
+                        Some(counts * own.change(&evaluate[at]?))
                     };
                     let changes: Option<Vec<f64>> = longer.iter().map(change).collect();
                     let within = changes?.into_iter().all(|change| change <= asked);

@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyList};
 /// What a column is called and which number of a shot stands in it.
 type Column = (&'static str, fn(&Shot) -> Option<f64>);
 
-/// In the order in which they are told.
+/// In the order in which they are reported.
 const COLUMNS: [Column; 16] = [
     ("tof_incident_s", |shot| Some(shot.flight?.incident_s)),
     ("tof_reflected_s", |shot| shot.flight?.reflected_s),

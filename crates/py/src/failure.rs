@@ -64,13 +64,13 @@ fn findings<'py>(py: Python<'py>, mistakes: &Mistakes) -> PyResult<Vec<Bound<'py
 
 /// What, where, what was expected.
 pub(crate) fn finding<'py>(py: Python<'py>, found: &Finding) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("file", found.file())?;
-    told.set_item("line", found.line())?;
-    told.set_item("text", found.text())?;
-    told.set_item("message", found.to_string())?;
-    told.set_item("expected", found.label())?;
-    told.set_item("help", found.help().map(|help| help.to_string()))?;
-    told.set_item("report", failure::report(found, false).trim_end())?;
-    Ok(told)
+    let reported = PyDict::new(py);
+    reported.set_item("file", found.file())?;
+    reported.set_item("line", found.line())?;
+    reported.set_item("text", found.text())?;
+    reported.set_item("message", found.to_string())?;
+    reported.set_item("expected", found.label())?;
+    reported.set_item("help", found.help().map(|help| help.to_string()))?;
+    reported.set_item("report", failure::report(found, false).trim_end())?;
+    Ok(reported)
 }

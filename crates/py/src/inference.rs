@@ -43,9 +43,9 @@ pub(crate) fn fit<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     found(py, &options, progress, |arguments| {
         let problem = posed(&table, experiment, arguments)?;
-        let fitted = fitting::fitted(problem, arguments)?;
-        left(&fitted.inferred, arguments)?;
-        Ok(Found::of(&fitted, arguments))
+        let fit_result = fitting::fit_result(problem, arguments)?;
+        left(&fit_result.inferred, arguments)?;
+        Ok(Found::of(&fit_result, arguments))
     })
 }
 
@@ -59,12 +59,12 @@ fn found<'py>(
     py: Python<'py>,
     options: &[String],
     progress: Option<Bound<'py, PyAny>>,
-    fitted: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
+    fit_result: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Fit = parsed("fit", options).map_err(Failed::from)?;
     let threads = arguments.modelled.threads.map_or(0, |threads| threads.0);
-    let found = Job::pooled(progress, threads).run(py, |_| fitted(&arguments))?;
-    found.told(py)
+    let found = Job::pooled(progress, threads).run(py, |_| fit_result(&arguments))?;
+    found.reported(py)
 }
 
 /// Whether a file is a table of curves; what else can be read is a recording.
@@ -88,12 +88,12 @@ pub(crate) fn fit_pulses<'py>(
         let inner = in_case(experiment.inner.clone(), case)?;
         let inner = changed(inner, &arguments.modelled.set)?;
         let recorded = pulses::recorded_of(&inner, arguments)?;
-        let fitted = pulses::fitted(recorded, arguments)?;
-        left(&fitted.inferred, arguments)?;
+        let fit_result = pulses::fit_result(recorded, arguments)?;
+        left(&fit_result.inferred, arguments)?;
         Ok(Found {
-            fit: pulses::json(&fitted, arguments),
-            rows: pulses::rows_json(&pulses::shown(&fitted)?),
-            samples: samples(&fitted.inferred),
+            fit: pulses::json(&fit_result, arguments),
+            rows: pulses::rows_json(&pulses::shown(&fit_result)?),
+            samples: samples(&fit_result.inferred),
         })
     })
 }
@@ -111,7 +111,7 @@ pub(crate) fn posed(
     problem(model, data, &arguments.freed)
 }
 
-/// A fit as Python is told of it.
+/// A fit as Python is reported of it.
 pub(crate) struct Found {
     fit: serde_json::Value,
     rows: serde_json::Value,
@@ -120,24 +120,24 @@ pub(crate) struct Found {
 
 impl Found {
     /// Of a fit.
-    pub(crate) fn of(fitted: &fitting::Fitted, arguments: &Fit) -> Self {
+    pub(crate) fn of(fit_result: &fitting::FitResult, arguments: &Fit) -> Self {
         Self {
-            fit: fitting::json(fitted, arguments),
-            rows: fitting::rows_json(fitted),
-            samples: samples(&fitted.inferred),
+            fit: fitting::json(fit_result, arguments),
+            rows: fitting::rows_json(fit_result),
+            samples: samples(&fit_result.inferred),
         }
     }
 
     /// As a dict.
-    pub(crate) fn told(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let told = json::object(py, &self.fit)?.cast_into::<PyDict>()?;
-        told.set_item("rows", json::object(py, &self.rows)?)?;
+    pub(crate) fn reported(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let reported = json::object(py, &self.fit)?.cast_into::<PyDict>()?;
+        reported.set_item("rows", json::object(py, &self.rows)?)?;
         if let Some((parameters, samples)) = self.samples {
             let samples = samples.into_pyarray(py);
             let count = samples.len()? / parameters.max(1);
-            told.set_item("samples", samples.reshape([parameters, count])?)?;
+            reported.set_item("samples", samples.reshape([parameters, count])?)?;
         }
-        Ok(told.into_any())
+        Ok(reported.into_any())
     }
 }
 
@@ -176,7 +176,7 @@ pub(crate) fn design<'py>(
         let model = model(&inner, &arguments.modelled, &arguments.freed)?;
         let problem: CurveProblem = problem(model, data, &arguments.freed)?;
         let targets = designing::targets(&problem, &arguments)?;
-        let found = designing::designed(&problem, &targets, &speeds, &arguments)?;
+        let found = designing::run_design(&problem, &targets, &speeds, &arguments)?;
         Ok(designing::json(&problem, &found))
     })?;
     json::object(py, &found)
@@ -211,10 +211,10 @@ pub(crate) fn gauge<'py>(
                 own: &arguments.own,
                 accuracy: arguments.accuracy.0,
             };
-            let gauged = gauging::gauged(&chains, (dry, wet), all, arguments.form)?;
-            let mut told = gauging::json(&gauged);
-            told["options"] = hertzchain::options::recorded(&arguments);
-            Ok(told)
+            let run_gauge = gauging::run_gauge(&chains, (dry, wet), all, arguments.form)?;
+            let mut reported = gauging::json(&run_gauge);
+            reported["options"] = hertzchain::options::recorded(&arguments);
+            Ok(reported)
         })?;
     json::object(py, &found)
 }

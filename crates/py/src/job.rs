@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use crate::failure::Failed;
 
-/// How often Python is asked for signals and told of progress.
+/// How often Python is asked for signals and reported of progress.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Room for deep calls, as a main thread has.
@@ -27,7 +27,7 @@ pub(crate) enum Threads {
     Many(usize),
 }
 
-/// A job's way to Python: whom it tells what is done, and how it is stopped.
+/// A job's way to Python: to whom it reports what is done, and how it is stopped.
 pub(crate) struct Job<'py> {
     /// Called with what is done since the last time.
     pub progress: Option<Bound<'py, PyAny>>,
@@ -35,7 +35,7 @@ pub(crate) struct Job<'py> {
     pub threads: Threads,
     /// Asked once Python wants no more.
     pub stop: Stop,
-    /// What progress is told of.
+    /// What progress is reported of.
     counted: fn(&Stop) -> u64,
 }
 
@@ -60,7 +60,7 @@ impl<'py> Job<'py> {
         }
     }
 
-    /// In one thread, telling of the steps of a single shot.
+    /// In one thread, reporting of the steps of a single shot.
     pub(crate) fn of_steps(progress: Option<Bound<'py, PyAny>>) -> Self {
         Self {
             progress,
@@ -70,7 +70,7 @@ impl<'py> Job<'py> {
     }
 
     /// Computes without Python's lock. A signal, or a progress that raises,
-    /// breaks off and is raised. Progress is told of what is counted on the
+    /// breaks off and is raised. Progress is reported of what is counted on the
     /// [`Stop`] that the work gets.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl<'py> Job<'py> {
     }
 
     /// The same for work that leaves nothing behind but its result and has pieces that
-    /// take long and look at no wish to stop: once there is one, nobody waits for the
+    /// take long and look at no wish to stop: once there is one, no caller waits for the
     /// piece under way. Its thread ends with it.
     ///
     /// # Errors
@@ -104,23 +104,23 @@ impl<'py> Job<'py> {
     ) -> PyResult<T> {
         let teller = self.progress.map(Bound::unbind);
         let (stop, threads, counted) = (self.stop, self.threads, self.counted);
-        let told = AtomicU64::new(0);
-        let tell = || {
+        let reported = AtomicU64::new(0);
+        let report = || {
             let done = counted(&stop);
-            let news = done - told.swap(done, Ordering::Relaxed);
+            let news = done - reported.swap(done, Ordering::Relaxed);
             Python::attach(|py| match &teller {
                 Some(teller) if news > 0 => teller.call1(py, (news,)).map(drop),
                 _ => Ok(()),
             })
         };
-        let look = || Python::attach(|py| py.check_signals()).and_then(|()| tell());
+        let look = || Python::attach(|py| py.check_signals()).and_then(|()| report());
         let outcome = py.detach(|| compute(&stop, threads, &look))?;
-        tell()?;
+        report()?;
         Ok(outcome.map_err(Failed::from)?)
     }
 }
 
-/// Asks Python for signals and tells it of progress.
+/// Asks Python for signals and reports progress to it.
 type Look<'a> = &'a (dyn Fn() -> PyResult<()> + Sync);
 
 /// Works in another thread while this one looks after Python.

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// The user's mistakes are told as such; a full disk is nobody's.
+/// The user's mistakes are reported as such; a full disk is not theirs.
 fn failure(error: RigError) -> Failure {
     match error {
         RigError::Mistakes(mistakes) => (*mistakes).into(),
@@ -60,15 +60,15 @@ pub(crate) fn campaign<'py>(
         let done = hertzchain_sim::rig::campaign(&plan, &out, part, &watch).map_err(failure)?;
         Ok((done, plan.seed, warnings))
     })?;
-    let told = PyDict::new(py);
-    told.set_item("kept", done.kept)?;
-    told.set_item("run", done.run)?;
-    told.set_item("shots", done.shots)?;
-    told.set_item("bytes", done.bytes)?;
-    told.set_item("failed", done.failed)?;
-    told.set_item("seed", seed)?;
-    told.set_item("warnings", warnings)?;
-    Ok(told)
+    let reported = PyDict::new(py);
+    reported.set_item("kept", done.kept)?;
+    reported.set_item("run", done.run)?;
+    reported.set_item("shots", done.shots)?;
+    reported.set_item("bytes", done.bytes)?;
+    reported.set_item("failed", done.failed)?;
+    reported.set_item("seed", seed)?;
+    reported.set_item("warnings", warnings)?;
+    Ok(reported)
 }
 
 struct Counted<'a>(&'a Stop);
@@ -104,7 +104,7 @@ pub(crate) fn measure<'py>(
         let curves = Curves::of(&measured.shots, &grouping);
         wanted()?;
         let mut found = measuring::json(&measured, &curves);
-        let wrong = measuring::judge(&measured).err();
+        let wrong = measuring::evaluate(&measured).err();
         found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {
             failure
                 .report(false)
@@ -120,11 +120,11 @@ pub(crate) fn measure<'py>(
         ];
         Ok((found, tables))
     })?;
-    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
+    let reported = json::object(py, &found)?.cast_into::<PyDict>()?;
     let texts = PyDict::new(py);
     for (name, text) in tables {
         texts.set_item(name, text)?;
     }
-    told.set_item("tables", texts)?;
-    Ok(told.into_any())
+    reported.set_item("tables", texts)?;
+    Ok(reported.into_any())
 }

@@ -98,15 +98,15 @@ pub(crate) fn shot<'py>(
     replacing.raised(py)?;
     let shot = computed?;
     let found = results::shot_of(inner, speed_m_s, &plan, &shot);
-    let told = json::object(py, &found)?.cast_into::<PyDict>()?;
+    let reported = json::object(py, &found)?.cast_into::<PyDict>()?;
     let warnings: PyResult<Vec<_>> = warnings.iter().map(|odd| finding(py, odd)).collect();
-    told.set_item("warnings", warnings?)?;
-    told.set_item(
+    reported.set_item("warnings", warnings?)?;
+    reported.set_item(
         "trace",
         shot.trace.as_ref().map(|it| trace(py, it)).transpose()?,
     )?;
-    told.set_item("velocities_m_s", velocities(py, &shot))?;
-    Ok(told)
+    reported.set_item("velocities_m_s", velocities(py, &shot))?;
+    Ok(reported)
 }
 
 type Planned = Result<(Plan, Vec<hertzchain_experiment::Warning>), Failure>;
@@ -132,12 +132,12 @@ fn velocities<'py>(py: Python<'py>, shot: &Shot) -> Bound<'py, PyArray1<f64>> {
 
 /// Times, sensors, one array a sensor, and the energy along the way.
 fn trace<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("time_s", trace.time_s.clone().into_pyarray(py))?;
+    let reported = PyDict::new(py);
+    reported.set_item("time_s", trace.time_s.clone().into_pyarray(py))?;
     let names: Vec<_> = trace.sensors.iter().map(|sensor| name(*sensor)).collect();
-    told.set_item("sensors", names)?;
+    reported.set_item("sensors", names)?;
     let columns = trace.columns.iter().map(|it| it.clone().into_pyarray(py));
-    told.set_item("columns", columns.collect::<Vec<_>>())?;
+    reported.set_item("columns", columns.collect::<Vec<_>>())?;
     let energy = PyDict::new(py);
     let budgets = || trace.budgets.iter();
     let put = |name: &str, values: Vec<f64>| energy.set_item(name, values.into_pyarray(py));
@@ -152,6 +152,6 @@ fn trace<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
     put("stop_j", budgets().map(|b| b.stop_j).collect())?;
     let lost = budgets().map(|b| b.dissipated.iter().map(|line| line.energy_j).sum());
     put("dissipated_j", lost.collect())?;
-    told.set_item("energy", energy)?;
-    Ok(told)
+    reported.set_item("energy", energy)?;
+    Ok(reported)
 }

@@ -114,7 +114,7 @@ struct Elsewhere {
     /// seconds, and then gives outcomes, batch by batch, or none yet.
     compute: Py<PyAny>,
     stop: Stop,
-    /// What was raised when nobody could be asked any more.
+    /// What was raised when no caller could be asked any more.
     gone: OnceLock<PyErr>,
 }
 
@@ -180,11 +180,11 @@ pub(crate) fn fit_spread<'py>(
     let found = job.run(py, |_| {
         let problem = &likelihood.inner;
         let Some(elsewhere) = &elsewhere else {
-            return fitted(problem, problem, arguments);
+            return fit_result(problem, problem, arguments);
         };
         let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
         let spread = Spread::new(problem, problem.fingerprint(), size, &compute).among(workers);
-        let found = fitted(problem, &spread, arguments);
+        let found = fit_result(problem, &spread, arguments);
         match spread.failure() {
             Some(why) => Err(Failure::User(why.to_owned())),
             None => found,
@@ -193,17 +193,17 @@ pub(crate) fn fit_spread<'py>(
     // A cluster that is gone is no mistake of the user's: raised as it came.
     match (found, elsewhere.and_then(|it| it.gone.into_inner())) {
         (Err(_), Some(gone)) => Err(gone),
-        (found, _) => found?.told(py),
+        (found, _) => found?.reported(py),
     }
 }
 
 /// A fit, whose walkers are left in the output folder.
-fn fitted(
+fn fit_result(
     problem: &CurveProblem,
     computed: &dyn Problem,
     arguments: &Fit,
 ) -> Result<Found, Failure> {
-    let fitted = fitting::fitted_elsewhere(problem.clone(), computed, arguments)?;
-    left(&fitted.inferred, arguments)?;
-    Ok(Found::of(&fitted, arguments))
+    let fit_result = fitting::fit_from_other_starts(problem.clone(), computed, arguments)?;
+    left(&fit_result.inferred, arguments)?;
+    Ok(Found::of(&fit_result, arguments))
 }

@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 
 type Describe = fn(&experiment::Experiment, &Chain) -> Result<Vec<Group>, StudyError>;
 
-fn told<'py>(
+fn described<'py>(
     py: Python<'py>,
     experiment: &Experiment,
     speed: Option<String>,
@@ -31,11 +31,11 @@ fn told<'py>(
         let (chain, warnings) = input::at_speed(given.as_ref(), inner.chain(speed_m_s))?;
         Ok((describe(inner, &chain)?, warnings))
     })?;
-    let told = PyDict::new(py);
-    told.set_item("groups", json::object(py, &results::groups(&groups))?)?;
+    let described = PyDict::new(py);
+    described.set_item("groups", json::object(py, &results::groups(&groups))?)?;
     let warnings: PyResult<Vec<_>> = warnings.iter().map(|odd| finding(py, odd)).collect();
-    told.set_item("warnings", warnings?)?;
-    Ok(told)
+    described.set_item("warnings", warnings?)?;
+    Ok(described)
 }
 
 /// What was understood, in SI, and what follows from it.
@@ -46,7 +46,7 @@ pub(crate) fn check<'py>(
     experiment: &Experiment,
     speed: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    told(py, experiment, speed, describe)
+    described(py, experiment, speed, describe)
 }
 
 /// What theory says of a chain's waves.
@@ -57,7 +57,7 @@ pub(crate) fn theory<'py>(
     experiment: &Experiment,
     speed: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    told(py, experiment, speed, describe_theory)
+    described(py, experiment, speed, describe_theory)
 }
 
 /// Contact laws with equation, parameters, units and source.

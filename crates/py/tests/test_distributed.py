@@ -39,7 +39,7 @@ def client() -> Iterator[Client]:
 def same(found: hc.Ensemble, expected: hc.Ensemble) -> None:
     """Every number has the same bits."""
     assert found.shape == expected.shape and set(found.errors) == set(expected.errors)
-    # A shard tells the place in the file beside the reason.
+    # A shard reports the place in the file beside the reason.
     assert all(found.errors[at].endswith(why) for at, why in expected.errors.items())
     assert set(found.columns) >= {"tof_incident_s", "tof_reflected_s", "wall_peak_n"}
     for name, column in found.columns.items():
@@ -125,7 +125,7 @@ def cli_shards(tmp_path) -> Callable[..., dict[str, bytes]]:
 
 
 def killed(folder: Path, ending: str, pids: Callable[[], set[int]], times: int) -> list[int]:
-    """Kills a worker each time that another file has appeared, with SIGKILL; tells when."""
+    """Kills a worker each time that another file has appeared, with SIGKILL; reports when."""
     dead: list[int] = []
     files: list[int] = []
     while len(dead) < times:
@@ -176,15 +176,15 @@ def test_a_campaign_whose_workers_are_killed_has_the_same_bytes(tmp_path):
 
 @contextmanager
 def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
-    """A scheduler and two workers, each a process; the file that tells its address."""
-    told = folder / f"scheduler-{time.monotonic_ns()}.json"
+    """A scheduler and two workers, each a process; the file that reports its address."""
+    reported = folder / f"scheduler-{time.monotonic_ns()}.json"
     dask = [sys.executable, "-m", "dask"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
-    scheduler = subprocess.Popen([*dask, "scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", told], **quiet)
-    worker = [*dask, "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", told, "--death-timeout", "30"]
+    scheduler = subprocess.Popen([*dask, "scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", reported], **quiet)
+    worker = [*dask, "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", reported, "--death-timeout", "30"]
     workers = [subprocess.Popen(worker, **quiet) for _ in range(2)]
     try:
-        yield told, scheduler
+        yield reported, scheduler
     finally:
         for process in (scheduler, *workers):
             process.kill()
@@ -195,7 +195,7 @@ def processes(folder: Path) -> Iterator[tuple[Path, subprocess.Popen[bytes]]]:
 def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
     speeds = np.linspace(0.1, 1.0, 480)
     folder = tmp_path / "run"
-    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, scheduler), Client(scheduler_file=reported, timeout=5) as client:
         done: list[int] = []
 
         def kill(shards: int) -> None:
@@ -206,7 +206,7 @@ def test_a_run_goes_on_after_its_scheduler_was_killed(small, tmp_path):
         with pytest.raises(ConnectionError, match="the same call goes on"):
             distributed.sweep(small, speeds, folder=folder, client=client, shards=40, progress=kill)
     assert 5 <= len(list(folder.glob("sweep-*.h5"))) < 40
-    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, _), Client(scheduler_file=reported, timeout=5) as client:
         run = distributed.sweep(small, speeds, folder=folder, client=client, shards=40)
     assert 5 <= run.kept < 40
     same(run.load(), hc.ensemble(small, speeds))
@@ -262,11 +262,11 @@ def test_a_failing_series_of_a_campaign_is_reported_and_stops_nothing(client, tm
 def test_a_campaign_goes_on_after_its_scheduler_was_killed(tmp_path):
     rig = hc.load(RIG)
     hc.campaign(rig, tmp_path / "here")
-    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, scheduler), Client(scheduler_file=reported, timeout=5) as client:
         with pytest.raises(ConnectionError, match="the same call goes on"):
             distributed.campaign(rig, tmp_path / "there", client=client, shards=6, progress=lambda _: scheduler.kill())
     assert recordings(tmp_path / "there")
-    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, _), Client(scheduler_file=reported, timeout=5) as client:
         run = distributed.campaign(rig, tmp_path / "there", client=client, shards=6)
     assert run.kept >= 1 and run.failed == {}
     assert recordings(tmp_path / "there") == recordings(tmp_path / "here")
@@ -352,14 +352,14 @@ def test_a_posterior_goes_on_after_its_scheduler_was_killed(posterior, tmp_path)
     folder = tmp_path / "fit"
     distributed.fit(data, folder=folder, **{**how, "steps": 20})
     saved = (folder / "chain.json").read_bytes()
-    with processes(tmp_path) as (told, scheduler), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, scheduler), Client(scheduler_file=reported, timeout=5) as client:
         with pytest.raises(ConnectionError, match="the same call goes on"):
             distributed.fit(data, folder=folder, client=client, progress=lambda _: scheduler.kill(), **how)
-        # Nobody is there from the beginning.
+        # no user is there from the beginning.
         with pytest.raises(ConnectionError, match="the same call goes on"):
             distributed.fit(data, folder=folder, client=client, **how)
     assert (folder / "chain.json").read_bytes() == saved
-    with processes(tmp_path) as (told, _), Client(scheduler_file=told, timeout=5) as client:
+    with processes(tmp_path) as (reported, _), Client(scheduler_file=reported, timeout=5) as client:
         again = distributed.fit(data, folder=folder, client=client, **how)
     assert again.details["posterior"] == here.details["posterior"]
 

@@ -68,24 +68,24 @@ def check_sources(name: str, thing: Any) -> None:
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_function_documents_its_parameters_returns_and_errors(name):
     thing = FUNCTIONS[name]
-    told = sections(thing)
-    assert told[""].strip(), name
+    reported = sections(thing)
+    assert reported[""].strip(), name
     wanted = parameters(thing)
     if wanted:
-        assert wanted <= described(told["Parameters"]), wanted - described(told["Parameters"])
-    assert told["Returns"].strip()
+        assert wanted <= described(reported["Parameters"]), wanted - described(reported["Parameters"])
+    assert reported["Returns"].strip()
     # What neither takes nor reads anything can't fail.
-    assert "Raises" in told or not wanted
+    assert "Raises" in reported or not wanted
     check_sources(name, thing)
 
 
 @pytest.mark.parametrize("name", CLASSES)
 def test_a_class_documents_its_fields(name):
     thing = CLASSES[name]
-    told = sections(thing)
-    assert told[""].strip()
+    reported = sections(thing)
+    assert reported[""].strip()
     fields = {field for field in getattr(thing, "__dataclass_fields__", {}) if not field.startswith("_")}
-    own = described(told.get("Attributes", "") + "\n" + told.get("Parameters", ""))
+    own = described(reported.get("Attributes", "") + "\n" + reported.get("Parameters", ""))
     assert {field.rstrip("_") for field in fields} <= own, fields - own
     check_sources(name, thing)
 
@@ -95,10 +95,10 @@ def test_a_method_documents_what_it_takes_and_returns(name):
     for of, member in members(CLASSES[name]):
         if not inspect.isroutine(member):
             continue
-        told = sections(member)
-        assert told[""].strip() and "Returns" in told, f"{name}.{of}"
+        reported = sections(member)
+        assert reported[""].strip() and "Returns" in reported, f"{name}.{of}"
         if wanted := parameters(member):
-            assert wanted <= described(told["Parameters"]), f"{name}.{of}"
+            assert wanted <= described(reported["Parameters"]), f"{name}.{of}"
 
 
 @pytest.mark.parametrize("name", CLASSES)

@@ -15,8 +15,8 @@ def test_a_mistake_has_the_programs_report_with_file_line_and_key(tmp_path):
     file.write_text(hc.preset("dry").text.replace('radius = "6.35 mm"', 'radius = "6.35 kg"'))
     with pytest.raises(hc.ExperimentError) as caught:
         hc.load(file)
-    told = subprocess.run([program(), "check", file], capture_output=True, text=True, check=False)
-    assert str(caught.value) == told.stderr.rstrip()
+    reported = subprocess.run([program(), "check", file], capture_output=True, text=True, check=False)
+    assert str(caught.value) == reported.stderr.rstrip()
     (finding,) = caught.value.findings
     line = file.read_text().splitlines()[finding.line - 1]
     assert finding.file == str(file) and finding.key == "radius" and line.startswith("radius")

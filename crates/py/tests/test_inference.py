@@ -38,14 +38,14 @@ def table(tmp_path, dry_data):
 
 @pytest.mark.parametrize("method", ["covariance", "profile", "posterior"])
 def test_a_fit_has_the_numbers_of_the_command_line(cli, table, dry_data, method):
-    # A few steps of a sampler tell as much of its bits as many.
-    told = cli("fit", table, "--preset", "dry", "--free", "eta,B", "--method", method, "--steps", "20")
+    # A few steps of a sampler report as much of its bits as many.
+    reported = cli("fit", table, "--preset", "dry", "--free", "eta,B", "--method", method, "--steps", "20")
     from_file = hc.fit(table, "dry", free="eta,B", method=method, steps=20)
     from_columns = hc.fit(dry_data, hc.preset("dry"), free=["eta", "B"])
-    assert from_file.details == told
-    assert from_columns.covariance.tolist() == told["covariance"]
-    assert [p.value for p in from_columns.parameters.values()] == [p["value"] for p in told["parameters"]]
-    assert ("unconverged" in (told["posterior"] or {})) == (method == "posterior")
+    assert from_file.details == reported
+    assert from_columns.covariance.tolist() == reported["covariance"]
+    assert [p.value for p in from_columns.parameters.values()] == [p["value"] for p in reported["parameters"]]
+    assert ("unconverged" in (reported["posterior"] or {})) == (method == "posterior")
 
 
 def test_a_fit_finds_what_made_the_data(dry_data):
@@ -109,26 +109,26 @@ def test_walkers_in_a_folder_are_led_on(dry_data, tmp_path):
 
 
 def test_bounds_priors_and_starts_are_those_of_the_command_line(cli, table):
-    told = cli(
+    reported = cli(
         "fit", table, "--preset", "dry", "--free", "eta,B", "--prior", "B=80+-5", "--bounds", "eta=1e4:1e5", "--start", "B=70", "--set", "young_modulus=212 GPa"
     )  # fmt: skip
     found = hc.fit(table, free="eta,B", prior={"B": (80.0, 5.0)}, bounds={"eta": (1e4, 1e5)}, start={"B": 70.0}, fixed={"young_modulus": "212 GPa"})
-    for ours, theirs in zip(found.details["parameters"], told["parameters"], strict=True):
+    for ours, theirs in zip(found.details["parameters"], reported["parameters"], strict=True):
         assert ours == theirs
 
 
 @pytest.mark.long
 def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table, dry_data):
-    told = cli("design", table, "--preset", "dry", "--free", "eta,B", "--target", "B", "--picks", "2")
+    reported = cli("design", table, "--preset", "dry", "--free", "eta,B", "--target", "B", "--picks", "2")
     found = hc.design(dry_data, free="eta,B", target="B", picks=2)
-    assert (found.ranked, found.series) == (told["ranked"], told["series"])
+    assert (found.ranked, found.series) == (reported["ranked"], reported["series"])
     assert len(found.to_pandas()) == len(found.ranked) and "measure next" in repr(found)
     assert pickled(found)
     wet = noisy("motor", 2, 2)
     (tmp_path / "wet.csv").write_text(csv(wet))
-    told = cli("gauge", tmp_path / "wet.csv", "--dry", table, "--preset", "motor")
+    reported = cli("gauge", tmp_path / "wet.csv", "--dry", table, "--preset", "motor")
     gauged = hc.gauge(wet, dry_data, model="motor")
-    assert gauged.details == told and gauged.verdict in repr(gauged)
+    assert gauged.details == reported and gauged.verdict in repr(gauged)
     assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
 
 
@@ -154,10 +154,10 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
     row = hc.load(rig)
     hc.campaign(row, tmp_path / "records")
     options = ("--case", "dry", "--free", "steel.eta,sensor_gain", "--most-shots", "2", "--out", tmp_path / "out")
-    told = cli("fit", tmp_path / "records", "--model", rig, *options)
+    reported = cli("fit", tmp_path / "records", "--model", rig, *options)
     seen: list[int] = []
     found = hc.fit(tmp_path / "records", row, case="dry", free=["steel.eta", "sensor_gain"], most_shots=2, progress=seen.append)
-    assert found.details == told and sum(seen) > 10
+    assert found.details == reported and sum(seen) > 10
     with open(tmp_path / "out/pulses.csv", newline="", encoding="utf-8") as file:
         titles, *lines = reader(file)
     theirs = dict(zip(titles, zip(*lines, strict=True), strict=True))
@@ -165,7 +165,7 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
         assert found.rows[own].tolist() == list(map(float, theirs[their]))
     assert found.to_pandas().attrs["units"]["measured_v"] == "V" and "whole pulses of 2 records" in repr(found)
     files = sorted((tmp_path / "records").glob("*.h5"))
-    assert hc.fit(files, row, case="dry", free="steel.eta,sensor_gain", most_shots=2).details == {**told, "free": told["free"]}
+    assert hc.fit(files, row, case="dry", free="steel.eta,sensor_gain", most_shots=2).details == {**reported, "free": reported["free"]}
     with pytest.raises(hc.OptionError, match="has no case `another`"):
         hc.fit(files[:1], row, case="another", free="steel.eta")
 

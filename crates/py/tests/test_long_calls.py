@@ -1,4 +1,4 @@
-"""Long calls: the lock is let go, progress is told, Ctrl-C stops them."""
+"""Long calls: the lock is let go, progress is reported, Ctrl-C stops them."""
 
 import os
 import signal
@@ -60,7 +60,7 @@ def test_progress_is_told_of_fits_gauges_designs_and_single_shots():
         seen: list[int] = []
         with tqdm(disable=False, file=open(os.devnull, "w")) as bar:
             assert repr(call(bar)) == repr(call(seen.append)), verb
-            # What is counted does not depend on when it is told.
+            # What is counted does not depend on when it is reported.
             assert bar.n == sum(seen) > 10, verb
 
 
@@ -97,7 +97,7 @@ CALLS = {
 
 @pytest.mark.parametrize("verb", CALLS)
 def test_ctrl_c_stops_a_call_at_once(verb, tmp_path):
-    # The child tells when it begins and how long it went on after the signal came.
+    # The child reports when it begins and how long it went on after the signal came.
     child = f"""
     import signal, sys, time
     import numpy as np
@@ -107,7 +107,7 @@ def test_ctrl_c_stops_a_call_at_once(verb, tmp_path):
             "tof_incident_s_error": np.full(40, 1e-6), "speed_error_m_s": np.full(40, 1e-6)}}
     volts = np.tile(np.random.default_rng(0).standard_normal(1 << 15), {1 << 10 if verb == "measure" else 1})
     came = []
-    # What is started in the background may have been told to ignore it.
+    # What is started in the background may have been reported to ignore it.
     usual = signal.default_int_handler
     def note(*rest):
         came.append(time.perf_counter())

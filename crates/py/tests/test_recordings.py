@@ -48,17 +48,17 @@ def test_recordings_open_in_h5py(records):
 
 
 def test_measurements_are_those_of_the_command_line(cli, records):
-    told = cli("measure", records, "--rig", SMALL)
+    reported = cli("measure", records, "--rig", SMALL)
     found = hc.measure(records, rig=SMALL)
-    assert found.shots == told["shots"] and found.ratios == told["ratios"]
-    for case in told["cases"]:
+    assert found.shots == reported["shots"] and found.ratios == reported["ratios"]
+    for case in reported["cases"]:
         own = found.cases[case["case"]]
         assert own["tof_incident_s"].tolist() == [row["tof_incident_s"]["mean"] for row in case["speeds"]]
     assert found.verdict is None and "Measured" in repr(found)
     assert pickled(found) and all(map(pickled, found.cases.values()))
     picked = {shot["tof_incident_s"]["value"] for shot in found.shots if "missing" not in shot}
-    told = found.to_pandas()
-    assert len(told) == len(found.shots) and set(told["tof_incident_s"].dropna()) == picked
+    reported = found.to_pandas()
+    assert len(reported) == len(found.shots) and set(reported["tof_incident_s"].dropna()) == picked
 
 
 def test_arrays_are_recordings_too(small):

@@ -15,7 +15,7 @@ from hertzchain import distributed
 
 RIG = ROOT / "crates/sim/tests/small.toml"
 SPEEDS = np.array([0.2, 0.5, 1.0])
-# Of no computation: what goes in, what goes wrong, and parts of what is told.
+# Of no computation: what goes in, what goes wrong, and parts of what is reported.
 NO_RESULTS = {
     hc.Beads, hc.Contacts, hc.Experiment, hc.FarEnd, hc.ForceLaw, hc.Law, hc.Material, hc.PowerOfSpeed, hc.Striker,
     hc.Finding, hc.Result, hc.Row, hc.ExperimentError, hc.ExperimentWarning, hc.HertzchainError, hc.InternalError, hc.OptionError,

@@ -13,43 +13,43 @@ NUMBERS = ["tof_incident_s", "tof_reflected_s", "accuracy_reached", "duration_s"
 
 
 def test_a_shot_has_the_bits_of_the_command_line(cli, dry):
-    told = cli("shot", "--preset", "dry", "--speed", "0.37", "--check")
+    reported = cli("shot", "--preset", "dry", "--speed", "0.37", "--check")
     found = hc.shot(dry, 0.37, check=True)
-    for name in told:
+    for name in reported:
         # The budget is a dict of doubles; times are doubles; all must be equal, not close.
-        theirs = told[name]
+        theirs = reported[name]
         ours = found.energy if name == "energy" else getattr(found, name)
         assert ours == theirs, name
 
 
 def test_a_sweep_has_the_bits_of_the_command_line(cli, dry):
-    told = cli("sweep", "--preset", "dry", "--speeds", "log:0.1:1.2:20")
+    reported = cli("sweep", "--preset", "dry", "--speeds", "log:0.1:1.2:20")
     found = hc.sweep(dry, "log:0.1:1.2:20")
     for name in NUMBERS:
-        theirs = [point[name] for point in told["points"]]
+        theirs = [point[name] for point in reported["points"]]
         assert found.columns[name].tolist() == theirs
-    assert found.columns["wall_peak_n"].tolist() == [p["passage"]["wall"]["value"] for p in told["points"]]
+    assert found.columns["wall_peak_n"].tolist() == [p["passage"]["wall"]["value"] for p in reported["points"]]
     for name in ("power_law_incident", "power_law_reflected"):
-        ours, theirs = getattr(found, name), told[name]
+        ours, theirs = getattr(found, name), reported[name]
         assert (ours.prefactor_s, ours.exponent) == (theirs["prefactor_s"], theirs["exponent"])
         assert (ours.prefactor_error_s, ours.exponent_accuracy) == (theirs["prefactor_error_s"], theirs["exponent_accuracy"])
 
 
 def test_calibration_and_the_striker_are_those_of_the_command_line(cli, dry):
-    told = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:200")
+    reported = cli("sweep", "--preset", "dry", "--speeds", "0.2:1:200")
     found = hc.sweep(dry, "0.2:1:200")
-    assert found.error_control == told["error_control"] and found.error_control.startswith("calibrated")
-    assert found.tof_incident_s.tolist() == [point["tof_incident_s"] for point in told["points"]]
-    assert found.calibration == told["calibration"]
-    told = cli("sweep", "--preset", "dry", "--speeds", "0.2,0.5", "--rebound")
-    rebounds = [point["striker_rebound"]["end_m_s"] for point in told["points"]]
+    assert found.error_control == reported["error_control"] and found.error_control.startswith("calibrated")
+    assert found.tof_incident_s.tolist() == [point["tof_incident_s"] for point in reported["points"]]
+    assert found.calibration == reported["calibration"]
+    reported = cli("sweep", "--preset", "dry", "--speeds", "0.2,0.5", "--rebound")
+    rebounds = [point["striker_rebound"]["end_m_s"] for point in reported["points"]]
     assert hc.sweep(dry, [0.2, 0.5], rebound=True).columns["striker_rebound_m_s"].tolist() == rebounds
 
 
 @pytest.mark.parametrize("verb", ["check", "theory"])
 def test_descriptions_are_those_of_the_command_line(cli, dry, verb):
-    told = cli(verb, "--preset", "dry", "--speed", "0.4")
-    groups = told["groups"] if verb == "check" else told
+    reported = cli(verb, "--preset", "dry", "--speed", "0.4")
+    groups = reported["groups"] if verb == "check" else reported
     found = getattr(hc, verb)(dry, 0.4)
     for ours, theirs in zip(found, groups, strict=True):
         assert ours.title == theirs["title"]
@@ -57,10 +57,10 @@ def test_descriptions_are_those_of_the_command_line(cli, dry, verb):
 
 
 def test_laws_are_those_of_the_command_line(cli):
-    told = cli("laws")
+    reported = cli("laws")
     found = hc.laws()
-    assert [law.name for law in found] == [law["name"] for law in told]
-    assert [law.parameters for law in found] == [law["parameters"] for law in told]
+    assert [law.name for law in found] == [law["name"] for law in reported]
+    assert [law.parameters for law in found] == [law["parameters"] for law in reported]
     assert "damping_cubic" in repr(hc.laws("damping_cubic")[0])
 
 

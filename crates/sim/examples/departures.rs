@@ -97,7 +97,7 @@ fn tell_largest(rigs: &[OfRig]) {
     println!("\nLargest mean departure of incident and reflected times, µs:");
     for (name, series) in rigs {
         let largest = [0, 1].map(|time: usize| {
-            let all = series.iter().map(|(_, found)| found.told(time).0.abs());
+            let all = series.iter().map(|(_, found)| found.reported(time).0.abs());
             1e6 * all.fold(0.0, f64::max)
         });
         println!("  {name}: {:.2}, {:.2}", largest[0], largest[1]);
@@ -107,23 +107,23 @@ fn tell_largest(rigs: &[OfRig]) {
 /// Added to standard errors of so few shots, which chance can make very small, in s.
 const AT_LEAST_S: f64 = 0.02e-6;
 
-/// In how many series the model with the mean load tells the incident departure, and the others.
+/// In how many series the model with the mean load determines the incident departure, and the others.
 fn tell_loads(rigs: &[OfRig]) {
     let series: Vec<&(String, Departures)> = rigs.iter().flat_map(|(_, rig)| rig).collect();
     let missed = series.iter().filter(|(_, found)| {
-        let (mean_s, error_s) = found.told(0);
+        let (mean_s, error_s) = found.reported(0);
         (mean_s - found.by_load_s[0]).abs() > 3.0 * (error_s + AT_LEAST_S)
     });
     let missed: Vec<_> = missed.collect();
     println!(
-        "\nThe mean load tells the incident departure within three standard errors, {:.0} ns added \
+        "\nThe mean load determines the incident departure within three standard errors, {:.0} ns added \
          to each, in {} of {} series; in the others (departure, by load, µs):",
         1e9 * AT_LEAST_S,
         series.len() - missed.len(),
         series.len()
     );
     for (name, found) in missed {
-        let [departure, by_load] = [found.told(0).0, found.by_load_s[0]].map(|s| 1e6 * s);
+        let [departure, by_load] = [found.reported(0).0, found.by_load_s[0]].map(|s| 1e6 * s);
         println!("  {name}: {departure:+.2}, {by_load:+.2}");
     }
 }
@@ -195,7 +195,7 @@ fn model_s(experiment: &Experiment, speed_m_s: f64) -> Outcome<[f64; 2]> {
 
 impl Departures {
     /// Mean and standard error in s of a time's departures.
-    fn told(&self, time: usize) -> (f64, f64) {
+    fn reported(&self, time: usize) -> (f64, f64) {
         moments(&self.times_s[time])
     }
 

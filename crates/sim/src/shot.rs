@@ -192,7 +192,7 @@ impl Shot {
     }
 
     /// The peaks of both computations, pulse by pulse; `None` where one has none.
-    fn peaks_beside(&self, other: &Self) -> Option<[[Maximum; 2]; 3]> {
+    fn peak_pairs(&self, other: &Self) -> Option<[[Maximum; 2]; 3]> {
         let (one, two) = (self.passage.as_ref().ok()?, other.passage.as_ref().ok()?);
         Some([
             [one.incident, two.incident],
@@ -205,13 +205,13 @@ impl Shot {
     pub(crate) fn has_peaks_of(&self, other: &Self, steps: f64) -> bool {
         let within_s = steps * self.step_s.unwrap_or(0.0);
         let same = |[one, two]: [Maximum; 2]| (one.time_s - two.time_s).abs() <= within_s;
-        let peaks = self.peaks_beside(other);
+        let peaks = self.peak_pairs(other);
         peaks.is_some_and(|peaks| peaks.into_iter().all(same))
     }
 
     /// Largest relative difference of the heights of peaks.
     pub(crate) fn peaks_change(&self, other: &Self) -> f64 {
-        let changes = self.peaks_beside(other).into_iter().flatten();
+        let changes = self.peak_pairs(other).into_iter().flatten();
         let changes = changes.map(|[one, two]| relative(one.value, two.value));
         changes.fold(0.0, f64::max)
     }

@@ -1,4 +1,4 @@
-//! The accuracy that is told is a bound on the error that is made.
+//! The accuracy that is reported is a bound on the error that is made.
 
 use hertzchain_experiment::preset;
 use hertzchain_sim::{Plan, shoot, shoot_checked};
@@ -20,7 +20,7 @@ fn no_time_of_flight_is_more_wrong_than_the_accuracy_reached() {
     for (case, speed) in CASES {
         let (plan, _) = Plan::from_experiment(&preset(case).unwrap(), Some(speed)).unwrap();
         let plan = plan.for_flights();
-        // A thousandth of the tightest accuracy that is judged against it.
+        // A thousandth of the tightest accuracy that is evaluated against it.
         let tight = shoot(&plan.clone().with_accuracy(1e-10)).unwrap();
         for accuracy in [1e-4, 1e-6, 1e-7] {
             let shot = shoot_checked(&plan.clone().with_accuracy(accuracy)).unwrap();

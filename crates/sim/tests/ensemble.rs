@@ -36,7 +36,7 @@ fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
             let shots = fly(&plans(name, &SPEEDS, accuracy));
             for ((shot, exact), speed) in shots.iter().zip(&exact).zip(SPEEDS) {
                 let error = shot.flight.unwrap().change(&exact.flight.unwrap());
-                // A check tells the change to another step, not the error itself.
+                // A check determines the change to another step, not the error itself.
                 assert!(
                     error < 2.0 * accuracy,
                     "{name} at {speed} m/s, {accuracy:e}: {error:e}"
@@ -60,7 +60,7 @@ fn every_pick_is_as_accurate_as_asked() {
             stayed += usize::from(shot.tolerance.is_none());
             for (one, other) in shot.compared.iter().zip(&exact.compared) {
                 let error = one.unwrap().change(&other.unwrap());
-                // As for peaks: judges tell a change, not the error itself.
+                // As for peaks: evaluates determine a change, not the error itself.
                 assert!(error < 2.0 * accuracy, "{name}: {error:e}");
             }
         }

@@ -55,9 +55,9 @@ fn flights_and_rebound_of_a_long_chain_are_those_of_a_shot_followed_for_long() {
     assert!((early / late - 1.0).abs() < 3e-5, "{early} {late}");
     // The pulse is back after two flights; the search alone would go on to four.
     assert!(shot.finished && shot.duration_s < 2.5 * wall_s);
-    let told = |note: &&String| note.contains("long chain's shot ended");
+    let reported = |note: &&String| note.contains("long chain's shot ended");
     assert_eq!(
-        shot.notes.iter().filter(told).count(),
+        shot.notes.iter().filter(reported).count(),
         1,
         "{:?}",
         shot.notes

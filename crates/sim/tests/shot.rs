@@ -141,13 +141,13 @@ fn two_maxima_as_high_as_can_be_told_are_told_of() {
                 [[contacts]]\nlaws = [\"elastic_hertz\"]\n[sensors]\nbead = 7\n[far_end]\nkind = \"half-bead\"\n";
     let experiment = Experiment::from_text("train.toml", text).unwrap();
     let (train, _) = Plan::from_experiment(&experiment, None).unwrap();
-    let told = |plan: &Plan| {
+    let reported = |plan: &Plan| {
         let notes = shoot(plan).unwrap().notes;
         notes.iter().any(|note| note.contains("two maxima"))
     };
-    assert!(told(&train.clone().with_accuracy(1e-4)));
-    assert!(!told(&train.with_accuracy(1e-9)));
-    assert!(!told(&plan("dry", 0.5)));
+    assert!(reported(&train.clone().with_accuracy(1e-4)));
+    assert!(!reported(&train.with_accuracy(1e-9)));
+    assert!(!reported(&plan("dry", 0.5)));
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn a_checked_shot_is_refined_until_it_keeps_the_asked_accuracy() {
     assert!(shot.notes.is_empty(), "{:?}", shot.notes);
     assert!(shot.tolerance < shoot(&asked).unwrap().tolerance);
     let tight = flight(&asked.with_accuracy(1e-11));
-    // The rerun that tells is itself wrong by a fraction of that.
+    // The rerun that determines is itself wrong by a fraction of that.
     assert!(shot.flight.unwrap().change(&tight) < 1.5e-8);
 }
 

@@ -59,14 +59,14 @@ fn beads_in_cells_and_several_groups_are_counted() {
         &only(&text.replace("bead = 7", "bead = 0")),
         &["from 1 to 21"],
     );
-    // A count in error leaves the chain's length open, and is told as well.
+    // A count in error leaves the chain's length open, and is reported as well.
     let unknown = text
         .replace("repeat = 5", "repeat = \"5\"")
         .replace("bead = 7", "bead = 0");
     let mistakes = hertzchain_experiment::Experiment::from_text("test.toml", &unknown);
-    let told = mistakes.unwrap_err().to_string();
+    let reported = mistakes.unwrap_err().to_string();
     assert!(
-        told.contains("`repeat` is text") && told.contains("`bead` = 0"),
-        "{told}"
+        reported.contains("`repeat` is text") && reported.contains("`bead` = 0"),
+        "{reported}"
     );
 }

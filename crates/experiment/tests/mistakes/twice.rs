@@ -140,7 +140,7 @@ fn many_tables_given_twice_are_told_without_starting_over_for_each() {
     // would double the work with every table, and 60 never end.
     let text = format!("{DRY}{}", "\n[track]\nincline = \"1 deg\"\n".repeat(60));
     let mistakes = Experiment::from_text("test.toml", &text).unwrap_err();
-    assert_eq!(mistakes.findings().len(), 20, "the first 20 are told");
+    assert_eq!(mistakes.findings().len(), 20, "the first 20 are reported");
 }
 
 #[test]

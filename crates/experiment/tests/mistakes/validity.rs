@@ -201,7 +201,7 @@ fn overlaps_are_those_of_a_hertz_collision() {
     let text = DRY.replace("\"0.5 m/s\"", "\"200 m/s\"");
     let found = warnings(&text);
     let line = found[0].one_line();
-    let told = line
+    let reported = line
         .split("overlap by ")
         .nth(1)
         .unwrap()
@@ -214,8 +214,8 @@ fn overlaps_are_those_of_a_hertz_collision() {
         reduced_mass_kg: 0.00427,
         speed_m_s,
     };
-    let ratio = told.parse::<f64>().unwrap() / collision.largest_overlap_m();
-    // Told to two digits, 5 %, after an inversion to a hundredth.
+    let ratio = reported.parse::<f64>().unwrap() / collision.largest_overlap_m();
+    // Reported to two digits, 5 %, after an inversion to a hundredth.
     assert!((ratio - 1.0).abs() < 0.06, "{line}: {ratio}");
 }
 

@@ -11,9 +11,9 @@
 //! through amplifier, noise and converter into a recording, and is read and picked from there
 //! as any other; the gauge has the means. Each trial has seeds of its own.
 
-#[path = "../whole_loop/judged.rs"]
-#[allow(dead_code, reason = "another example tells more")]
-mod judged;
+#[path = "../whole_loop/evaluated.rs"]
+#[allow(dead_code, reason = "another example uses more")]
+mod evaluated;
 
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::gauge::{Chains, Gauge, known_oils};
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for trial in 0..trials {
         let table = measured(&text, trial, &own)?;
         std::fs::remove_dir_all(&own)?;
-        gauged(&text, &table, &mut said)?;
+        run_gauge(&text, &table, &mut said)?;
         eprintln!("trial {} of {trials}", trial + 1);
     }
     for (said, used) in said.iter().zip(["both times", "incident times alone"]) {
@@ -92,7 +92,7 @@ fn rig() -> String {
 fn measured(text: &str, trial: u64, under: &Path) -> Result<String, Box<dyn Error>> {
     let seeds = trial * SHOTS + 1..=(trial + 1) * SHOTS;
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in judged::run(text, seeds, under)? {
+    for folder in evaluated::run(text, seeds, under)? {
         for entry in std::fs::read_dir(folder)? {
             files.push(entry?.path());
         }
@@ -104,7 +104,7 @@ fn measured(text: &str, trial: u64, under: &Path) -> Result<String, Box<dyn Erro
 }
 
 /// Holds every liquid against the oils, by both times and by incident times alone.
-fn gauged(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dyn Error>> {
+fn run_gauge(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dyn Error>> {
     let rig = Experiment::from_text("campaign.toml", text)?;
     let chain = |case: &str| rig.case(case).ok_or("the rig has no such case");
     let (dry, wet) = (chain("dry")??, chain("pump")??);

@@ -2,14 +2,14 @@
 //! of the same shots, and against the model's own curves. What docs/explanation/picking.md shows.
 //!
 //! `cargo run --release -p hertzchain --example whole_loop` fires on the chain of the
-//! paper, laid compact and without a push before every shot; `… -- FOLDER` judges the recordings that
+//! paper, laid compact and without a push before every shot; `… -- FOLDER` evaluates the recordings that
 //! `hertzchain campaign --out FOLDER` has made.
 
-mod judged;
+mod evaluated;
 
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::{Coverage, Method, Shape, coverage, median};
-use judged::{Judged, Speed, TIMES, agreement, by_speed, judge, run};
+use evaluated::{Evaluated, Speed, TIMES, agreement, by_speed, evaluate, run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ const COMPACT: [(&str, &str); 7] = [
 ];
 /// Seeds, that is shots a speed.
 const SEEDS: u64 = 20;
-/// Ends of the ranges of speed that coverage is told for, in m/s.
+/// Ends of the ranges of speed that coverage is reported for, in m/s.
 const RANGES_M_S: [(f64, f64); 5] = [(0.0, 0.09), (0.0, 0.2), (0.2, 0.5), (0.5, 2.5), (0.0, 2.5)];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut shots = Vec::new();
     for folder in &folders {
-        shots.extend(judge(folder, &Options::default())?);
+        shots.extend(evaluate(folder, &Options::default())?);
     }
     let mut cases: Vec<&str> = shots.iter().map(|shot| shot.case.as_str()).collect();
     cases.dedup();
@@ -64,7 +64,7 @@ fn compact(under: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
 }
 
 /// Bias, spread and coverage of measured times against those of the same shots.
-fn against_truth(shots: &[Judged], cases: &[&str]) {
+fn against_truth(shots: &[Evaluated], cases: &[&str]) {
     println!("Measured less true times of the same shots\n");
     println!(
         "| time | case | m/s | shots | bias ± error, ns | spread, ns | stated, ns | within 1 σ, % | within 1.96 σ, % |"
@@ -73,10 +73,10 @@ fn against_truth(shots: &[Judged], cases: &[&str]) {
     for (time, name) in TIMES.iter().enumerate() {
         for case in cases {
             for (from, to) in RANGES_M_S {
-                let inside = |shot: &&Judged| {
+                let inside = |shot: &&Evaluated| {
                     shot.case == *case && (from..to).contains(&shot.programmed_m_s())
                 };
-                let own: Vec<&Judged> = shots.iter().filter(inside).collect();
+                let own: Vec<&Evaluated> = shots.iter().filter(inside).collect();
                 if let Some(row) = truth_row(&own, time) {
                     println!("| {name} | {case} | {from} to {to} | {row}");
                 }
@@ -85,7 +85,7 @@ fn against_truth(shots: &[Judged], cases: &[&str]) {
     }
 }
 
-fn truth_row(shots: &[&Judged], time: usize) -> Option<String> {
+fn truth_row(shots: &[&Evaluated], time: usize) -> Option<String> {
     let found: Vec<_> = shots.iter().filter_map(|shot| shot.error(time)).collect();
     let errors: Vec<f64> = found.iter().map(|e| 1e9 * e.value).collect();
     let stated: Vec<f64> = found.iter().map(|e| 1e9 * e.sigma).collect();
@@ -112,10 +112,10 @@ fn by_other_methods(folders: &[PathBuf], cases: &[&str]) -> Result<(), Box<dyn E
         options.measuring.method = method;
         let mut shots = Vec::new();
         for folder in folders {
-            shots.extend(judge(folder, &options)?);
+            shots.extend(evaluate(folder, &options)?);
         }
         for case in cases {
-            let own: Vec<&Judged> = shots.iter().filter(|shot| shot.case == *case).collect();
+            let own: Vec<&Evaluated> = shots.iter().filter(|shot| shot.case == *case).collect();
             let [incident, reflected] = [0, 1].map(|time| 1e6 * largest_s(&own, time));
             println!("  {name}, {case}: {incident:+.1}, {reflected:+.1}");
         }
@@ -132,7 +132,7 @@ fn others() -> [(&'static str, Method); 3] {
     ]
 }
 
-fn largest_s(shots: &[&Judged], time: usize) -> f64 {
+fn largest_s(shots: &[&Evaluated], time: usize) -> f64 {
     let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
@@ -155,30 +155,30 @@ fn share(of: Coverage) -> String {
 }
 
 /// Means a speed against the model's curve, and against the shots' own times.
-fn against_model(shots: &[Judged], cases: &[&str]) {
+fn against_model(shots: &[Evaluated], cases: &[&str]) {
     let curves = [
-        ("the model's of the chain in equilibrium", judged::COMPACT),
+        ("the model's of the chain in equilibrium", evaluated::COMPACT),
         (
             "the model's of the chain with each shot's own gaps and loads",
-            judged::HELD,
+            evaluated::HELD,
         ),
         (
             "the recorded shots' own, taken to the measured speed",
-            judged::OWN,
+            evaluated::OWN,
         ),
     ];
     for (what, curve) in curves {
         println!("\nMeasured times less {what}, means a speed\n");
         for (time, name) in TIMES.iter().enumerate() {
             for case in cases {
-                let own: Vec<&Judged> = shots.iter().filter(|shot| shot.case == *case).collect();
+                let own: Vec<&Evaluated> = shots.iter().filter(|shot| shot.case == *case).collect();
                 let rows = by_speed(&own, time, curve);
                 let pulls: Vec<f64> = own.iter().map(|shot| shot.pull(time, curve)).collect();
                 let within =
                     |factor| coverage(&pulls, factor).map_or(f64::NAN, |found| 100.0 * found.share);
                 println!(
                     "{name}, {case}: {}; single shots within 1 and 1.96: {:.1} and {:.1} %",
-                    told(&rows),
+                    reported(&rows),
                     within(1.0),
                     within(1.96)
                 );
@@ -190,8 +190,8 @@ fn against_model(shots: &[Judged], cases: &[&str]) {
 
 /// Chi-square of all speeds, also without what the shots of a speed share, the largest departure in
 /// stated errors, and how many speeds are within these.
-fn told(rows: &[Speed]) -> String {
-    let judged = agreement(rows).map_or(String::new(), |c| {
+fn reported(rows: &[Speed]) -> String {
+    let evaluated = agreement(rows).map_or(String::new(), |c| {
         format!(
             "chi-square {:.1} of {}, p = {:.2}",
             c.value, c.freedom, c.probability
@@ -206,7 +206,7 @@ fn told(rows: &[Speed]) -> String {
         row.departure_s.value.powi(2) / own
     });
     format!(
-        "{judged}, without what shots share {:.0}; at most {largest:.1} errors, {within} within 1.96",
+        "{evaluated}, without what shots share {:.0}; at most {largest:.1} errors, {within} within 1.96",
         alone.sum::<f64>()
     )
 }

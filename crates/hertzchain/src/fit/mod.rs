@@ -5,7 +5,7 @@ mod limits;
 mod more;
 pub mod pulses;
 mod results;
-mod rivals;
+mod alternatives;
 mod tables;
 mod validation;
 
@@ -13,7 +13,7 @@ pub use checkpoint::{CHAIN, finished, leave, saved};
 pub use limits::{Limit, Limits};
 pub use more::{Curves, More, Sampled};
 pub use results::{inferred, joined, json, rows_json};
-pub use rivals::{Lost, Rival, Rivals};
+pub use alternatives::{Unfitted, AlternativeModel, AlternativeModels};
 pub use tables::{Table, of_any as tables_of_any, tables};
 
 use crate::failure::Failure;
@@ -21,7 +21,7 @@ use crate::inference::{self, user, wanted};
 use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    Advice, Covariance, CurveProblem, Data, Fit, FittedCurve, Fitting, FreeNumber, Goodness,
+    Advice, Covariance, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
     Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started,
     fit as least_squares,
 };
@@ -35,7 +35,7 @@ pub(crate) const SHARE_OF_A_STANDARD_ERROR: f64 = 0.682_689_5;
 /// Difference of costs above which two minima are different.
 const SAME_COST: f64 = 0.01;
 
-/// What any fit tells.
+/// What any fit determines.
 pub struct Inferred {
     /// The free parameters.
     pub parameters: Vec<Parameter>,
@@ -54,19 +54,19 @@ pub struct Inferred {
 }
 
 /// Everything about a fit of a curve.
-pub struct Fitted {
+pub struct FitResult {
     /// What was fitted.
     pub problem: CurveProblem,
     /// What came of it.
     pub inferred: Inferred,
     /// The model at the best fit.
-    pub curve: FittedCurve,
+    pub curve: FitCurve,
     /// Largest relative error of the model's times of flight there.
     pub accuracy: f64,
     /// What would settle what the data leave open, if they leave anything open.
     pub advice: Option<Advice>,
     /// Other models of the same data.
-    pub rivals: Option<Rivals>,
+    pub alternatives: Option<AlternativeModels>,
     /// The unit that speeds seem to be in, where the model does not follow and they seem not
     /// to be in m/s.
     pub unit_of_speed: Option<&'static str>,
@@ -101,7 +101,7 @@ impl Inferred {
     }
 }
 
-impl Fitted {
+impl FitResult {
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
     #[must_use]
@@ -114,7 +114,7 @@ impl Fitted {
     /// flight a pair are all that was measured, and how to look for them; nothing if the fit
     /// had several starts.
     #[must_use]
-    pub fn several_pairs(&self) -> Option<String> {
+    pub fn pair_warning(&self) -> Option<String> {
         let numbers = self.problem.model().numbers().as_slice();
         let of = |number: &FreeNumber, short: &str| {
             let (owner, name) = number
@@ -253,28 +253,28 @@ fn asked(arguments: &Arguments) -> Fitting {
 ///
 /// # Errors
 /// Options, data and model that do not fit together; what is in the way of a fit.
-pub fn fit(data: &Data, experiment: &Experiment, options: &Arguments) -> Result<Fitted, Failure> {
+pub fn fit(data: &Data, experiment: &Experiment, options: &Arguments) -> Result<FitResult, Failure> {
     let experiment = inference::in_case(experiment.clone(), &data.case)?;
     let experiment = inference::changed(experiment, &options.modelled.set)?;
     let model = inference::model(&experiment, &options.modelled, &options.freed)?;
-    fitted(
+    fit_result(
         inference::problem(model, data.clone(), &options.freed)?,
         options,
     )
 }
 
-/// Fits a curve, tells the uncertainty as the method asks, and compares with
+/// Fits a curve, determines the uncertainty as the method asks, and compares with
 /// other models.
 ///
 /// # Errors
 /// What is in the way of a fit.
-pub fn fitted(problem: CurveProblem, arguments: &Arguments) -> Result<Fitted, Failure> {
+pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
     attempted(problem, 0, arguments)
 }
 
 /// The same, after so many attempts with less accurate curves.
-fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<Fitted, Failure> {
+fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<FitResult, Failure> {
     let fit = best_of_starts(&problem, 0, &asked(arguments))?;
     if let Some(finer) = finer(&problem, &fit, times) {
         return attempted(finer, times + 1, arguments);
@@ -282,7 +282,7 @@ fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
     let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
-    told(problem, found)
+    reported(problem, found)
 }
 
 /// The same where `computed` has the problem's residuals from elsewhere, such as
@@ -290,12 +290,12 @@ fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result
 /// with `--direct`.
 ///
 /// # Errors
-/// As [`fitted`].
-pub fn fitted_elsewhere(
+/// As [`fit_result`].
+pub fn fit_from_other_starts(
     problem: CurveProblem,
     computed: &dyn Problem,
     arguments: &Arguments,
-) -> Result<Fitted, Failure> {
+) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
     let fit = best_of_starts(computed, 0, &asked(arguments))?;
     let covariance = Covariance::new(computed.parameters(), &fit);
@@ -307,7 +307,7 @@ pub fn fitted_elsewhere(
         arguments,
     )?;
     let found = concluded(&problem, computed, (fit, covariance, more), arguments)?;
-    told(problem, found)
+    reported(problem, found)
 }
 
 /// What else takes many curves: limits at bounds, and other models.
@@ -316,11 +316,11 @@ fn concluded(
     computed: &dyn Problem,
     (fit, covariance, more): (Fit, Covariance, More),
     arguments: &Arguments,
-) -> Result<(Inferred, Option<Rivals>), Failure> {
+) -> Result<(Inferred, Option<AlternativeModels>), Failure> {
     let label = |at: usize| problem.residual_label(at);
     let identifiability = Identifiability::new(problem.parameters(), &fit, label);
     let limits = limits::limits(computed, (&fit, &covariance), &identifiability, &more)?;
-    let rivals = rivals::rivals((problem, computed), &fit, arguments)?;
+    let alternatives = alternatives::alternatives((problem, computed), &fit, arguments)?;
     let inferred = Inferred {
         parameters: problem.parameters().to_vec(),
         goodness: Goodness::new(problem, &fit),
@@ -330,24 +330,24 @@ fn concluded(
         covariance,
         fit,
     };
-    Ok((inferred, rivals))
+    Ok((inferred, alternatives))
 }
 
-fn told(
+fn reported(
     problem: CurveProblem,
-    (inferred, rivals): (Inferred, Option<Rivals>),
-) -> Result<Fitted, Failure> {
+    (inferred, alternatives): (Inferred, Option<AlternativeModels>),
+) -> Result<FitResult, Failure> {
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
     let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
     let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
     let open = !inferred.identifiability.unidentifiable.is_empty() && fit.ending.converged();
     let rejected = inferred.goodness.is_rejected();
-    Ok(Fitted {
+    Ok(FitResult {
         unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
         advice: open.then(|| problem.suggested_measurements(fit)),
-        curve: problem.fitted_curve(fit, covariance).map_err(user)?,
+        curve: problem.fit_curve(fit, covariance).map_err(user)?,
         accuracy: accuracy.map_err(user)?,
-        rivals,
+        alternatives,
         inferred,
         problem,
     })

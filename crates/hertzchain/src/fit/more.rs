@@ -11,7 +11,7 @@ use hertzchain_infer::{
 };
 use hertzchain_sim::note_progress;
 
-/// What a method tells beside the covariance.
+/// What a method determines beside the covariance.
 pub enum More {
     /// Nothing.
     Nothing,

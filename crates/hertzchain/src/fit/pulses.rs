@@ -76,14 +76,14 @@ fn with_filter(experiment: &Experiment, arguments: &Arguments) -> Result<Experim
     changed.map_err(user)
 }
 
-/// Refused records that are told one by one.
-pub const TOLD: usize = 5;
+/// Refused records that are reported one by one.
+pub const REPORTED: usize = 5;
 
 /// An error, and what was refused before it.
 fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {
     let lines: Vec<String> = refused
         .iter()
-        .take(TOLD)
+        .take(REPORTED)
         .map(|r| format!("\n  {r}"))
         .collect();
     Failure::User(format!(
@@ -98,7 +98,7 @@ fn records(
     arguments: &Arguments,
 ) -> Result<(Vec<Pulses>, Vec<String>), Failure> {
     let recorded = &arguments.recorded;
-    let told = recorded.shots.as_deref().map(list).transpose()?;
+    let reported = recorded.shots.as_deref().map(list).transpose()?;
     let reading = ReadOptions {
         rate_hz: recorded.rate.map(|rate| rate.0),
         channels: recorded.channel.clone(),
@@ -116,14 +116,14 @@ fn records(
                 }
             };
             let asked = arguments.measured.case.as_deref();
-            let listed = told
+            let listed = reported
                 .as_ref()
                 .and_then(|list| list.case(&record.file, record.shot));
             let own = listed.or(record.case.as_deref());
             if asked.is_some_and(|case| own.is_some_and(|own| own != case)) {
                 continue;
             }
-            let speed = speed(&record, told.as_ref(), experiment, arguments);
+            let speed = speed(&record, reported.as_ref(), experiment, arguments);
             let volts: Vec<Vec<f64>> = record.channels.into_iter().map(|c| c.volts).collect();
             let speeds = (speed, record.programmed_speed_m_s);
             match Pulses::of(&record.source, speeds, record.interval_s, &volts) {
@@ -139,11 +139,11 @@ fn records(
 /// its error as either says, or the command line, or the model's photogate.
 fn speed(
     record: &Record,
-    told: Option<&ShotList>,
+    reported: Option<&ShotList>,
     experiment: &Experiment,
     arguments: &Arguments,
 ) -> Option<Estimate> {
-    let listed = told.and_then(|list| list.speed(&record.file, record.shot));
+    let listed = reported.and_then(|list| list.speed(&record.file, record.shot));
     // A record without a speed of its own must not end the look at the table.
     let recorded = || Some((record.speed_m_s?, record.speed_error_m_s));
     let (value, error) = listed.or_else(recorded)?;
@@ -180,11 +180,11 @@ fn respond() -> Respond {
     })
 }
 
-/// Fits whole pulses and tells the uncertainty as the method asks.
+/// Fits whole pulses and determines the uncertainty as the method asks.
 ///
 /// # Errors
 /// What is in the way of a fit; where no record is left, why.
-pub fn fitted(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
+pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
     let mut refused = recorded.refused;
     let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
@@ -243,9 +243,9 @@ impl Pulsed {
         let mut numbers = model.numbers().as_slice().iter();
         let free = numbers.find(|number| number.path() == Some(LOW_PASS));
         let parameters = self.inferred.parameters.iter();
-        let mut fitted = parameters.zip(&self.inferred.fit.point);
-        let fitted = free.and_then(|free| fitted.find(|(p, _)| p.name == free.name()));
-        if let Some((_, corner_hz)) = fitted {
+        let mut fit_result = parameters.zip(&self.inferred.fit.point);
+        let fit_result = free.and_then(|free| fit_result.find(|(p, _)| p.name == free.name()));
+        if let Some((_, corner_hz)) = fit_result {
             amplifier.low_pass_hz = *corner_hz;
         }
         amplifier.filters()
@@ -257,17 +257,17 @@ const LOW_PASS: &str = "campaign.amplifier.low_pass";
 
 /// Everything, to be read by programs and to be repeated.
 #[must_use]
-pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
-    let records = fitted.problem.records().iter();
+pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
+    let records = fit_result.problem.records().iter();
     let own = json!({
-        "model": fitted.problem.model().experiment().name(),
-        "kept": inference::kept(fitted.problem.model(), &arguments.modelled.set),
-        "held_loads": inference::held_loads(fitted.problem.model()),
-        "references": inference::references_json(fitted.problem.model()),
-        "filters": fitted.filters(),
-        "unasked": fitted.unasked(arguments),
-        "residuals": fitted.problem.residual_count(),
-        "fitted_to_single_records": fitted.problem.nuisance_count(),
+        "model": fit_result.problem.model().experiment().name(),
+        "kept": inference::unit_changes(fit_result.problem.model(), &arguments.modelled.set),
+        "held_loads": inference::held_loads(fit_result.problem.model()),
+        "references": inference::references_json(fit_result.problem.model()),
+        "filters": fit_result.filters(),
+        "unasked": fit_result.unasked(arguments),
+        "residuals": fit_result.problem.residual_count(),
+        "fitted_to_single_records": fit_result.problem.nuisance_count(),
         "records": records.map(|record| json!({
             "source": record.source,
             "speed_m_s": record.speed_m_s.value,
@@ -275,9 +275,9 @@ pub fn json(fitted: &Pulsed, arguments: &Arguments) -> Value {
             "samples_in_a_mean": record.width,
             "error_of_means_v": record.sigma_v,
         })).collect::<Value>(),
-        "left_out": fitted.refused,
+        "left_out": fit_result.refused,
     });
-    joined(own, inferred(&fitted.inferred, arguments))
+    joined(own, inferred(&fit_result.inferred, arguments))
 }
 
 /// A record's channel as it was measured and as the fit has it.
@@ -294,12 +294,12 @@ pub struct Shown<'a> {
 ///
 /// # Errors
 /// What is in the way of a shot.
-pub fn shown(fitted: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
-    let records = fitted.problem.records().iter().enumerate();
+pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
+    let records = fit_result.problem.records().iter().enumerate();
     let all = records.flat_map(|(at, record)| {
         (0..record.means_v.len()).map(move |channel| {
-            let point = &fitted.inferred.fit.point;
-            let columns = fitted.problem.picture(point, at, channel).map_err(user)?;
+            let point = &fit_result.inferred.fit.point;
+            let columns = fit_result.problem.picture(point, at, channel).map_err(user)?;
             Ok(Shown {
                 record,
                 channel,
@@ -333,8 +333,8 @@ pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
 #[must_use]
 pub fn rows_json(shown: &[Shown<'_>]) -> Value {
     let rows = shown.iter().flat_map(|shown| {
-        let [times, measured, fitted] = &shown.columns;
-        let means = times.iter().zip(measured).zip(fitted);
+        let [times, measured, fit_result] = &shown.columns;
+        let means = times.iter().zip(measured).zip(fit_result);
         means.map(|((time_s, measured_v), fitted_v)| {
             json!({
                 "source": shown.record.source,

@@ -1,8 +1,8 @@
 //! A fit as JSON, in SI.
 
 use super::more::{Curves, More};
-use super::rivals::{Rival, Rivals};
-use super::{Fitted, Inferred, Limit};
+use super::alternatives::{AlternativeModel, AlternativeModels};
+use super::{FitResult, Inferred, Limit};
 use crate::inference::{assumed, held_loads, kept, references_json, widened};
 use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
@@ -10,26 +10,26 @@ use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
 #[must_use]
-pub fn json(fitted: &Fitted, arguments: &Arguments) -> Value {
-    let data = fitted.problem.data();
+pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
+    let data = fit_result.problem.data();
     let own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
-        "model": fitted.problem.model().experiment().name(),
-        "model_accuracy": fitted.accuracy,
+        "model": fit_result.problem.model().experiment().name(),
+        "model_accuracy": fit_result.accuracy,
         "assumed": assumed(data, &arguments.measured),
-        "kept": kept(fitted.problem.model(), &arguments.modelled.set),
-        "held_loads": held_loads(fitted.problem.model()),
-        "references": references_json(fitted.problem.model()),
+        "kept": unit_changes(fit_result.problem.model(), &arguments.modelled.set),
+        "held_loads": held_loads(fit_result.problem.model()),
+        "references": references_json(fit_result.problem.model()),
         "widened": widened(data),
-        "instruction_set": fitted.problem.model().set.name(),
-        "fingerprint": fitted.problem.fingerprint().to_string(),
-        "would_separate": fitted.advice.as_ref().map_or(Vec::new(), Advice::words),
-        "several_pairs": fitted.several_pairs(),
-        "unasked": fitted.unasked(arguments),
-        "prospects": fitted.advice.as_ref().map(prospects),
-        "comparison": fitted.rivals.as_ref().map(comparison),
+        "instruction_set": fit_result.problem.model().set.name(),
+        "fingerprint": fit_result.problem.fingerprint().to_string(),
+        "would_separate": fit_result.advice.as_ref().map_or(Vec::new(), Advice::words),
+        "several_pairs": fit_result.pair_warning(),
+        "unasked": fit_result.unasked(arguments),
+        "prospects": fit_result.advice.as_ref().map(prospects),
+        "comparison": fit_result.alternatives.as_ref().map(comparison),
     });
-    joined(own, inferred(&fitted.inferred, arguments))
+    joined(own, inferred(&fit_result.inferred, arguments))
 }
 
 /// What further data would determine.
@@ -56,10 +56,10 @@ pub fn joined(mut one: Value, other: Value) -> Value {
     one
 }
 
-/// What any fit tells.
+/// What any fit determines.
 #[must_use]
-pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
-    let (fit, goodness) = (&fitted.fit, &fitted.goodness);
+pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
+    let (fit, goodness) = (&fit_result.fit, &fit_result.goodness);
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "options": crate::options::recorded(arguments),
@@ -68,17 +68,17 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
         "robust": arguments.robust,
         "robust_loss": arguments.robust.then(|| json!({
             "name": fit.loss.name(), "scale": fit.loss.scale(), "residuals_beyond": fit.beyond_loss(),
-            "covariance_factor": fitted.covariance.loss_factor,
+            "covariance_factor": fit_result.covariance.loss_factor,
         })),
-        "parameters": parameters(fitted),
-        "covariance": fitted.covariance.matrix,
-        "correlation": correlations(fitted),
+        "parameters": parameters(fit_result),
+        "covariance": fit_result.covariance.matrix,
+        "correlation": correlations(fit_result),
         "converged": fit.ending.converged(),
         "starts_agreeing": fit.agreeing_starts(),
         "starts": fit.starts.iter().map(|start| json!({
             "from": start.start, "to": start.point, "cost": start.cost, "iterations": start.iterations,
         })).collect::<Value>(),
-        "other_minima": fitted.other_minima().iter().map(|(start, starts)| json!({
+        "other_minima": fit_result.other_minima().iter().map(|(start, starts)| json!({
             "point": start.point, "chi_square_rise": 2.0 * (start.cost - fit.cost), "starts": starts,
         })).collect::<Value>(),
         "evaluations": fit.evaluations,
@@ -95,29 +95,29 @@ pub fn inferred(fitted: &Inferred, arguments: &Arguments) -> Value {
             "probability_fewer": r.probability_fewer, "probability_more": r.probability_more,
         })),
         "jacobian_disagreement": fit.jacobian.disagreement,
-        "singular_values": fitted.identifiability.singular_values,
-        "directions": fitted.identifiability.directions,
-        "singular_value_floor": fitted.identifiability.floor,
-        "not_determined": fitted.identifiability.unidentifiable.iter().map(|c| json!({
+        "singular_values": fit_result.identifiability.singular_values,
+        "directions": fit_result.identifiability.directions,
+        "singular_value_floor": fit_result.identifiability.floor,
+        "not_determined": fit_result.identifiability.unidentifiable.iter().map(|c| json!({
             "words": c.words, "change": c.change,
         })).collect::<Value>(),
-        "profiles": profiles(fitted),
-        "posterior": posterior(fitted),
+        "profiles": profiles(fit_result),
+        "posterior": posterior(fit_result),
     })
 }
 
-fn parameters(fitted: &Inferred) -> Value {
-    let parameters = fitted.parameters.iter().enumerate();
+fn parameters(fit_result: &Inferred) -> Value {
+    let parameters = fit_result.parameters.iter().enumerate();
     let one = |(at, parameter): (usize, &Parameter)| {
         let finite = |x: f64| x.is_finite().then_some(x);
         json!({
             "name": parameter.name,
             "unit": parameter.unit,
-            "value": fitted.fit.point[at],
-            "standard_error": finite(fitted.standard_error(at)).filter(|_| !fitted.fit.is_bound(at)),
-            "limit": fitted.limit(at).map(Limit::json),
-            "determined": fitted.standard_error(at).is_finite(),
-            "at_bound": fitted.fit.is_bound(at),
+            "value": fit_result.fit.point[at],
+            "standard_error": finite(fit_result.standard_error(at)).filter(|_| !fit_result.fit.is_bound(at)),
+            "limit": fit_result.limit(at).map(Limit::json),
+            "determined": fit_result.standard_error(at).is_finite(),
+            "at_bound": fit_result.fit.is_bound(at),
             "start": parameter.start,
             "lower": finite(parameter.lower),
             "upper": finite(parameter.upper),
@@ -136,9 +136,9 @@ fn prior(prior: Prior) -> Value {
     }
 }
 
-fn correlations(fitted: &Inferred) -> Value {
-    let count = fitted.fit.point.len();
-    let row = |i: usize| (0..count).map(move |j| fitted.covariance.correlation(i, j));
+fn correlations(fit_result: &Inferred) -> Value {
+    let count = fit_result.fit.point.len();
+    let row = |i: usize| (0..count).map(move |j| fit_result.covariance.correlation(i, j));
     (0..count)
         .map(|i| row(i).collect::<Vec<_>>())
         .collect::<Vec<_>>()
@@ -154,13 +154,13 @@ fn end(end: End) -> Value {
     }
 }
 
-fn profiles(fitted: &Inferred) -> Value {
-    let More::Profiles(profiles) = &fitted.more else {
+fn profiles(fit_result: &Inferred) -> Value {
+    let More::Profiles(profiles) = &fit_result.more else {
         return Value::Null;
     };
     let one = |profile: &Profile| {
         json!({
-            "name": fitted.parameters[profile.parameter].name,
+            "name": fit_result.parameters[profile.parameter].name,
             "values": profile.values,
             "chi_square_rise": profile.rise,
             "intervals": profile.intervals.iter().map(|interval| json!({
@@ -171,8 +171,8 @@ fn profiles(fitted: &Inferred) -> Value {
     profiles.iter().map(one).collect()
 }
 
-fn posterior(fitted: &Inferred) -> Value {
-    let More::Sampled(sampled) = &fitted.more else {
+fn posterior(fit_result: &Inferred) -> Value {
+    let More::Sampled(sampled) = &fit_result.more else {
         return Value::Null;
     };
     let (error, why, computed) = match &sampled.curves {
@@ -212,51 +212,51 @@ fn posterior(fitted: &Inferred) -> Value {
     all
 }
 
-fn comparison(rivals: &Rivals) -> Value {
+fn comparison(alternatives: &AlternativeModels) -> Value {
     json!({
-        "models": rivals.comparison.as_ref().map(|found| compared(rivals, found)),
-        "favoured": (rivals.comparison.as_ref())
-            .and_then(|found| found.favoured).map(|at| rivals.all[at].name.clone()),
-        "sentence": rivals.comparison.as_ref().map(|found| found.sentence.clone()),
-        "without_minimum": rivals.lost.iter().map(|lost| json!({
+        "models": alternatives.comparison.as_ref().map(|found| compared(alternatives, found)),
+        "favoured": (alternatives.comparison.as_ref())
+            .and_then(|found| found.favoured).map(|at| alternatives.all[at].name.clone()),
+        "sentence": alternatives.comparison.as_ref().map(|found| found.sentence.clone()),
+        "without_minimum": alternatives.lost.iter().map(|lost| json!({
             "model": lost.name, "chi_square": lost.chi_square, "why": lost.why,
         })).collect::<Value>(),
     })
 }
 
-fn compared(rivals: &Rivals, comparison: &Comparison) -> Value {
+fn compared(alternatives: &AlternativeModels, comparison: &Comparison) -> Value {
     let finite = |x: f64| x.is_finite().then_some(x);
-    let one = |(at, rival): (usize, &Rival)| {
+    let one = |(at, alternative): (usize, &AlternativeModel)| {
         let criteria = &comparison.criteria[at];
         json!({
-            "model": rival.name,
-            "point": rival.fit.point,
-            "settings_left_out": rival.without,
-            "kept": rival.kept,
-            "chi_square": rival.fit.chi_square(),
+            "model": alternative.name,
+            "point": alternative.fit.point,
+            "settings_left_out": alternative.without,
+            "kept": alternative.kept,
+            "chi_square": alternative.fit.chi_square(),
             "freedom": criteria.chi_square.map(|found| found.freedom),
             "probability": criteria.chi_square.map(|found| found.probability),
             "aic": criteria.aic,
             "aicc": finite(criteria.aicc),
             "bic": criteria.bic,
             "weight": comparison.weights[at],
-            "cross_validation": rival.foretells.as_ref().map(|found| json!({
+            "cross_validation": alternative.foretells.as_ref().map(|found| json!({
                 "mean": found.mean, "error": found.error,
             })),
         })
     };
-    rivals.all.iter().enumerate().map(one).collect()
+    alternatives.all.iter().enumerate().map(one).collect()
 }
 
 /// Every measured value beside the fitted one with its standard error.
 #[must_use]
-pub fn rows_json(fitted: &Fitted) -> Value {
-    let measured = fitted.problem.measured().into_iter();
+pub fn rows_json(fit_result: &FitResult) -> Value {
+    let measured = fit_result.problem.measured().into_iter();
     let one = |((at, of), residual): ((usize, Observable), &f64)| {
-        let row = &fitted.problem.data().rows[at];
+        let row = &fit_result.problem.data().rows[at];
         let value = row.value(of);
-        let predicted = fitted.curve.predicted.get(at);
-        let sd = fitted.curve.sd.get(at).map(|row| row[of as usize]);
+        let predicted = fit_result.curve.predicted.get(at);
+        let sd = fit_result.curve.sd.get(at).map(|row| row[of as usize]);
         json!({
             "line": row.line,
             "speed_m_s": row.speed_m_s.value,
@@ -270,7 +270,7 @@ pub fn rows_json(fitted: &Fitted) -> Value {
         })
     };
     measured
-        .zip(&fitted.inferred.fit.residuals)
+        .zip(&fit_result.inferred.fit.residuals)
         .map(one)
         .collect()
 }

@@ -13,7 +13,7 @@ use hertzchain_infer::{
 };
 
 /// A model that was fitted to the same data.
-pub struct Rival {
+pub struct AlternativeModel {
     /// Its name, with what is free.
     pub name: String,
     /// Its fit.
@@ -28,7 +28,7 @@ pub struct Rival {
 }
 
 /// A model that found no minimum.
-pub struct Lost {
+pub struct Unfitted {
     /// Its name, with what is free.
     pub name: String,
     /// How far from the data it ended.
@@ -38,21 +38,21 @@ pub struct Lost {
 }
 
 /// All models, the fit's own first, and what the data say of them.
-pub struct Rivals {
+pub struct AlternativeModels {
     /// Models.
-    pub all: Vec<Rival>,
+    pub all: Vec<AlternativeModel>,
     /// Models that found no minimum, and so are out of the comparison.
-    pub lost: Vec<Lost>,
+    pub lost: Vec<Unfitted>,
     /// Their comparison, if at least two are left.
     pub comparison: Option<Comparison>,
 }
 
 /// Fits the other models to the same data, if any are asked for.
-pub(super) fn rivals(
+pub(super) fn alternatives(
     (problem, kept): (&CurveProblem, &dyn Problem),
     own: &Fit,
     arguments: &Arguments,
-) -> Result<Option<Rivals>, Failure> {
+) -> Result<Option<AlternativeModels>, Failure> {
     if arguments.against.is_empty() {
         return Ok(None);
     }
@@ -61,27 +61,27 @@ pub(super) fn rivals(
         problem.model().experiment().name(),
         arguments.freed.free.join(", ")
     );
-    let mut all = vec![rival(name, (problem, kept), own.clone(), arguments.seed)?];
+    let mut all = vec![alternative(name, (problem, kept), own.clone(), arguments.seed)?];
     let mut lost = Vec::new();
     for against in &arguments.against {
         match other(against, problem, arguments)? {
-            Ok(rival) => all.push(rival),
+            Ok(alternative) => all.push(alternative),
             Err(without) => lost.push(without),
         }
     }
     let compared: Vec<Compared<'_>> = all
         .iter()
-        .map(|rival| Compared {
-            name: &rival.name,
-            fit: &rival.fit,
-            cross_validation: rival.foretells.as_ref(),
+        .map(|alternative| Compared {
+            name: &alternative.name,
+            fit: &alternative.fit,
+            cross_validation: alternative.foretells.as_ref(),
         })
         .collect();
     let comparison = match compared.len() {
         1 => None,
         _ => Some(compare(&compared).map_err(user)?),
     };
-    Ok(Some(Rivals {
+    Ok(Some(AlternativeModels {
         all,
         lost,
         comparison,
@@ -92,7 +92,7 @@ fn other(
     against: &Against,
     problem: &CurveProblem,
     arguments: &Arguments,
-) -> Result<Result<Rival, Lost>, Failure> {
+) -> Result<Result<AlternativeModel, Unfitted>, Failure> {
     let name = format!("{} ({})", against.model, against.free.join(", "));
     let of_rival = |failure| match failure {
         Failure::User(why) => Failure::User(format!("--against {name}: {why}")),
@@ -109,24 +109,24 @@ fn attempted(
     without: Vec<String>,
     times: u32,
     arguments: &Arguments,
-) -> Result<Result<Rival, Lost>, Failure> {
-    let told = kept(posed.model(), &arguments.modelled.set);
+) -> Result<Result<AlternativeModel, Unfitted>, Failure> {
+    let reported = unit_changes(posed.model(), &arguments.modelled.set);
     let fit = best_of_starts(&posed, 0, &asked(arguments))?;
     if let Some(finer) = finer(&posed, &fit, times) {
         return attempted(name, finer, without, times + 1, arguments);
     }
     if !fit.ending.converged() {
-        return Ok(Err(Lost {
+        return Ok(Err(Unfitted {
             chi_square: fit.chi_square(),
             why: fit.ending.to_string(),
             name,
         }));
     }
-    let rival = rival(name.clone(), (&posed, &posed), fit, arguments.seed)?;
-    Ok(Ok(Rival {
+    let alternative = alternative(name.clone(), (&posed, &posed), fit, arguments.seed)?;
+    Ok(Ok(AlternativeModel {
         without,
-        kept: told,
-        ..rival
+        kept: reported,
+        ..alternative
     }))
 }
 
@@ -139,7 +139,7 @@ fn posed(
 ) -> Result<(CurveProblem, Vec<String>), Failure> {
     let mut modelled = against.modelled(&arguments.modelled);
     // A model far from the data is steep there: its noise would hide the minimum.
-    modelled.accuracy = Accuracy(modelled.accuracy.0.min(RIVALS_ACCURACY));
+    modelled.accuracy = Accuracy(modelled.accuracy.0.min(ALTERNATIVES_ACCURACY));
     let data = problem.data().clone();
     let sets = std::mem::take(&mut modelled.set);
     let plain = inference::experiment(&modelled, Some(&data.case))?;
@@ -169,14 +169,14 @@ fn set_where_known(
 }
 
 /// What is known of numbers, by the names that a rival frees them by.
-fn renamed(known: &Freed, own: &Experiment, free: &[String], rival: &Experiment) -> Freed {
+fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Experiment) -> Freed {
     let name = |given: &Assignment| {
         let of_own = known.free.iter().map(|name| plain(name));
         let number = of_own.filter(|number| is_of(&given.name, number));
         let number = number.max_by_key(|number| number.len())?;
         let of_rival = free.iter().map(|name| plain(name));
         let mut same =
-            of_rival.filter(|other| *other == number || same_number((own, number), (rival, other)));
+            of_rival.filter(|other| *other == number || same_number((own, number), (alternative, other)));
         Some(format!("{}{}", same.next()?, &given.name[number.len()..]))
     };
     let all = |given: &[Assignment]| {
@@ -228,14 +228,14 @@ fn about(freed: Freed, parameters: &[&str]) -> Freed {
 }
 
 /// Relative accuracy of other models' times of flight.
-const RIVALS_ACCURACY: f64 = 1e-6;
+const ALTERNATIVES_ACCURACY: f64 = 1e-6;
 
-fn rival(
+fn alternative(
     name: String,
     (problem, kept): (&CurveProblem, &dyn Problem),
     fit: Fit,
     seed: u64,
-) -> Result<Rival, Failure> {
+) -> Result<AlternativeModel, Failure> {
     // What was measured at one speed is left out together.
     let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
     let how = Folding {
@@ -248,7 +248,7 @@ fn rival(
         .transpose();
     wanted()?;
     let foretells = foretells.map_err(|error| Failure::User(format!("{name}: {error}")))?;
-    Ok(Rival {
+    Ok(AlternativeModel {
         name,
         fit,
         foretells,

@@ -1,8 +1,8 @@
 //! A fit as tables (CSV), in SI: what `fit.json` holds, and the samples of a posterior.
 
 use super::more::{More, Sampled};
-use super::rivals::Rivals;
-use super::{Fitted, Inferred};
+use super::alternatives::AlternativeModels;
+use super::{FitResult, Inferred};
 use crate::csv::{Cell, Csv, square};
 use hertzchain_infer::{
     Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile, titled,
@@ -13,33 +13,33 @@ pub type Table = (&'static str, String);
 
 /// Every table of a fit of a curve.
 #[must_use]
-pub fn tables(fitted: &Fitted) -> Vec<Table> {
-    let mut all = vec![("fit.csv", rows(fitted))];
-    all.extend(of_any(&fitted.inferred));
-    let rivals = fitted.rivals.as_ref();
-    all.extend(rivals.map(|rivals| ("comparison.csv", comparison(rivals))));
+pub fn tables(fit_result: &FitResult) -> Vec<Table> {
+    let mut all = vec![("fit.csv", rows(fit_result))];
+    all.extend(of_any(&fit_result.inferred));
+    let alternatives = fit_result.alternatives.as_ref();
+    all.extend(alternatives.map(|alternatives| ("comparison.csv", comparison(alternatives))));
     all
 }
 
 /// Tables that any fit has.
 #[must_use]
-pub fn of_any(fitted: &Inferred) -> Vec<Table> {
-    let parameters = &fitted.parameters;
+pub fn of_any(fit_result: &Inferred) -> Vec<Table> {
+    let parameters = &fit_result.parameters;
     let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
     let titles: Vec<String> = parameters.iter().map(Parameter::title).collect();
     let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
-    let covariance = &fitted.covariance;
+    let covariance = &fit_result.covariance;
     let entry = |i: usize, j: usize| Some(covariance.matrix[i][j]);
     let correlation = |i: usize, j: usize| covariance.correlation(i, j);
     let mut all = vec![
-        ("summary.csv", summary(fitted)),
-        ("parameters.csv", self::parameters(fitted)),
+        ("summary.csv", summary(fit_result)),
+        ("parameters.csv", self::parameters(fit_result)),
         ("covariance.csv", square(&titles, entry).text()),
         ("correlation.csv", square(&names, correlation).text()),
-        ("singular-values.csv", singular_values(fitted, &names)),
-        ("starts.csv", starts(fitted)),
+        ("singular-values.csv", singular_values(fit_result, &names)),
+        ("starts.csv", starts(fit_result)),
     ];
-    match &fitted.more {
+    match &fit_result.more {
         More::Nothing => {}
         More::Profiles(found) => {
             all.push(("profiles.csv", profiles(parameters, found)));
@@ -50,9 +50,9 @@ pub fn of_any(fitted: &Inferred) -> Vec<Table> {
     all
 }
 
-/// One line a number that tells of the whole fit.
-fn summary(fitted: &Inferred) -> String {
-    let (fit, goodness) = (&fitted.fit, &fitted.goodness);
+/// One line a number of the whole fit.
+fn summary(fit_result: &Inferred) -> String {
+    let (fit, goodness) = (&fit_result.fit, &fit_result.goodness);
     let (chi_square, runs) = (goodness.chi_square, goodness.runs);
     let lines: [(&str, Cell); 12] = [
         ("converged", fit.ending.converged().into()),
@@ -74,11 +74,11 @@ fn summary(fitted: &Inferred) -> String {
             "jacobian_disagreement",
             fit.jacobian.worst_disagreement().into(),
         ),
-        ("singular_value_floor", fitted.identifiability.floor.into()),
+        ("singular_value_floor", fit_result.identifiability.floor.into()),
         (
             "combinations_determined",
             (fit.ending.converged())
-                .then(|| fitted.identifiability.determined())
+                .then(|| fit_result.identifiability.determined())
                 .into(),
         ),
     ];
@@ -86,16 +86,16 @@ fn summary(fitted: &Inferred) -> String {
     Csv::new(["quantity", "value"]).with_all(lines, line).text()
 }
 
-fn parameters(fitted: &Inferred) -> String {
+fn parameters(fit_result: &Inferred) -> String {
     let titles = "name,unit,value,standard_error,determined,at_bound,limit_68,limit_95,start,lower,upper,scale";
     let line = |(at, parameter): (usize, &Parameter)| -> [Cell; 12] {
-        let sd = fitted.standard_error(at);
-        let is_bound = fitted.fit.is_bound(at);
-        let limit = |which: usize| fitted.limit(at)?.ends[which].closed();
+        let sd = fit_result.standard_error(at);
+        let is_bound = fit_result.fit.is_bound(at);
+        let limit = |which: usize| fit_result.limit(at)?.ends[which].closed();
         [
             parameter.name.clone().into(),
             parameter.unit.clone().into(),
-            fitted.fit.point[at].into(),
+            fit_result.fit.point[at].into(),
             (!is_bound).then_some(sd).into(),
             sd.is_finite().into(),
             is_bound.into(),
@@ -109,13 +109,13 @@ fn parameters(fitted: &Inferred) -> String {
     };
     let table = Csv::new(titles.split(','));
     table
-        .with_all(fitted.parameters.iter().enumerate(), line)
+        .with_all(fit_result.parameters.iter().enumerate(), line)
         .text()
 }
 
 /// One line a singular value, with the combination of scaled parameters it belongs to.
-fn singular_values(fitted: &Inferred, names: &[&str]) -> String {
-    let found = &fitted.identifiability;
+fn singular_values(fit_result: &Inferred, names: &[&str]) -> String {
+    let found = &fit_result.identifiability;
     let titles = ["singular_value", "determined"].into_iter();
     let line = |(at, value): (usize, &f64)| {
         let cells = [Cell::from(*value), (at < found.determined()).into()].into_iter();
@@ -131,11 +131,11 @@ fn singular_values(fitted: &Inferred, names: &[&str]) -> String {
 }
 
 /// One line a start: where it came to.
-fn starts(fitted: &Inferred) -> String {
+fn starts(fit_result: &Inferred) -> String {
     let titles = ["cost".to_owned(), "iterations".to_owned()].into_iter();
     let named = |word: &'static str| {
         let title = move |p: &Parameter| titled(&format!("{} {word}", p.name), &p.unit);
-        fitted.parameters.iter().map(title)
+        fit_result.parameters.iter().map(title)
     };
     let (from, to) = (named("from"), named("to"));
     let table = Csv::new(titles.chain(from).chain(to));
@@ -146,7 +146,7 @@ fn starts(fitted: &Inferred) -> String {
             .chain(points.map(|value| Cell::from(*value)))
             .collect::<Vec<_>>()
     };
-    table.with_all(&fitted.fit.starts, line).text()
+    table.with_all(&fit_result.fit.starts, line).text()
 }
 
 /// One line a value of a profile.
@@ -248,11 +248,11 @@ fn posterior_table(parameters: &[Parameter], posterior: &Posterior) -> String {
 }
 
 /// One line a model, as it was given; those without a minimum have a chi-square alone.
-fn comparison(rivals: &Rivals) -> String {
+fn comparison(alternatives: &AlternativeModels) -> String {
     let titles = "model,free,chi_square,freedom,probability,aic,aicc,bic,weight,prediction_error,prediction_error_error";
-    let found = rivals.comparison.as_ref();
-    let numbered = rivals.all.iter().enumerate();
-    let judged = |at: usize, found: &Comparison| -> [Cell; 7] {
+    let found = alternatives.comparison.as_ref();
+    let numbered = alternatives.all.iter().enumerate();
+    let evaluated = |at: usize, found: &Comparison| -> [Cell; 7] {
         let criteria = &found.criteria[at];
         [
             criteria.parameters.into(),
@@ -264,12 +264,12 @@ fn comparison(rivals: &Rivals) -> String {
             found.weights[at].into(),
         ]
     };
-    let line = |(at, rival): (usize, &super::Rival)| -> [Cell; 11] {
+    let line = |(at, alternative): (usize, &super::AlternativeModel)| -> [Cell; 11] {
         let none = || [const { Cell::Empty }; 7];
         let [free, freedom, p, aic, aicc, bic, weight] =
-            found.map_or_else(none, |found| judged(at, found));
-        let (name, chi_square) = (rival.name.clone().into(), rival.fit.chi_square().into());
-        let foretells = rival.foretells.as_ref();
+            found.map_or_else(none, |found| evaluated(at, found));
+        let (name, chi_square) = (alternative.name.clone().into(), alternative.fit.chi_square().into());
+        let foretells = alternative.foretells.as_ref();
         let (mean, error) = (
             foretells.map(|f| f.mean).into(),
             foretells.map(|f| f.error).into(),
@@ -278,23 +278,23 @@ fn comparison(rivals: &Rivals) -> String {
             name, free, chi_square, freedom, p, aic, aicc, bic, weight, mean, error,
         ]
     };
-    let lost = |lost: &super::Lost| -> [Cell; 11] {
+    let lost = |lost: &super::Unfitted| -> [Cell; 11] {
         let mut cells = [const { Cell::Empty }; 11];
         cells[0] = lost.name.clone().into();
         cells[2] = lost.chi_square.into();
         cells
     };
     let table = Csv::new(titles.split(',')).with_all(numbered, line);
-    table.with_all(&rivals.lost, lost).text()
+    table.with_all(&alternatives.lost, lost).text()
 }
 
 /// One line a measured value.
-fn rows(fitted: &Fitted) -> String {
+fn rows(fit_result: &FitResult) -> String {
     let titles = "line,speed_m_s,observable,measured,error,fitted,fitted_error,residual";
-    let measured = fitted.problem.measured().into_iter();
+    let measured = fit_result.problem.measured().into_iter();
     let line = |((at, of), residual): ((usize, Observable), &f64)| -> [Cell; 8] {
-        let row = &fitted.problem.data().rows[at];
-        let (value, curve) = (row.value(of), &fitted.curve);
+        let row = &fit_result.problem.data().rows[at];
+        let (value, curve) = (row.value(of), &fit_result.curve);
         let predicted = curve.predicted.get(at).and_then(|row| row[of as usize]);
         [
             row.line.to_string().into(),
@@ -307,6 +307,6 @@ fn rows(fitted: &Fitted) -> String {
             (*residual).into(),
         ]
     };
-    let lines = measured.zip(&fitted.inferred.fit.residuals);
+    let lines = measured.zip(&fit_result.inferred.fit.residuals);
     Csv::new(titles.split(',')).with_all(lines, line).text()
 }

@@ -19,12 +19,12 @@ use hertzchain_measure::records::text;
 use std::path::Path;
 
 /// Everything that the gauge says.
-pub struct Gauged {
+pub struct GaugeResult {
     /// The gauge.
     pub gauge: Gauge,
     /// K and A, speed by speed.
     pub rows: Vec<WetRow>,
-    /// Power laws through them, where rows tell both.
+    /// Power laws through them, where rows determine both.
     pub laws: Option<GaugeLaws>,
     /// Power laws fitted to the whole curve, if the option asks for them.
     pub form: Option<PowerForm>,
@@ -38,12 +38,12 @@ pub struct Gauged {
 ///
 /// # Errors
 /// What is in the way of the dry fit or of the verdict.
-pub fn gauged(
+pub fn run_gauge(
     chains: &Chains<'_>,
     (dry, wet): (Data, Data),
     oils: Vec<Oil>,
     form: WetForm,
-) -> Result<Gauged, Failure> {
+) -> Result<GaugeResult, Failure> {
     let gauge = Gauge::new(chains, dry, wet);
     wanted()?;
     let gauge = gauge.map_err(user)?;
@@ -60,7 +60,7 @@ pub fn gauged(
         Some(form) => gauge.verdict_of_laws(form, &oils),
     };
     wanted()?;
-    Ok(Gauged {
+    Ok(GaugeResult {
         laws: GaugeLaws::through(&rows).ok(),
         verdict: verdict.map_err(user)?,
         form,
@@ -70,7 +70,7 @@ pub fn gauged(
     })
 }
 
-impl Gauged {
+impl GaugeResult {
     /// What speaks against believing it.
     #[must_use]
     pub fn doubts(&self) -> Option<String> {
@@ -79,7 +79,7 @@ impl Gauged {
         all.reduce(|doubts, more| format!("{doubts} {more}"))
     }
 
-    /// What to add to data that do not tell K and A apart, if nothing else does.
+    /// What to add to data that do not separate K and A, if nothing else does.
     #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
         self.gauge.to_add().filter(|_| self.form.is_none())

@@ -1,6 +1,6 @@
 //! What the gauge says as JSON, in SI.
 
-use super::Gauged;
+use super::GaugeResult;
 use crate::inference::references_json;
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 
 /// Everything that is to be said.
 #[must_use]
-pub fn json(gauged: &Gauged) -> Value {
-    let gauge = &gauged.gauge;
+pub fn json(run_gauge: &GaugeResult) -> Value {
+    let gauge = &run_gauge.gauge;
     let names = gauge.dry().parameters().iter().enumerate();
-    let verdict = &gauged.verdict;
+    let verdict = &run_gauge.verdict;
     json!({
         "dry": names.map(|(at, parameter)| json!({
             "name": parameter.name, "unit": parameter.unit,
@@ -21,11 +21,11 @@ pub fn json(gauged: &Gauged) -> Value {
         })).collect::<Value>(),
         "dry_chi_square": gauge.dry_fit.chi_square(),
         "references": references_json(gauge.wet_model()),
-        "contacts": gauged.rows.iter().map(row).collect::<Value>(),
-        "stiffness_law": gauged.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
-        "relaxation_law": gauged.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
-        "form": gauged.form.as_ref().map(|form| form_json(form, gauge)),
-        "to_add": gauged.to_add(),
+        "contacts": run_gauge.rows.iter().map(row).collect::<Value>(),
+        "stiffness_law": run_gauge.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
+        "relaxation_law": run_gauge.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
+        "form": run_gauge.form.as_ref().map(|form| form_json(form, gauge)),
+        "to_add": run_gauge.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
             "chi_square": found.chi_square.value, "freedom": found.chi_square.freedom,
@@ -38,7 +38,7 @@ pub fn json(gauged: &Gauged) -> Value {
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": verdict.sentence(),
-        "doubts": gauged.doubts(),
+        "doubts": run_gauge.doubts(),
     })
 }
 

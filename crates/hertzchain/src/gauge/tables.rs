@@ -1,6 +1,6 @@
 //! What the gauge says as tables (CSV), in SI: what `gauge.json` holds.
 
-use super::Gauged;
+use super::GaugeResult;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{
@@ -9,31 +9,31 @@ use hertzchain_infer::gauge::{
 
 /// Every table: files' names and what stands in them.
 #[must_use]
-pub fn tables(gauged: &Gauged) -> Vec<(&'static str, String)> {
+pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
     let mut all = vec![
-        ("summary.csv", summary(gauged)),
-        ("dry.csv", dry(gauged)),
-        ("contacts.csv", contacts(gauged)),
-        ("oils.csv", oils(gauged)),
+        ("summary.csv", summary(run_gauge)),
+        ("dry.csv", dry(run_gauge)),
+        ("contacts.csv", contacts(run_gauge)),
+        ("oils.csv", oils(run_gauge)),
     ];
-    all.extend((!gauged.verdict.failed.is_empty()).then(|| ("failed.csv", failed(gauged))));
-    all.extend(gauged.laws.is_some().then(|| ("laws.csv", laws(gauged))));
-    if let Some(form) = &gauged.form {
+    all.extend((!run_gauge.verdict.failed.is_empty()).then(|| ("failed.csv", failed(run_gauge))));
+    all.extend(run_gauge.laws.is_some().then(|| ("laws.csv", laws(run_gauge))));
+    if let Some(form) = &run_gauge.form {
         all.push(("form.csv", form_laws(form)));
-        all.push(("form-contacts.csv", form_contacts(form, gauged)));
+        all.push(("form-contacts.csv", form_contacts(form, run_gauge)));
     }
     all
 }
 
-/// One line a number or sentence that tells of the whole.
-fn summary(gauged: &Gauged) -> String {
-    let (gauge, verdict) = (&gauged.gauge, &gauged.verdict);
+/// One line a number or sentence of the whole.
+fn summary(run_gauge: &GaugeResult) -> String {
+    let (gauge, verdict) = (&run_gauge.gauge, &run_gauge.verdict);
     let chi_square = gauge.dry_goodness().chi_square;
-    let form = gauged.form.as_ref().and_then(|form| form.chi_square);
+    let form = run_gauge.form.as_ref().and_then(|form| form.chi_square);
     let lines: [(&str, Cell); 9] = [
         ("verdict", verdict.sentence().into()),
-        ("doubts", gauged.doubts().into()),
-        ("to_add", gauged.to_add().into()),
+        ("doubts", run_gauge.doubts().into()),
+        ("to_add", run_gauge.to_add().into()),
         ("dry_chi_square", chi_square.map(|c| c.value).into()),
         ("dry_freedom", chi_square.map(|c| c.freedom).into()),
         ("dry_probability", chi_square.map(|c| c.probability).into()),
@@ -46,8 +46,8 @@ fn summary(gauged: &Gauged) -> String {
 }
 
 /// One line a parameter of the dry contacts.
-fn dry(gauged: &Gauged) -> String {
-    let gauge = &gauged.gauge;
+fn dry(run_gauge: &GaugeResult) -> String {
+    let gauge = &run_gauge.gauge;
     let numbered = gauge.dry().parameters().iter().enumerate();
     let line = |(at, parameter): (usize, &hertzchain_infer::Parameter)| -> [Cell; 4] {
         [
@@ -62,8 +62,8 @@ fn dry(gauged: &Gauged) -> String {
 }
 
 /// One line a pair of K and A that a speed allows, the one taken first if any is; one line a
-/// speed that tells a combination, or nothing.
-fn contacts(gauged: &Gauged) -> String {
+/// speed that determines a combination, or nothing.
+fn contacts(run_gauge: &GaugeResult) -> String {
     let titles = "line,speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error,ln_covariance,\
                   combination_exponent,combination_reference_s,taken,missing,branch,scan_complete";
     let lines = gauged.rows.iter().flat_map(|row| match &row.contact {
@@ -230,6 +230,6 @@ fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
         let [(k, k_sd), (a, a_sd)] = form.at(speed).estimates();
         [speed, k, k_sd, a, a_sd]
     };
-    let speeds = gauged.gauge.wet().speeds_m_s();
+    let speeds = run_gauge.gauge.wet().speeds_m_s();
     Csv::new(titles.split(',')).with_all(speeds, line).text()
 }

@@ -1,10 +1,10 @@
 //! From arguments to a problem of inference.
 
-mod kept;
+mod unit_changes;
 mod known;
 mod reference;
 
-pub use kept::{held_loads, kept};
+pub use unit_changes::{held_loads, unit_changes};
 pub use known::is_meant;
 pub use reference::{references, references_json};
 
@@ -27,12 +27,12 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-/// A mistake of the user's, told as it is.
+/// A mistake of the user's, reported as it is.
 pub fn user(error: impl std::fmt::Display) -> Failure {
     Failure::User(error.to_string())
 }
 
-/// Whether somebody still wants the result: what was broken off on the way tells
+/// Whether a caller still wants the result: what was broken off on the way determines
 /// nothing.
 ///
 /// # Errors
@@ -80,7 +80,7 @@ pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, F
     Ok(!binary && !numbers && (first.contains(SPEEDS) || !record))
 }
 
-/// Bytes that tell a table from a recording.
+/// Bytes that distinguish a table from a recording.
 const PROBE: u64 = 4096;
 
 /// The column that makes a table one of curves.

@@ -33,7 +33,7 @@ const ORDER: usize = 4;
 const POWER: f64 = 6.0;
 
 /// Full width of its fit, in full widths at half maximum.
-const FITTED_WIDTHS: f64 = 2.0;
+const FIT_WIDTHS: f64 = 2.0;
 
 /// Files, and those of folders in order of their names; the table of shots may
 /// lie among them.
@@ -315,7 +315,7 @@ pub fn grouping(arguments: &Arguments) -> Grouping {
     }
 }
 
-/// Whether the options suit the recordings; one that does not is told once, not with every shot.
+/// Whether the options suit the recordings; one that does not is reported once, not with every shot.
 ///
 /// # Errors
 /// An option that its records do not take, as a low-pass above half their sampling rate.
@@ -340,7 +340,7 @@ pub fn suits(measured: &Measurement) -> Result<(), Failure> {
 ///
 /// # Errors
 /// What was refused or not found.
-pub fn judge(measured: &Measurement) -> Result<(), Failure> {
+pub fn evaluate(measured: &Measurement) -> Result<(), Failure> {
     let refused = measured.refused.len();
     let all = refused + measured.shots.len();
     let timeless = measured.shots.iter().filter(|shot| shot.flight.is_err());
@@ -354,14 +354,14 @@ pub fn judge(measured: &Measurement) -> Result<(), Failure> {
             no_time(timeless, measured.shots.len())
         )),
     };
-    let told = match refused + timeless < all {
+    let reported = match refused + timeless < all {
         true => wrong.map(|wrong| wrong + "; the others were measured"),
         false => Some("nothing was measured: ".to_owned() + &wrong.unwrap_or_default()),
     };
-    told.map_or(Ok(()), |told| Err(Failure::User(told)))
+    reported.map_or(Ok(()), |reported| Err(Failure::User(reported)))
 }
 
 fn no_time(timeless: usize, all: usize) -> String {
     let have = if all == 1 { "has" } else { "have" };
-    format!("{timeless} of {all} that were read {have} no time of flight, as their flags tell")
+    format!("{timeless} of {all} that were read {have} no time of flight, as their flags say")
 }

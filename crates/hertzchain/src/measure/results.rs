@@ -44,7 +44,7 @@ impl Serialize for Report<'_> {
             .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
         all.serialize_entry("low_pass", &low_pass)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
-        all.serialize_entry("lost", &Each(&curves.unmeasured, lost))?;
+        all.serialize_entry("lost", &Each(&curves.unmeasured, unmeasured))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
         all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
         all.serialize_entry(
@@ -66,7 +66,7 @@ impl<T> Serialize for Each<'_, T> {
     }
 }
 
-fn lost(lost: &UnmeasuredSpeed) -> Value {
+fn unmeasured(lost: &UnmeasuredSpeed) -> Value {
     json!({ "case": lost.case, "speed_m_s": lost.speed_m_s, "shots": lost.shots })
 }
 
@@ -165,7 +165,7 @@ fn summary(of: &Summary) -> Value {
     })
 }
 
-/// Whether a law is supported is null where nothing tells, and then says why.
+/// Whether a law is supported is null where nothing determines, and then says why.
 fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
     match of {
         Err(error) => json!({ "missing": error.to_string() }),
@@ -176,9 +176,9 @@ fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
             "exponent_error": law.exponent_error,
             "covariance": law.covariance,
             "r_squared": law.r_squared,
-            "chi_square": law.chi_square.map(|judged| judged.value),
-            "degrees_of_freedom": law.chi_square.map(|judged| judged.freedom),
-            "probability": law.chi_square.map(|judged| judged.probability),
+            "chi_square": law.chi_square.map(|evaluated| evaluated.value),
+            "degrees_of_freedom": law.chi_square.map(|evaluated| evaluated.freedom),
+            "probability": law.chi_square.map(|evaluated| evaluated.probability),
             "supported": case.supports(law).ok().flatten(),
             "supported_unknown_because": case.supports(law).err(),
         }),

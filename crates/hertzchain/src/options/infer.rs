@@ -38,7 +38,7 @@ pub struct CurveOptions {
     /// Standard error of ratios of peaks where the table has none
     #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     pub ratio_error: Option<Positive>,
-    /// Shots a row from whose scatter the standard errors come, or `known`; what the table tells in
+    /// Shots a row from whose scatter the standard errors come, or `known`; what the table determines in
     /// columns `shots` and `tof_incident_s_count` when absent. Errors from few shots are widened, so
     /// that intervals hold the truth as often as they say
     #[arg(long, value_name = "COUNT", allow_hyphen_values = true)]
@@ -147,7 +147,7 @@ pub struct FitOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub freed: ParameterOptions,
-    /// How uncertainty is told, beside the covariance
+    /// How uncertainty is reported, beside the covariance
     #[arg(long, value_enum, value_name = "NAME", default_value = "covariance")]
     pub method: Method,
     /// Compare with another model of the same data: a preset or file and what is free in it; may be
@@ -446,7 +446,7 @@ pub enum WetForm {
     Power,
 }
 
-/// Ways to tell uncertainty.
+/// Ways to determine uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {

@@ -57,7 +57,7 @@ pub(crate) enum Verb {
     Fit(FitOptions),
     /// Rank what to measure next so that parameters tighten most
     Design(DesignOptions),
-    /// Tell the oil on a row's contacts from times of flight, wet and dry
+    /// Find the oil on a row's contacts from times of flight, wet and dry
     Gauge(GaugeOptions),
     /// Open a page in the browser on which the wave is seen and every number can be turned
     #[cfg(feature = "explore")]
@@ -136,7 +136,7 @@ pub(crate) struct Reproduce {
     pub out: PathBuf,
     /// Also scan what the paper leaves open: which claims hold in which reading;
     /// tries every combination of the switches that move a verdict, up to an hour on
-    /// two cores, and tells before it begins
+    /// two cores, and reports that before it begins
     #[arg(long)]
     pub readings: bool,
     /// Also hold what the paper says of its rig, of taps, gaps and rebounds, against virtual

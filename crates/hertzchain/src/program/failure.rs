@@ -37,7 +37,7 @@ pub(crate) fn report(failure: &Failure) -> u8 {
     }
 }
 
-/// Warnings at a speed that an option gave, told of the option.
+/// Warnings at a speed that an option gave, reported of the option.
 pub(crate) fn print_option_warnings(option: &str, warnings: &[Warning]) {
     show(|colour| failure::option_warnings(option, warnings, colour));
 }
@@ -50,8 +50,8 @@ pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
 }
 
 /// Numbers that are kept while their unit changes, and loads that the model does not have.
-pub(crate) fn print_kept(model: &Model, sets: &[Assignment]) {
-    for kept in kept(model, sets).into_iter().chain(held_loads(model)) {
+pub(crate) fn print_stored(model: &Model, sets: &[Assignment]) {
+    for kept in unit_changes(model, sets).into_iter().chain(held_loads(model)) {
         note(&format!("warning: {kept}"));
     }
 }

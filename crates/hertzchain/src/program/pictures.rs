@@ -105,7 +105,7 @@ pub(crate) fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]
     charts.into_iter().fold(empty, Figure::panel)
 }
 
-/// What a sensor is called in a legend; the axis tells the quantity.
+/// What a sensor is called in a legend; the axis names the quantity.
 fn legend(experiment: &Experiment, sensor: Sensor, wall: Option<usize>) -> String {
     let body = match sensor {
         Sensor::Position(body) | Sensor::Velocity(body) => body,
@@ -179,7 +179,7 @@ fn branch(
     let named = format!("{name}, exponent {:.4}", law.exponent).replace('-', "\u{2212}");
     let points = points(&named);
     speeds.sort_by(f64::total_cmp);
-    let fitted: Vec<f64> = speeds.iter().map(|speed| law.at(*speed)).collect();
-    let line = Series::line("", &speeds, &clock.scaled(&fitted));
+    let fit_result: Vec<f64> = speeds.iter().map(|speed| law.at(*speed)).collect();
+    let line = Series::line("", &speeds, &clock.scaled(&fit_result));
     chart.with(line.colour(colour).width(0.7)).with(points)
 }

@@ -46,5 +46,5 @@ fn every_law_has_its_source() {
             row.info.name
         );
     }
-    assert_eq!(Work::of_key("Nobody1900"), None);
+    assert_eq!(Work::of_key("no user1900"), None);
 }

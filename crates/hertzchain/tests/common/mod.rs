@@ -20,8 +20,8 @@ pub(crate) fn refused(arguments: &[&str]) -> String {
 
 pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = run(arguments);
-    let told = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {told}"))
+    let reported = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {reported}"))
 }
 
 pub(crate) fn folder(test: &str) -> PathBuf {

@@ -1,4 +1,4 @@
-//! What would tell confused parameters apart, by the rows that it would add to the
+//! What would separate confounded parameters, by the rows that it would add to the
 //! Jacobian.
 
 use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pushed};
@@ -22,7 +22,7 @@ pub struct Advice {
     /// What would be determined with each of several measurements more, the most
     /// promising first.
     pub prospects: Vec<Prospect>,
-    /// With all of them together; `None` if none could be judged.
+    /// With all of them together; `None` if none could be evaluated.
     pub together: Option<Prospect>,
     /// What to free or to fix instead.
     pub instead: String,
@@ -107,11 +107,11 @@ fn share(standard_error: f64) -> String {
 }
 
 /// A measurement more: its name, and the Jacobian of all data with it.
-type Judged = (String, Scaled);
+type Evaluated = (String, Scaled);
 
 impl CurveProblem {
     /// What could be measured or fixed so that the data determine more: candidates
-    /// are judged by the derivatives that they would add at a fit's optimum. Those
+    /// are evaluated by the derivatives that they would add at a fit's optimum. Those
     /// whose curves cannot be computed are left out.
     #[must_use]
     pub fn suggested_measurements(&self, fit: &Fit) -> Advice {
@@ -126,15 +126,15 @@ impl CurveProblem {
                 .collect(),
         };
         let errors = ExpectedErrors::like(self.data());
-        let beside = self.beside(fit, &errors);
+        let beside = self.other_readings(fit, &errors);
         let apart = self.apart(fit, &errors);
-        let mut judged: Vec<Judged> = beside.clone();
-        judged.extend(
+        let mut evaluated: Vec<Evaluated> = beside.clone();
+        evaluated.extend(
             apart
                 .iter()
                 .map(|(name, rows)| (name.clone(), own.and(rows))),
         );
-        let mut prospects: Vec<Prospect> = (judged.iter())
+        let mut prospects: Vec<Prospect> = (evaluated.iter())
             .map(|(name, rows)| prospect(name, rows.determined()))
             .collect();
         prospects.sort_by(|a, b| {
@@ -160,7 +160,7 @@ impl CurveProblem {
 
     /// More read from the same shots, with the Jacobian of all that is then known;
     /// the last with everything.
-    fn beside(&self, fit: &Fit, errors: &ExpectedErrors) -> Vec<Judged> {
+    fn other_readings(&self, fit: &Fit, errors: &ExpectedErrors) -> Vec<Evaluated> {
         use Observable::{Incident, Reflected, ReturningOverPassing, WallOverPassing};
         let peaks = format!(
             "ratios of peaks at the same speeds to {} (--use with wall-ratio,returning-ratio)",
@@ -174,12 +174,12 @@ impl CurveProblem {
         ];
         let missing = |of: &Observable| self.data().rows.iter().any(|row| row.value(*of).is_none());
         let wanted = sets.into_iter().filter(|(_, set)| set.iter().any(missing));
-        let judged = wanted.filter_map(|(name, set)| {
+        let evaluated = wanted.filter_map(|(name, set)| {
             let data = self.with_more(fit, set, errors).ok()?;
             let rows = self.rows(self.model().clone(), data, fit).ok()?;
             Some((name.to_owned(), rows))
         });
-        let mut all: Vec<Judged> = judged.collect();
+        let mut all: Vec<Evaluated> = evaluated.collect();
         if let [_, _] = &all[..] {
             // One set and that of everything: the same.
             all.pop();
@@ -208,7 +208,7 @@ impl CurveProblem {
     }
 
     /// Further shots, with the rows that they would add.
-    fn apart(&self, fit: &Fit, errors: &ExpectedErrors) -> Vec<Judged> {
+    fn apart(&self, fit: &Fit, errors: &ExpectedErrors) -> Vec<Evaluated> {
         let own = self.data().speeds_m_s();
         let each = |form: Form| form == Form::EachSpeed;
         let numbers = self.model().numbers().as_slice();
@@ -231,7 +231,7 @@ impl CurveProblem {
             let name = format!("at the same speeds with a push of {USUAL_PRELOAD_N} N on bead 1");
             (name, chain, own)
         }));
-        let judged = ways.into_iter().filter_map(|(name, experiment, speeds)| {
+        let evaluated = ways.into_iter().filter_map(|(name, experiment, speeds)| {
             let model = Model::new(&experiment, self.model().numbers().clone()).ok()?;
             let model = model.with_accuracy(self.model().accuracy);
             let has = |of: &Observable| self.data().has(*of);
@@ -245,7 +245,7 @@ impl CurveProblem {
             let data = expected(&model, fit, &way, &speeds, errors).ok()?;
             Some((name, self.rows(model, data, fit).ok()?))
         });
-        judged.collect()
+        evaluated.collect()
     }
 
     /// The Jacobian of data that might be measured.

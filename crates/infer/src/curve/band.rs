@@ -7,7 +7,7 @@ use crate::{Covariance, Fit};
 
 /// The model's curve at the best fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FittedCurve {
+pub struct FitCurve {
     /// Predictions, one row a speed of the data.
     pub predicted: Vec<Predicted>,
     /// Their standard errors as they follow from the parameters' covariance.
@@ -22,11 +22,11 @@ impl CurveProblem {
     /// # Errors
     /// What is in the way of a shot at the optimum; where the model fails on both
     /// sides of it, standard errors are not numbers.
-    pub fn fitted_curve(
+    pub fn fit_curve(
         &self,
         fit: &Fit,
         covariance: &Covariance,
-    ) -> Result<FittedCurve, ModelError> {
+    ) -> Result<FitCurve, ModelError> {
         let moved = |(at, sign): (usize, f64)| {
             let mut point = fit.point.clone();
             point[at] += sign * fit.jacobian.steps[at];
@@ -64,7 +64,7 @@ impl CurveProblem {
             covariance.sd_of(&slopes.collect::<Vec<f64>>())
         };
         let sd = (0..predicted.len()).map(|row| [0, 1, 2, 3].map(|of| sd(row, of)));
-        Ok(FittedCurve {
+        Ok(FitCurve {
             sd: sd.collect(),
             predicted,
         })

@@ -68,7 +68,7 @@ pub struct ExpectedErrors {
 /// Where a file has the push on bead 1.
 const PUSH: &str = "near_end.force";
 
-/// Ratios of peaks are measured to this, where no data tell.
+/// Ratios of peaks are measured to this, where no data determine.
 const USUAL_RATIO_ERROR: f64 = 0.005;
 
 impl ExpectedErrors {
@@ -121,7 +121,7 @@ pub struct Choices {
     /// Constant pushes on bead 1 in N.
     pub preloads_n: Vec<f64>,
     /// Beads that could hold the sensor; an eighth, a half and three quarters down the
-    /// chain where none are told.
+    /// chain where none are reported.
     pub sensor_beads: Option<Vec<usize>>,
     /// Cost of a measurement of each kind, by which its information is divided.
     pub costs: [f64; Kind::ALL.len()],

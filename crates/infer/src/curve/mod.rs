@@ -14,7 +14,7 @@ mod units;
 mod whiten;
 
 pub use advice::{Advice, Prospect};
-pub use band::FittedCurve;
+pub use band::FitCurve;
 pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways};
 pub use joint::{Joint, Part, Supply};
 pub(crate) use model::Shooting;

@@ -92,7 +92,7 @@ impl Model {
         self.with_accuracy(accuracy)
     }
 
-    /// Accuracy beyond which rounding tells.
+    /// Accuracy beyond which rounding matters.
     const FINEST: f64 = 1e-9;
 
     /// What names any problem of this model begins with: the experiment as it is understood,
@@ -193,7 +193,7 @@ impl Model {
                     .map_err(|error| at(speed_m_s, brief(&error)))?,
             };
             let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
-            let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, told(&mistakes)))?;
+            let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, reported(&mistakes)))?;
             let amplifier = experiment.campaign().amplifier;
             let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
             let shooting = Shooting {
@@ -222,13 +222,13 @@ fn at(speed_m_s: f64, error: impl Display) -> ModelError {
 
 fn brief(error: &PathError) -> String {
     match error {
-        PathError::Mistakes(mistakes) => told(mistakes),
+        PathError::Mistakes(mistakes) => reported(mistakes),
         other => other.to_string(),
     }
 }
 
 /// The first mistake, without its place: the file has none for a fit's numbers.
-fn told(mistakes: &Mistakes) -> String {
+fn reported(mistakes: &Mistakes) -> String {
     let first = mistakes.findings().first();
     first.map_or_else(|| mistakes.to_string(), ToString::to_string)
 }

@@ -10,7 +10,7 @@ use crate::{InferError, Parameter};
 use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Relative distance of the speeds around each row's, where there are too
-/// few rows to tell a slope.
+/// few rows to determine a slope.
 const ASIDE: f64 = 0.02;
 
 /// Times of flight and ratios of peaks against those of a model.
@@ -55,7 +55,7 @@ impl CurveProblem {
         Ok(Self::unchecked(model, data, parameters))
     }
 
-    /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may tell
+    /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may determine
     /// what these data do not.
     #[must_use]
     pub fn part(model: Model, data: Data) -> Self {
@@ -273,7 +273,7 @@ fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
 }
 
 fn row_labels(row: &DataRow) -> Vec<String> {
-    // Four digits tell rows apart for a reader.
+    // Four digits distinguish rows for a reader.
     let speed: f64 = format!("{:.3e}", row.speed_m_s.value)
         .parse()
         .unwrap_or(row.speed_m_s.value);

@@ -2,9 +2,9 @@
 //!
 //! A speed's error moves what is predicted by the curve's slope. Curves are
 //! close to power laws, so a parabola in the logarithms through neighbouring
-//! speeds tells their slope well enough for a standard error, and costs no shot.
+//! speeds determines their slope well enough for a standard error, and costs no shot.
 
-/// Speeds that differ by less tell the solver's noise rather than a slope.
+/// Speeds that differ by less determine the solver's noise rather than a slope.
 const LEAST_STEP: f64 = 0.01;
 
 /// Speeds whose logarithms make a parabola, and what its slope at one of them

@@ -93,7 +93,7 @@ type Triangle = [[f64; 4]; 4];
 /// covariance is C = B + s sᵀ. Given C = L Lᵀ the result is L⁻¹ r with
 /// ln Lᵢᵢ; the sum of its squares is rᵀ C⁻¹ r.
 ///
-/// The first is standardised by itself, each further one by what it tells beside
+/// The first is standardised by itself, each further one by what it determines beside
 /// those before it.
 pub(super) fn whiten(residuals: &[f64], errors: &Errors) -> Vec<(f64, f64)> {
     let moved = &errors.moved;

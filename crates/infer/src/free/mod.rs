@@ -23,7 +23,7 @@ pub enum Form {
     Constant,
     /// As a power law: two parameters.
     PowerLaw,
-    /// As the data tell: one parameter a speed.
+    /// As the data determine: one parameter a speed.
     EachSpeed,
 }
 
@@ -171,7 +171,7 @@ pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool
     matches!((target(one), target(other)), (Ok(one), Ok(other)) if one == other)
 }
 
-/// Speeds in m/s with as many digits as tell them apart, four at the least.
+/// Speeds in m/s with as many digits as distinguish them, four at the least.
 fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     let rounded = |digits: usize| -> Vec<String> {
         let short = |speed: &f64| {
@@ -188,7 +188,7 @@ fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS))
 }
 
-/// Digits that tell any two numbers apart.
+/// Digits that distinguish any two numbers.
 const MOST_DIGITS: usize = 17;
 
 /// All free numbers of a fit.

@@ -61,7 +61,7 @@ fn of_law(path: &str) -> Option<(f64, f64)> {
     Some((least, most))
 }
 
-/// What a number may be, as far as its name tells.
+/// What a number may be, as far as its name says.
 pub(super) fn bounds(found: &Found) -> (f64, f64) {
     let Some(path) = found.target.path() else {
         return (f64::MIN_POSITIVE, f64::INFINITY);

@@ -369,8 +369,8 @@ fn started<'a>(laws: &'a [Parameter], values: &'a [f64]) -> impl Iterator<Item =
 }
 
 /// ln K₀, k, ln A₀, a of a fit whose last parameters are K₀, k, A₀, a.
-fn laws_of(fitted: &Fit) -> [f64; LAWS] {
-    let laws = &fitted.point[fitted.point.len() - LAWS..];
+fn laws_of(fit_result: &Fit) -> [f64; LAWS] {
+    let laws = &fit_result.point[fit_result.point.len() - LAWS..];
     [laws[0].ln(), laws[1], laws[2].ln(), laws[3]]
 }
 

@@ -405,7 +405,7 @@ impl Gauge {
             .enumerate()
             .map(|(at, parameter)| NuisanceParameter {
                 parameter,
-                value: fitted.point[count + at],
+                value: fit_result.point[count + at],
                 standard_error: sd[count + at],
             });
         Ok(Match {

@@ -410,19 +410,19 @@ impl Gauge {
             tolerance: 1e-6,
             ..Fitting::default()
         };
-        let fitted = fit(&problem, &how)?;
-        let columns = fitted.jacobian.columns.iter().zip(&fitted.point);
+        let fit_result = fit(&problem, &how)?;
+        let columns = fit_result.jacobian.columns.iter().zip(&fit_result.point);
         let slopes = columns.map(|(column, at)| column.iter().map(|slope| slope * at).collect());
         Ok(Solution {
-            covariance: Covariance::new(problem.parameters(), &fitted),
+            covariance: Covariance::new(problem.parameters(), &fit_result),
             point: [
-                fitted.point[0],
-                fitted.point.get(1).copied().unwrap_or(start[1]),
+                fit_result.point[0],
+                fit_result.point.get(1).copied().unwrap_or(start[1]),
             ],
-            chi_square: fitted.chi_square(),
-            is_beyond: free == Free::Both && fitted.is_bound(1),
+            chi_square: fit_result.chi_square(),
+            is_beyond: free == Free::Both && fit_result.is_bound(1),
             slopes: slopes.collect(),
-            residuals: fitted.residuals,
+            residuals: fit_result.residuals,
         })
     }
 

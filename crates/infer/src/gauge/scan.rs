@@ -1,7 +1,7 @@
 //! All pairs of K and A that one row allows.
 //!
 //! For each A there is one K that meets the row's time of flight: a line in the plane of
-//! both, along which the row's other numbers tell where all are met. It is walked from end
+//! both, along which the row's other numbers determine where all are met. It is walked from end
 //! to end, in finer steps where they change sign, jump, or come near.
 
 use super::Gauge;

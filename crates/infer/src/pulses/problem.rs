@@ -51,7 +51,7 @@ pub struct PulseProblem {
     model: Model,
     respond: Respond,
     records: Vec<Pulses>,
-    /// Which of the speeds that the striker was told each record has.
+    /// Which of the speeds that the striker was reported each record has.
     rows: Vec<usize>,
     speeds_m_s: Vec<f64>,
     parameters: Vec<Parameter>,
@@ -69,7 +69,7 @@ const LATER: f64 = 0.5;
 const LEAST_SAMPLES: f64 = 2500.0;
 const LONGEST_INTERVAL_S: f64 = 0.25e-6;
 
-/// Relative change of the speed by which its effect is told.
+/// Relative change of the speed by which its effect is reported.
 const ASIDE: f64 = 1e-3;
 
 /// The name of the sensors' sensitivity.
@@ -104,7 +104,7 @@ impl PulseProblem {
         if problem.left_out.is_empty() {
             return Ok(problem);
         }
-        // Speeds that nobody has any more have no values a speed either.
+        // Speeds that no shot has any more have no values a speed either.
         let left_out = std::mem::take(&mut problem.left_out);
         let mut fewer = Self::new(problem.model, problem.records, problem.respond)?;
         fewer.left_out.splice(..0, left_out);
@@ -346,7 +346,7 @@ fn at_start(error: &ModelError) -> InferError {
     InferError::Model(format!("the model where it starts: {error}"))
 }
 
-/// What a record's first shot tells.
+/// What a record's first shot determines.
 struct FirstShot {
     sensor_gain_v_n: f64,
     passing_n: f64,

@@ -19,17 +19,17 @@ const AFTER: f64 = 2.5;
 /// flight: thirty in a pulse of the paper's chain.
 const PER_FLIGHT: f64 = 300.0;
 
-/// Quiet samples that tell a channel's offset and noise.
+/// Quiet samples that determine a channel's offset and noise.
 const QUIET: usize = 32;
 
 /// The samples of one shot around its pulses, as means of neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pulses {
-    /// Which record, as it is told to people.
+    /// Which record, as it is reported to people.
     pub source: String,
     /// Speed of the striker in m/s, as measured.
     pub speed_m_s: Estimate,
-    /// Speed that the striker was told, in m/s: shots of one such speed share
+    /// Speed that the striker was reported, in m/s: shots of one such speed share
     /// values a speed.
     pub programmed_m_s: f64,
     /// Time between samples in s.

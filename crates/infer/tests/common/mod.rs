@@ -77,7 +77,7 @@ pub(crate) struct Truth {
 /// 1e-6, between which a fit's surrogate interpolates.
 pub(crate) const TRUTH: f64 = 1e-8;
 
-/// Relative distance of the shots that tell slopes.
+/// Relative distance of the shots that determine slopes.
 const ASIDE: f64 = 0.01;
 
 impl Truth {
@@ -128,8 +128,8 @@ impl Truth {
     }
 
     /// A repetition whose standard errors come from the scatter of its own twenty
-    /// shots, which is told or not.
-    pub(crate) fn measured_by_shots(&self, seed: u64, told: bool) -> Data {
+    /// shots, which is reported or not.
+    pub(crate) fn measured_by_shots(&self, seed: u64, reported: bool) -> Data {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut mean_of = |scatter: f64| -> Estimate {
             let shots: Vec<f64> = (0..SHOTS as usize)
@@ -147,7 +147,7 @@ impl Truth {
         for (at, row) in data.rows.iter_mut().enumerate() {
             let speed = mean_of(SPEED_M_S);
             row.speed_m_s.sigma = speed.sigma;
-            if told {
+            if reported {
                 row.freedom = Freedom::of_all(SHOTS - 1.0);
             }
             for of in [Observable::Incident, Observable::Reflected] {

@@ -1,4 +1,4 @@
-//! What is damaged is told, once, and the rest is still read; nothing panics.
+//! What is damaged is reported, once, and the rest is still read; nothing panics.
 
 use crate::common::{folder, kept};
 use hertzchain_measure::MeasureError;
@@ -79,14 +79,14 @@ fn each_failing_is_one_clear_report() {
         ),
         ("other.xyz", "\u{1}\u{2}\u{3}", "none of HDF5"),
     ] {
-        let told = only_error(&file(&folder, name, content));
-        assert!(told.contains(expected), "{name}: {told}");
-        assert!(told.contains(name), "{name}: {told}");
+        let reported = only_error(&file(&folder, name, content));
+        assert!(reported.contains(expected), "{name}: {reported}");
+        assert!(reported.contains(name), "{name}: {reported}");
     }
     let header = folder.join("header.wav");
     fs::write(&header, &fs::read(kept("both.wav")).unwrap()[..20]).unwrap();
-    let told = only_error(&header);
-    assert!(told.contains("its header is not whole"), "{told}");
+    let reported = only_error(&header);
+    assert!(reported.contains("its header is not whole"), "{reported}");
     let missing = only_error(&folder.join("missing.csv"));
     assert!(missing.contains("cannot be read"), "{missing}");
     let renamed = folder.join("renamed.csv");
@@ -105,9 +105,9 @@ fn a_missing_rate_and_a_wrong_one_are_told() {
         ..ReadOptions::default()
     };
     for name in ["shots.tdms", "both.wav", "oscilloscope.csv"] {
-        let told: Vec<_> = read(&kept(name), &wrong).collect();
+        let reported: Vec<_> = read(&kept(name), &wrong).collect();
         assert!(
-            matches!(&told[0], Err(MeasureError::Rate(_, why)) if why.contains("--trust-rate")),
+            matches!(&reported[0], Err(MeasureError::Rate(_, why)) if why.contains("--trust-rate")),
             "{name}"
         );
     }
@@ -127,11 +127,11 @@ fn what_was_taken_for_granted_is_told() {
     let open = ReadOptions::default();
     assert!(notes(&bare, &open)[0].contains("its first column names no unit"));
     assert!(notes(&titled, &open)[0].contains("\"t\" names no unit"));
-    let told = ReadOptions {
+    let reported = ReadOptions {
         time_unit_s: Some(1e-6),
         ..ReadOptions::default()
     };
-    let record = read(&titled, &told).next().unwrap().unwrap();
+    let record = read(&titled, &reported).next().unwrap().unwrap();
     assert_eq!((record.interval_s, record.notes.len()), (2e-6, 0));
     let unit = file("unit.csv", format!("t (us),a\n{rows}"));
     assert_eq!(notes(&unit, &open).len(), 0);
@@ -149,11 +149,11 @@ fn a_jump_in_times_is_told_where_it_is() {
     let times = (0..100).map(|i| if i < 60 { i } else { i + 3 });
     let rows: String = times.map(|t| format!("{t},{}\n", t % 7)).collect();
     let path = file(&folder, "jump.csv", &format!("t (us),a\n{rows}"));
-    let told = only_error(&path);
-    assert!(told.contains("from sample 60, at 0.000059 s"), "{told}");
+    let reported = only_error(&path);
+    assert!(reported.contains("from sample 60, at 0.000059 s"), "{reported}");
     assert!(
-        told.contains("by 4.0000 µs where steps of 1.0000 µs"),
-        "{told}"
+        reported.contains("by 4.0000 µs where steps of 1.0000 µs"),
+        "{reported}"
     );
 }
 

@@ -128,15 +128,15 @@ fn shots_of_which_samples_alternate_are_read_in_pieces() {
         ..at_1_mhz()
     };
     let pieces = read(&file, &pieces).map(|piece| piece.unwrap());
-    let told = pieces.map(|piece| {
+    let reported = pieces.map(|piece| {
         let volts = piece.channels[0].volts.clone();
         let some: Vec<f64> = volts.into_iter().filter(|volt| *volt != 0.0).collect();
         (piece.shot.unwrap(), piece.first_sample, some)
     });
-    let told: Vec<_> = told.filter(|(.., some)| !some.is_empty()).collect();
+    let reported: Vec<_> = reported.filter(|(.., some)| !some.is_empty()).collect();
     let last = (1 << 24, vec![8.0]);
-    assert_eq!(told[0], (1, 0, vec![6.0]));
-    assert_eq!(told[1], (2, 0, vec![7.0]));
-    assert_eq!(told[2], (2, last.0, last.1));
+    assert_eq!(reported[0], (1, 0, vec![6.0]));
+    assert_eq!(reported[1], (2, 0, vec![7.0]));
+    assert_eq!(reported[2], (2, last.0, last.1));
     std::fs::remove_dir_all(&folder).unwrap();
 }

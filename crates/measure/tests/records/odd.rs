@@ -138,11 +138,11 @@ fn single_cells_without_a_number_are_gaps_and_refuse_nothing() {
     assert_eq!(volts[999], volts[998]);
     // Other words are mistakes, as ever.
     let wrong = written(&folder, "wrong.csv", with_cells(&[(200, "what?")]));
-    let told = read(&wrong, &ReadOptions::default())
+    let reported = read(&wrong, &ReadOptions::default())
         .next()
         .unwrap()
         .unwrap_err();
-    assert!(told.to_string().contains("line 202 is no row"), "{told}");
+    assert!(reported.to_string().contains("line 202 is no row"), "{reported}");
 }
 
 #[test]
@@ -217,9 +217,9 @@ fn times_in_an_array_are_no_channel() {
     assert_volts(&record, 0, 900);
     let counts = (0..900).flat_map(|i| [i as f64, volt(i)]);
     let path = written(&folder, "counts.npy", npy("(900, 2)", "False", counts));
-    let told = read(&path, &ReadOptions::default()).next().unwrap();
+    let reported = read(&path, &ReadOptions::default()).next().unwrap();
     assert!(
-        matches!(told, Err(MeasureError::Rate(_, why)) if why.contains("does not say how fast"))
+        matches!(reported, Err(MeasureError::Rate(_, why)) if why.contains("does not say how fast"))
     );
 }
 
@@ -253,12 +253,12 @@ fn half_an_array_is_told_as_such_before_a_rate_is_asked_for() {
     let mut bytes = npy("(900,)", "False", (0..900).map(volt));
     bytes.truncate(bytes.len() - 4000);
     let path = written(&folder, "half.npy", bytes);
-    let told = read(&path, &ReadOptions::default())
+    let reported = read(&path, &ReadOptions::default())
         .next()
         .unwrap()
         .unwrap_err();
-    assert!(matches!(told, MeasureError::Truncated(..)), "{told}");
-    assert!(told.to_string().contains("3200 of 7200 bytes"), "{told}");
+    assert!(matches!(reported, MeasureError::Truncated(..)), "{reported}");
+    assert!(reported.to_string().contains("3200 of 7200 bytes"), "{reported}");
 }
 
 #[test]

@@ -82,10 +82,10 @@ fn a_series_reads_back_as_it_was_written() {
 fn true_values_of_contacts_come_shot_after_shot() {
     let path = folder("contacts").join("series.h5");
     write(&path, 3, 100).unwrap();
-    let told = truth(&path).unwrap();
-    let names: Vec<&str> = told.iter().map(|(name, _)| &**name).collect();
+    let reported = truth(&path).unwrap();
+    let names: Vec<&str> = reported.iter().map(|(name, _)| &**name).collect();
     assert!(!names.contains(&"contact"), "{names:?}");
-    let overlaps = told.iter().find(|(name, _)| name == "overlap_before_m");
+    let overlaps = reported.iter().find(|(name, _)| name == "overlap_before_m");
     assert_eq!(overlaps.unwrap().1, [0.0, -1e-6, 1e-6, -1e-6, 2e-6, -1e-6]);
 }
 
@@ -268,7 +268,7 @@ with xarray.open_dataset("series.h5", engine="h5netcdf", group="truth") as data:
 "#,
     );
     let Some(printed) = printed else { return };
-    // A file that tells nothing of triggers is read all the same.
+    // A file that determines nothing of triggers is read all the same.
     assert_eq!(all(&folder.join("untold.h5"))[2].triggered, None);
     let sum: i64 = samples(1, 1000).iter().map(|count| i64::from(*count)).sum();
     assert_eq!(printed.trim(), sum.to_string());

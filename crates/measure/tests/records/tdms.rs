@@ -222,17 +222,17 @@ fn a_scale_that_is_no_polynomial_is_named_and_the_other_channels_are_read() {
     bytes[at..at + 10].copy_from_slice(b"Thermistor");
     let path = folder("thermistor").join("rig.tdms");
     fs::write(&path, bytes).unwrap();
-    let told = |channel: &str| ReadOptions {
+    let reported = |channel: &str| ReadOptions {
         channels: vec![channel.to_owned()],
         ..ReadOptions::default()
     };
-    let wall: Vec<_> = read(&path, &told("wall")).collect();
+    let wall: Vec<_> = read(&path, &reported("wall")).collect();
     let refused = wall[0].as_ref().unwrap_err().to_string();
     assert!(
         refused.contains("Thermistor") && refused.contains("scaled values"),
         "{refused}"
     );
-    assert!(read(&path, &told("bead")).all(|record| record.is_ok()));
+    assert!(read(&path, &reported("bead")).all(|record| record.is_ok()));
 }
 
 fn records(test: &str, bytes: &[u8]) -> Vec<Result<Record, MeasureError>> {

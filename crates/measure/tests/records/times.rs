@@ -1,4 +1,4 @@
-//! Times of few digits: what they leave open is told, and nothing is refused for it.
+//! Times of few digits: what they leave open is reported, and nothing is refused for it.
 
 use crate::common::folder;
 use hertzchain_measure::records::{ReadOptions, Record, read};
@@ -13,7 +13,7 @@ fn volt(i: usize) -> f64 {
     0.01 * ((i * 7919) % 23) as f64
 }
 
-/// Segments of a recording whose times are told by `printed`.
+/// Segments of a recording whose times are reported by `printed`.
 fn written(
     folder: &Path,
     interval_s: f64,
@@ -92,7 +92,7 @@ fn digits_that_grow_with_the_time_shatter_no_recording() {
 #[test]
 fn what_digits_leave_open_is_told_once_and_a_rate_ends_it() {
     let folder = folder("open");
-    // No sample at a tie of rounding, which would tell more.
+    // No sample at a tie of rounding, which would determine more.
     let printed = |time_s: f64| format!("{:.5}", time_s + 0.3e-6);
     let path = written(&folder, 1e-6, 400, 3, printed);
     let notes: Vec<Vec<String>> = all(&path, &ReadOptions::default())
@@ -123,10 +123,10 @@ fn what_digits_leave_open_is_told_once_and_a_rate_ends_it() {
 fn digits_that_show_no_step_at_all_ask_for_a_rate() {
     let folder = folder("none");
     let path = written(&folder, 1e-6, 0, 1, |time_s| format!("{time_s:.1}"));
-    let told = read(&path, &ReadOptions::default()).next().unwrap();
-    let told = told.unwrap_err();
-    assert!(told.to_string().contains("too coarse"), "{told}");
-    assert!(told.to_string().contains("--rate"), "{told}");
+    let reported = read(&path, &ReadOptions::default()).next().unwrap();
+    let reported = reported.unwrap_err();
+    assert!(reported.to_string().contains("too coarse"), "{reported}");
+    assert!(reported.to_string().contains("--rate"), "{reported}");
     let options = ReadOptions {
         rate_hz: Some(1e6),
         ..ReadOptions::default()
@@ -173,9 +173,9 @@ fn times_that_go_to_and_fro_are_told_once() {
         .map(|i| format!("{},{:.2}\n", i + jitter(i), volt(i)))
         .collect();
     fs::write(&path, "t (us),A\n".to_owned() + &rows).unwrap();
-    let told: Vec<_> = read(&path, &ReadOptions::default()).collect();
-    assert_eq!(told.len(), 1);
-    let error = told.into_iter().next().unwrap().unwrap_err();
+    let reported: Vec<_> = read(&path, &ReadOptions::default()).collect();
+    assert_eq!(reported.len(), 1);
+    let error = reported.into_iter().next().unwrap().unwrap_err();
     assert!(error.to_string().contains("not evenly spaced"), "{error}");
     assert!(error.to_string().contains("--trust-rate"), "{error}");
 }

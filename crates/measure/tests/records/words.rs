@@ -153,13 +153,13 @@ fn many_columns_are_shots_and_few_only_if_told() {
         rate_hz: Some(1e6),
         ..ReadOptions::default()
     };
-    let told = ReadOptions {
+    let reported = ReadOptions {
         rows: Rows::Moments,
         ..rate.clone()
     };
     for fortran in [false, true] {
         let path = npy("moments", (SAMPLES, 20), fortran);
-        for options in [&rate, &told] {
+        for options in [&rate, &reported] {
             let found = results(&path, options);
             assert_eq!(found.len(), 20, "{found:?}");
             for (shot, record) in found.into_iter().enumerate() {
@@ -181,6 +181,6 @@ fn many_columns_are_shots_and_few_only_if_told() {
         let few = npy("few", (SAMPLES, 5), fortran);
         let error = results(&few, &rate).remove(0).unwrap_err().to_string();
         assert!(error.contains("--rows moments"), "{error}");
-        assert_eq!(results(&few, &told).len(), 5);
+        assert_eq!(results(&few, &reported).len(), 5);
     }
 }

@@ -201,14 +201,14 @@ fn other_methods_use_the_flanks_or_say_why_they_cannot() {
         (rise.value - expected_s).abs() < 0.2e-6,
         "{rise:?} {expected_s:e}"
     );
-    let told = onset(0.8).unwrap_err().to_string();
-    assert!(told.contains("clipped"), "{told}");
+    let reported = onset(0.8).unwrap_err().to_string();
+    assert!(reported.contains("clipped"), "{reported}");
     let correlation = Method::CrossCorrelation;
-    let told = measured(&samples, &correlation)
+    let reported = measured(&samples, &correlation)
         .flight
         .unwrap_err()
         .to_string();
-    assert!(told.contains("wall") && told.contains("clipped"), "{told}");
+    assert!(reported.contains("wall") && reported.contains("clipped"), "{reported}");
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn shot(lower: f64, seed: u64) -> (Flight, Vec<QualityFlag>) {
 const SEEDS: u64 = 300;
 
 /// Single samples would choose the wrong one of the two in a tenth of the shots: fits to some
-/// thirty of them tell the heights four deviations apart.
+/// thirty of them determine the heights four deviations apart.
 #[test]
 fn fragments_are_told_apart_by_all_their_samples() {
     let wrong = (0..SEEDS).filter(|seed| {
@@ -75,7 +75,7 @@ fn a_return_of_fragments_alike_says_so_and_states_how_far_it_may_be_off() {
     assert!((0.8..1.4).contains(&scale), "{scale}");
 }
 
-/// Fragments that noise tells apart, and a return in one piece, are in no doubt of this kind.
+/// Fragments that noise determines apart, and a return in one piece, are in no doubt of this kind.
 #[test]
 fn fragments_apart_are_no_rivals() {
     for lower in [0.04, LARGEST] {
@@ -90,15 +90,15 @@ fn fragments_apart_are_no_rivals() {
     }
 }
 
-/// What all shots of a speed tell changes the return and nothing else.
+/// What all shots of a speed determine changes the return and nothing else.
 #[test]
 fn a_rival_told_to_be_the_higher_is_the_return() {
     let flight = (0..SEEDS)
         .map(|seed| shot(0.002, seed).0.with_interval_error(1e-5))
         .find(|flight| flight.picks.competing[2].is_some())
         .unwrap();
-    let rival = flight.picks.competing[2].unwrap();
-    let mut lower = rival.lower;
+    let alternative = flight.picks.competing[2].unwrap();
+    let mut lower = alternative.lower;
     lower.value = -30.0 * lower.sigma;
     let other = flight.with_height_difference(PulseKind::Reflected, lower);
     let moved_s = other.reflected_s.unwrap().value - flight.reflected_s.unwrap().value;

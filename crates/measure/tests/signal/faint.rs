@@ -59,15 +59,15 @@ fn stated_errors_of_the_default_cover_true_times_of_faint_pulses() {
                     .into_iter()
                     .enumerate()
                 {
-                    let told = format!("{} {which} {interval_s:e} {ratio_db}", source.name);
-                    assert!(errors.len() as u64 > SHOTS * 9 / 10, "{told}");
+                    let reported = format!("{} {which} {interval_s:e} {ratio_db}", source.name);
+                    assert!(errors.len() as u64 > SHOTS * 9 / 10, "{reported}");
                     // 95 % less two standard deviations of chance; with the fitted bend they were
                     // 72 to 94 % of the reflected times.
                     let share = covered(&errors, 0.0);
-                    assert!(share > 0.928, "{told}: {share}");
+                    assert!(share > 0.928, "{reported}: {share}");
                     // Those stated as the surest as well: they were 55 to 90 %.
                     let share = covered(&surest(errors), 0.0);
-                    assert!(share > 0.92, "{told}, surest: {share}");
+                    assert!(share > 0.92, "{reported}, surest: {share}");
                 }
             }
         }

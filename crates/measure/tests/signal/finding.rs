@@ -322,7 +322,7 @@ fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() 
             found.flags
         );
     }
-    // Without the low second pulse, the ways' times alone tell in a known row.
+    // Without the low second pulse, the ways' times alone determine in a known row.
     scene.pulses[1].1 = 1.2;
     assert!(of_row(&scene).flags.contains(&QualityFlag::Order));
 }

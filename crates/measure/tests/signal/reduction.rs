@@ -39,14 +39,14 @@ fn errors_in_both_coordinates_agree_with_orthogonal_distance_regression() {
 fn a_fit_says_whether_its_points_follow_the_law_within_their_errors() {
     let speeds = SPEEDS.map(|v| 0.003 / v);
     let fit = power_law_both_errors(&SPEEDS, &[0.003; 7], &TIMES, &SIGMAS).unwrap();
-    let judged = fit.chi_square.unwrap();
+    let evaluated = fit.chi_square.unwrap();
     // Its definition: Σ (ln t − ln law)² over the variance across the line. Rounding.
     let pulls = (0..7).map(|i| {
         let across = (SIGMAS[i] / TIMES[i]).hypot(fit.exponent * speeds[i]);
         (fit.residuals[i] / across).powi(2)
     });
-    assert!((judged.value / pulls.sum::<f64>() - 1.0).abs() < 1e-12);
-    assert_eq!(judged.freedom, 5);
+    assert!((evaluated.value / pulls.sum::<f64>() - 1.0).abs() < 1e-12);
+    assert_eq!(evaluated.freedom, 5);
     // These points bend: with errors a tenth as large no power law is left.
     let sharp = power_law_both_errors(&SPEEDS, &[0.0; 7], &TIMES, &SIGMAS.map(|s| 0.1 * s));
     let sharp = sharp.unwrap();
@@ -56,7 +56,7 @@ fn a_fit_says_whether_its_points_follow_the_law_within_their_errors() {
     let straight = SPEEDS.map(|v| 655.0 * v.powf(-0.19));
     let fit = power_law(&SPEEDS, &straight, Some(&SIGMAS)).unwrap();
     assert_eq!((fit.is_supported(), fit.excess()), (Some(true), 1.0));
-    // Errors from the scatter itself, and two points, judge nothing.
+    // Errors from the scatter itself, and two points, evaluate nothing.
     let free = power_law(&SPEEDS, &TIMES, None).unwrap();
     assert_eq!(free.is_supported(), None);
     let two = power_law(&SPEEDS[..2], &TIMES[..2], Some(&SIGMAS[..2])).unwrap();

@@ -131,7 +131,7 @@ fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows()
 }
 
 /// Error of the incident time where the wall's pulse falls so many times as slowly as it rises and
-/// something passes beneath its rise, and whether that is told.
+/// something passes beneath its rise, and whether that is reported.
 fn beneath_a_fall(ratio: f64) -> (f64, bool) {
     let mut samples = Scene::default().summed();
     let (top, fall) = (1500, ratio * 26.0 / 2.0_f64.sqrt().acosh());
@@ -142,11 +142,11 @@ fn beneath_a_fall(ratio: f64) -> (f64, bool) {
         *volt -= 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
     }
     let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
-    let told = shot
+    let reported = shot
         .found
         .flags
         .contains(&QualityFlag::Asymmetric(PulseKind::Wall));
-    (shot.flight.unwrap().incident_s.sigma, told)
+    (shot.flight.unwrap().incident_s.sigma, reported)
 }
 
 #[test]

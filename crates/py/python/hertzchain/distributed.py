@@ -183,13 +183,13 @@ def _shard(path: str, name: str, number: int, of: int, threads: int) -> tuple[in
 def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> tuple[int, bool | str]:
     """Runs a part of a campaign on a worker."""
 
-    def kept() -> bool:
+    def is_stored() -> bool:
         done = _native.campaign(experiment, out, f"{number}/{of}", seed, threads, None)
         if done["failed"]:
             raise OptionError("; ".join(done["failed"]))
         return done["kept"] > 0 and done["run"] == 0
 
-    return _outcome_of(number, kept)
+    return _outcome_of(number, is_stored)
 
 
 def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:

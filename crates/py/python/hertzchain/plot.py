@@ -420,10 +420,10 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     lower.axhline(0.0, color="0.3", linewidth=0.6)
     lower.set_ylabel("Residual (σ)")
     if "source" in fitted.rows:
-        _fitted_pulses(upper, lower, fitted)
+        _model_pulses(upper, lower, fitted)
         return made
     for at, observable in enumerate(dict.fromkeys(fitted.rows["observable"].tolist())):
-        _fitted_curve(upper, lower, fitted, str(observable), at)
+        _model_curve(upper, lower, fitted, str(observable), at)
     is_time = all(str(name).startswith("tof") for name in fitted.rows["observable"])
     upper.set_ylabel("Time of flight (µs)" if is_time else "Observable")
     upper.legend()
@@ -435,7 +435,7 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     return made
 
 
-def _fitted_curve(upper: Axes, lower: Axes, fitted: FitResult, observable: str, at: int) -> None:
+def _model_curve(upper: Axes, lower: Axes, fitted: FitResult, observable: str, at: int) -> None:
     own = fitted.rows["observable"] == observable
     rows = {name: values[own] for name, values in fitted.rows.items()}
     order = np.argsort(rows["speed_m_s"])
@@ -450,7 +450,7 @@ def _fitted_curve(upper: Axes, lower: Axes, fitted: FitResult, observable: str, 
     lower.plot(speeds, rows["residual"], color=colour, linestyle="none", marker=MARKERS[at % 5])
 
 
-def _fitted_pulses(upper: Axes, lower: Axes, fitted: FitResult) -> None:
+def _model_pulses(upper: Axes, lower: Axes, fitted: FitResult) -> None:
     own = fitted.rows["source"] == fitted.rows["source"][0]
     rows = {name: values[own] for name, values in fitted.rows.items()}
     for at, channel in enumerate(np.unique(rows["channel"])):

@@ -98,7 +98,7 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     let before = out.recordings();
     let lost = before.keys().nth(2).unwrap();
     std::fs::remove_file(out.0.join(lost)).unwrap();
-    // Of a killed run, of one that is still at work, and of somebody else.
+    // Of a killed run, of one that is still at work, and of a caller else.
     let part = |name: &str| out.0.join(format!(".{name}.hertzchain-aBcDeFgH1234.part"));
     let (killed, alive, other) = (part(lost), part("dry-01-0.1000.h5"), part("mine.h5"));
     for path in [&killed, &alive, &other] {

@@ -1,4 +1,4 @@
-//! What a recorder will not see is told before a campaign.
+//! What a recorder will not see is reported before a campaign.
 
 use crate::small::{experiment, plan, shots};
 use hertzchain_sim::rig::{Plan, RigError, forecast};
@@ -12,11 +12,11 @@ fn a_recorder_that_sees_all_is_told_nothing() {
 fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
     // The striker needs 10 ms from the gate at 0.1 m/s.
     let short = [("record = \"20 ms\"", "record = \"6.5 ms\"")];
-    let told = forecast(&plan(&short)).unwrap();
-    let named = |what: &str| told.iter().filter(|line| line.contains(what)).count();
-    assert!(named("`dry`") > 0 && named("`wet`") > 0, "{told:?}");
-    assert!(told[0].contains("at 0.1000 m/s"), "{told:?}");
-    let enough = told[0].split("record = \"").nth(1).unwrap();
+    let reported = forecast(&plan(&short)).unwrap();
+    let named = |what: &str| reported.iter().filter(|line| line.contains(what)).count();
+    assert!(named("`dry`") > 0 && named("`wet`") > 0, "{reported:?}");
+    assert!(reported[0].contains("at 0.1000 m/s"), "{reported:?}");
+    let enough = reported[0].split("record = \"").nth(1).unwrap();
     let enough_ms: f64 = enough.split(" ms").next().unwrap().parse().unwrap();
     let longer = format!("record = \"{enough_ms} ms\"");
     let plan = plan(&[("record = \"20 ms\"", &longer), ("taps = 2", "taps = 0")]);
@@ -36,8 +36,8 @@ fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
 #[test]
 fn a_rate_of_few_samples_a_pulse_is_told_and_one_of_none_refused() {
     let at = |rate: &str| forecast(&plan(&[("sampling = \"500 kHz\"", rate)]));
-    let told = at("sampling = \"100 kHz\"").unwrap();
-    assert!(told[0].contains("sampled at 100 kHz"), "{told:?}");
+    let reported = at("sampling = \"100 kHz\"").unwrap();
+    assert!(reported[0].contains("sampled at 100 kHz"), "{reported:?}");
     let refused = at("sampling = \"1 kHz\"").unwrap_err();
     assert!(matches!(refused, RigError::Unsuited(_)));
     assert!(refused.to_string().contains("has 0.1 samples"), "{refused}");
@@ -46,9 +46,9 @@ fn a_rate_of_few_samples_a_pulse_is_told_and_one_of_none_refused() {
 /// Each of these would record nothing that anybody could use.
 #[test]
 fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
-    let told = |from: &str, to: &str| forecast(&plan(&[(from, to)])).unwrap().join("\n");
+    let reported = |from: &str, to: &str| forecast(&plan(&[(from, to)])).unwrap().join("\n");
     let record = "record = \"20 ms\"";
-    let clipped = told(record, "record = \"20 ms\"\nrange = \"20 mV\"");
+    let clipped = reported(record, "record = \"20 ms\"\nrange = \"20 mV\"");
     assert!(
         clipped.contains("is clipped at the converter's range of ± 0.02 V"),
         "{clipped}"
@@ -56,16 +56,16 @@ fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
     let ranges = clipped.split("range = \"").skip(1);
     let volts = ranges.map(|text| text.split(" V").next().unwrap().parse().unwrap());
     let enough = volts.fold(0.0, f64::max);
-    let wider = told(
+    let wider = reported(
         record,
         &format!("record = \"20 ms\"\nrange = \"{enough} V\""),
     );
     assert_eq!(wider, "");
-    let coarse = told(record, "record = \"20 ms\"\nbits = 4");
+    let coarse = reported(record, "record = \"20 ms\"\nbits = 4");
     assert!(coarse.contains("steps of the converter"), "{coarse}");
     let level = |level: &str| {
         let with = format!("record = \"20 ms\"\ntrigger = \"level\"\nlevel = \"{level}\"");
-        told(record, &with)
+        reported(record, &with)
     };
     let high = level("5 V");
     assert!(

@@ -28,17 +28,17 @@ fn a_poisoned_series_is_told_and_stops_no_other() {
     };
     assert_eq!(there(&sound).iter().filter(|there| !**there).count(), 1);
     assert!(!there(&sound)[1]);
-    // The same folder, without the poison, is made whole; the file tells the plan.
-    let told = plan_of_folder(&out).unwrap();
-    assert_eq!(told.series, sound.series);
-    let missing = merge(&told, &[&out], &out).unwrap_err();
+    // The same folder, without the poison, is made whole; the file determines the plan.
+    let reported = plan_of_folder(&out).unwrap();
+    assert_eq!(reported.series, sound.series);
+    let missing = merge(&reported, &[&out], &out).unwrap_err();
     assert!(
         matches!(missing, RigError::Missing { ref missing, .. } if missing.len() == 1),
         "{missing}"
     );
     let done = campaign(&sound, &out, Shard::WHOLE, &|_| {}).unwrap();
     assert_eq!((done.run, done.kept), (1, sound.series.len() - 1));
-    let merged = merge(&told, &[&out], &out).unwrap();
+    let merged = merge(&reported, &[&out], &out).unwrap();
     assert_eq!((merged.series, merged.copied), (sound.series.len(), 0));
     fs::remove_dir_all(&out).unwrap();
 }

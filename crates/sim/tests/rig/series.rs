@@ -140,7 +140,7 @@ fn wave_from(experiment: &Experiment, state: &State, fired: &MeasuredShot) -> f6
     wall.time_s - incident.time_s
 }
 
-/// Taps and all: one bench, on which nobody puts anything straight between impacts.
+/// Taps and all: one bench, on which no user puts anything straight between impacts.
 #[test]
 fn a_series_is_taps_and_shots_on_one_bench() {
     let plan = plan(&[SAME_SPEED]);
@@ -215,7 +215,7 @@ fn a_level_in_the_file_starts_records_where_the_channel_passes_it() {
     }
 }
 
-/// Its name is told by the file, the campaign's report and the doubts of a measurement.
+/// Its name is reported by the file, the campaign's report and the doubts of a measurement.
 #[test]
 fn a_level_that_no_shot_passes_is_told_shot_by_shot() {
     let plan = recorder("trigger = \"level\"\nlevel = \"9 V\"");

@@ -108,7 +108,7 @@ fn a_damaged_shard_counts_as_missing_and_is_made_again() {
     let shard = Shard::new(1, 2).unwrap();
     let path = folder.0.join(format!("{}.h5", sweep.name(shard)));
     let sound = fs::read(&path).unwrap();
-    // Cuts through its numbers; of what lies behind them nothing is told.
+    // Cuts through its numbers; of what lies behind them nothing is reported.
     for place in [3, sound.len() / 3, sound.len() / 2] {
         fs::write(&path, &sound[..place]).unwrap();
         assert!(BatchResult::read(&path).is_err(), "cut at {place}");
@@ -130,7 +130,7 @@ fn a_number_that_is_not_the_one_written_is_found_out() {
     let part = sweep.run(Shard::WHOLE, &|| {});
     let path = part.write(&folder.0).unwrap();
     let sound = fs::read(&path).unwrap();
-    // Any byte of the file: those that tell something are all covered.
+    // Any byte of the file: those that determine something are all covered.
     for place in (0..sound.len()).step_by(97) {
         let mut changed = sound.clone();
         changed[place] ^= 0x10;

@@ -20,10 +20,10 @@ fn of_row(more: &[&str]) -> Fitted {
 
 #[test]
 fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
-    let told = of_row(&[]).several_pairs().unwrap();
+    let reported = of_row(&[]).several_pairs().unwrap();
     assert!(
-        told.contains("--starts") && told.contains("gauge"),
-        "{told}"
+        reported.contains("--starts") && reported.contains("gauge"),
+        "{reported}"
     );
     let bounds = ["--bounds=wet.K=5e9:2e10", "--bounds=wet.A=1e-7:1e-5"];
     let found = of_row(&[&bounds[..], &["--starts=10"]].concat());

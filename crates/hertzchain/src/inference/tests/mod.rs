@@ -12,20 +12,20 @@ fn fit(more: &[&str]) -> Fit {
 fn a_number_that_use_names_and_the_table_has_not_is_told() {
     let text =
         "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.3,1e-3,7e-4,1e-7\n";
-    let told = |words: &[&str]| {
+    let reported = |words: &[&str]| {
         let measured = fit(words).measured;
         let data = parsed("a.csv", text, &measured, None).unwrap();
         assumed(&data, &measured)
     };
-    let why = told(&["--use=incident,returning-ratio"]).unwrap();
+    let why = reported(&["--use=incident,returning-ratio"]).unwrap();
     let column = Observable::ReturningOverPassing.column();
     assert!(
         why.starts_with(&format!("a.csv: --use asks for `{column}`")),
         "{why}"
     );
-    // Nobody asked for reflected times by name.
-    assert_eq!(told(&[]), None);
-    assert_eq!(told(&["--use=incident"]), None);
+    // no user asked for reflected times by name.
+    assert_eq!(reported(&[]), None);
+    assert_eq!(reported(&["--use=incident"]), None);
 }
 
 #[test]

@@ -45,7 +45,7 @@ const PARTS: [Part; 8] = [
         (Colour::VERMILION, Dash::Dashed),
         true,
     ),
-    part("lost", lost, (Colour::GREEN, Dash::DashDotted), false),
+    part("lost", dissipated_j, (Colour::GREEN, Dash::DashDotted), false),
     part(
         "clipped",
         |b| b.clipped_j,
@@ -73,7 +73,7 @@ const PARTS: [Part; 8] = [
     ),
 ];
 
-fn lost(budget: &Budget) -> f64 {
+fn dissipated_j(budget: &Budget) -> f64 {
     let lines = budget.dissipated.iter();
     lines.map(|line| line.energy_j).sum()
 }

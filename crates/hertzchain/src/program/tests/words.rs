@@ -17,13 +17,13 @@ fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {
         steps: vec![1e-3; 2],
         disagreement,
     };
-    let told = rough(&free, &with(vec![0.02, 0.43])).unwrap();
+    let reported = rough(&free, &with(vec![0.02, 0.43])).unwrap();
     for word in [
         "wet.A at 0.31 m/s differ by 43 %",
         "--method profile",
         "--accuracy",
     ] {
-        assert!(told.contains(word), "{told}");
+        assert!(reported.contains(word), "{reported}");
     }
     assert_eq!(rough(&free, &with(vec![0.04, 1e-6])), None);
 }

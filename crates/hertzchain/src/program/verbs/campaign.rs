@@ -31,11 +31,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     shown.bar.finish_and_clear();
     let done = done.map_err(failure)?;
     print(&summary(&plan, &done, begun.elapsed(), arguments))?;
-    judge(&done)
+    evaluate(&done)
 }
 
-/// Series that can't be computed are told, after all the others were.
-fn judge(done: &Done) -> Result<(), Failure> {
+/// Series that can't be computed are reported, after all the others were.
+fn evaluate(done: &Done) -> Result<(), Failure> {
     for why in &done.failed {
         print::note(&format!("warning: {why}"));
     }
@@ -68,14 +68,14 @@ fn untriggered(done: &Done) -> Option<String> {
     (shots > 0).then(|| {
         format!(
             "{shots} shots never passed the trigger's level and were recorded from the touch on, which \
-             their files tell in `triggered`: {}; lower `level` in [campaign.recorder], or trigger = \
+             their files report in `triggered`: {}; lower `level` in [campaign.recorder], or trigger = \
              \"photogate\"",
             names.join(", ")
         )
     })
 }
 
-/// The user's mistakes are told as such; a full disk is nobody's.
+/// The user's mistakes are reported as such; a full disk is not theirs.
 pub(crate) fn failure(error: RigError) -> Failure {
     match error {
         RigError::Mistakes(mistakes) => (*mistakes).into(),

@@ -1,8 +1,8 @@
 //! `hertzchain design`: what to measure next.
 
-use crate::design::Designed;
+use crate::design::DesignResult;
 use crate::options::DesignOptions as Arguments;
-use crate::program::failure::{Failure, print_assumed, print_kept};
+use crate::program::failure::{Failure, print_assumed, print_stored};
 use crate::program::folder::Folder;
 use crate::program::format::{self, digits};
 use crate::program::print::{self, heading};
@@ -24,36 +24,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     print_assumed(&data, &arguments.measured);
-    print_kept(&model, &arguments.modelled.set);
+    print_stored(&model, &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let pool = inference::pool(arguments.modelled.threads)?;
-    let designed = pool.install(|| design::designed(&problem, &targets, &speeds, arguments))?;
-    let mut all = design::json(&problem, &designed);
+    let run_design = pool.install(|| design::run_design(&problem, &targets, &speeds, arguments))?;
+    let mut all = design::json(&problem, &run_design);
     all["options"] = crate::options::recorded(arguments);
     let assumed = inference::assumed_model(&arguments.modelled);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&(assumed + &text(&problem, &designed)))?,
+        false => print::print(&(assumed + &text(&problem, &run_design)))?,
     }
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.tables(&design::tables(&designed))?;
+        folder.tables(&design::tables(&run_design))?;
         print::written(&folder.finish()?);
         Ok(())
     })
 }
 
-fn text(problem: &CurveProblem, designed: &Designed) -> String {
-    let (candidates, found) = (&designed.candidates, &designed.design);
-    let names = &designed.names;
+fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
+    let (candidates, found) = (&run_design.candidates, &run_design.design);
+    let names = &run_design.names;
     let now = names
         .iter()
         .zip(&found.before)
-        .zip(&designed.units)
+        .zip(&run_design.units)
         .map(|((name, sd), unit)| {
             format!("{name} ± {} {unit}", sd_text(*sd))
                 .trim_end()
@@ -61,7 +61,7 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
         });
     let now: Vec<String> = now.collect();
     let mut head = vec!["measure next".to_owned()];
-    let units = names.iter().zip(&designed.units);
+    let units = names.iter().zip(&run_design.units);
     head.extend(units.map(|(name, unit)| titled(&format!("{name} ±"), unit)));
     head.push("information (nats)".to_owned());
     let priced = candidates.iter().any(|candidate| candidate.cost != 1.0);
@@ -82,10 +82,10 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
     let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
     format!(
         "{}Now: {}\n{}{}\n{}\n{}\n{}\n{}",
-        unfit(designed),
+        unfit(run_design),
         now.join(", "),
         lines(inference::references(problem.model())),
-        beware(problem, designed),
+        warnings(problem, run_design),
         heading("One measurement more, best first"),
         format::table(&head, &best),
         heading("A series, each the best after those before it"),
@@ -94,29 +94,29 @@ fn text(problem: &CurveProblem, designed: &Designed) -> String {
 }
 
 /// Before all else: a ranking by a model that the data so far do not follow.
-fn unfit(designed: &Designed) -> String {
-    misfit(&designed.goodness).map_or(String::new(), |misfit| {
+fn unfit(run_design: &DesignResult) -> String {
+    misfit(&run_design.goodness).map_or(String::new(), |misfit| {
         format!("warning: {misfit}; nor is its ranking.\n\n")
     })
 }
 
 /// What standard errors of open combinations are worth, and what would close them.
-fn beware(problem: &CurveProblem, designed: &Designed) -> String {
-    let undetermined = &designed.undetermined;
+fn warnings(problem: &CurveProblem, run_design: &DesignResult) -> String {
+    let undetermined = &run_design.undetermined;
     if undetermined.is_empty() {
         return String::new();
     }
     let open = undetermined
         .iter()
         .map(|words| format!("  Not determined so far: {words}.\n"));
-    let advice = designed.advice.iter();
+    let advice = run_design.advice.iter();
     let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
-    let hopeless = designed.hopeless(problem).into_iter();
-    let hopeless = hopeless.map(|told| format!("  {told}.\n"));
+    let unidentifiable = run_design.unidentifiable(problem).into_iter();
+    let unidentifiable = unidentifiable.map(|reported| format!("  {reported}.\n"));
     format!(
         "warning: the data so far leave combinations of the parameters open.\n{}{}{}",
         open.collect::<String>(),
-        hopeless.collect::<String>(),
+        unidentifiable.collect::<String>(),
         advice.collect::<String>()
     )
 }

@@ -5,10 +5,10 @@ mod pulses;
 mod report;
 mod uncertainty;
 
-use crate::fit::{self, Fitted, Inferred, More};
+use crate::fit::{self, FitResult, Inferred, More};
 use crate::inference;
 use crate::options::{FitOptions as Arguments, Method};
-use crate::program::failure::{Failure, print_assumed, print_kept};
+use crate::program::failure::{Failure, print_assumed, print_stored};
 use crate::program::folder::Folder;
 use crate::program::notes::with_notes;
 use crate::program::print;
@@ -25,15 +25,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     print_assumed(&data, &arguments.measured);
-    print_kept(&model, &arguments.modelled.set);
+    print_stored(&model, &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.modelled.threads.map(|threads| threads.0);
-    let fitted = with_notes(threads, || fit::fitted(problem, arguments))??;
-    let mut all = fit::json(&fitted, arguments);
-    show(arguments, &mut all, || report::text(&fitted, arguments))?;
-    folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+    let fit_result = with_notes(threads, || fit::fit_result(problem, arguments))??;
+    let mut all = fit::json(&fit_result, arguments);
+    show(arguments, &mut all, || report::text(&fit_result, arguments))?;
+    folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
 /// Prints a result, and before all else that a model which was not named was assumed.
@@ -90,7 +90,7 @@ fn write_inferred(
         More::Sampled(sampled) => {
             folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;
             if let Ok(posterior) = &sampled.posterior {
-                folder.figure("corner", &uncertainty::corner(fitted, posterior))?;
+                folder.figure("corner", &uncertainty::corner(fit_result, posterior))?;
             }
         }
     }

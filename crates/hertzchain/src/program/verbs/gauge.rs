@@ -3,7 +3,7 @@
 mod pictures;
 mod report;
 
-use crate::gauge::{self, Gauged};
+use crate::gauge::{self, GaugeResult};
 use crate::inference;
 use crate::options::GaugeOptions as Arguments;
 use crate::program::failure::{Failure, print_assumed};
@@ -37,23 +37,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         own: &arguments.own,
         accuracy: arguments.accuracy.0,
     };
-    let gauged = pool.install(|| gauge::gauged(&chains, (dry, wet), oils, arguments.form))?;
-    let mut all = gauge::json(&gauged);
+    let run_gauge = pool.install(|| gauge::run_gauge(&chains, (dry, wet), oils, arguments.form))?;
+    let mut all = gauge::json(&run_gauge);
     all["options"] = crate::options::recorded(arguments);
     all["assumed_model"] = assumed.clone().into();
     let assumed = lines(assumed.into_iter().collect());
     match arguments.json {
         true => print::print_json(&all)?,
-        false => print::print(&(assumed + &report::text(&gauged)))?,
+        false => print::print(&(assumed + &report::text(&run_gauge)))?,
     }
-    folder.map_or(Ok(()), |folder| write(folder, &gauged, &all))
+    folder.map_or(Ok(()), |folder| write(folder, &run_gauge, &all))
 }
 
-fn write(mut folder: Folder, gauged: &Gauged, all: &serde_json::Value) -> Result<(), Failure> {
+fn write(mut folder: Folder, run_gauge: &GaugeResult, all: &serde_json::Value) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
-    folder.tables(&gauge::tables(gauged))?;
-    if gauged.form.is_some() || gauged.rows.iter().any(|row| row.contact.is_ok()) {
-        folder.figure("contacts", &pictures::contacts(gauged))?;
+    folder.tables(&gauge::tables(run_gauge))?;
+    if run_gauge.form.is_some() || run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
+        folder.figure("contacts", &pictures::contacts(run_gauge))?;
     }
     print::written(&folder.finish()?);
     Ok(())

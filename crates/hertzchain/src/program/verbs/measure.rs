@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     measure::suits(&measured)?;
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
-    tell(&measured);
+    report(&measured);
     note_low_pass(
         &measured,
         &options,
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = folder {
         write(folder, &measured, (&curves, &grouping.reference))?;
     }
-    measure::judge(&measured)
+    measure::evaluate(&measured)
 }
 
 /// Drawn on a terminal only.
@@ -61,7 +61,7 @@ fn bar() -> Bar {
 const MOST_LINES: usize = 20;
 
 /// What is to be known of records beside their times.
-fn tell(measured: &Measurement) {
+fn report(measured: &Measurement) {
     for refused in &measured.refused {
         print::note(&format!("refused: {refused}"));
     }

@@ -1,7 +1,7 @@
 //! `hertzchain merge`: shards of several machines put together.
 
 use super::campaign::failure;
-use super::sweep::{shard, told};
+use super::sweep::{shard, reported};
 use crate::program::arguments::Merge as Arguments;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
@@ -41,9 +41,9 @@ fn sweep(folders: &[&Path], out: &Path) -> Result<(), Failure> {
     let part = BatchResult::gather(folders)?;
     let folder = Folder::open(out)?;
     shard::report_warnings(&part);
-    told::show(&part)?;
-    told::write(folder, &part)?;
-    match told::nothing(&part) {
+    reported::show(&part)?;
+    reported::write(folder, &part)?;
+    match reported::nothing(&part) {
         true => Err(Failure::User("no speed gave a shot".into())),
         false => Ok(()),
     }

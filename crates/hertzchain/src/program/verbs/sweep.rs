@@ -2,7 +2,7 @@
 
 mod fits;
 pub(crate) mod shard;
-pub(crate) mod told;
+pub(crate) mod reported;
 
 use crate::json::SweepView;
 use crate::options::check_speeds;
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let swept = pool.install(|| Swept::of(&batch, &|| bar.inc(1)));
     bar.finish_and_clear();
     show(arguments, &experiment, &plan, &swept)?;
-    folder.map_or(Ok(()), |folder| told::write(folder, &swept.result))?;
+    folder.map_or(Ok(()), |folder| reported::write(folder, &swept.result))?;
     report_failed(&swept, experiment.units())
 }
 
@@ -157,11 +157,11 @@ fn show(
     }
     print_warnings(experiment, swept);
     let part = &swept.result;
-    if part.rows.flights().is_empty() && !told::nothing(part) {
+    if part.rows.flights().is_empty() && !reported::nothing(part) {
         let why = no_flight(swept, plan, experiment.units());
-        return print::print(&(told::rows(part) + &why));
+        return print::print(&(reported::rows(part) + &why));
     }
-    told::show(part)
+    reported::show(part)
 }
 
 /// Why no speed has a time of flight.

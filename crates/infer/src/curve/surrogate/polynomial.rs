@@ -104,8 +104,8 @@ impl Study {
         polynomial: &Polynomial,
         most: f64,
     ) -> Vec<usize> {
-        let fitted = self.points.iter().zip(&self.curves);
-        let all: Vec<_> = self.trials().chain(fitted).collect();
+        let fit_result = self.points.iter().zip(&self.curves);
+        let all: Vec<_> = self.trials().chain(fit_result).collect();
         let differences = |(point, exact): &(&Vec<f64>, &Vec<Predicted>)| {
             let own = polynomial.curve(point);
             own.map(|own| problem.differences(&own, exact))

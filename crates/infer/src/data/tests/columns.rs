@@ -21,19 +21,19 @@ fn errors_are_found_under_the_names_of_both_tables_of_measure() {
 
 #[test]
 fn a_missing_column_is_told_with_what_is_there_instead() {
-    let told = |text: &str, wanted: &[Observable]| {
+    let reported = |text: &str, wanted: &[Observable]| {
         Columns::of(&titles(text), wanted, "a.csv")
             .unwrap_err()
             .to_string()
     };
-    let there = told("speed_m_s,tof_incident_s", &[Observable::WallOverPassing]);
+    let there = reported("speed_m_s,tof_incident_s", &[Observable::WallOverPassing]);
     let expected =
         "expected ratios of peaks; `tof_incident_s` is there, but --use does not name it";
     assert!(there.ends_with(expected), "{there}");
-    let other = told("speed_m_s,tof_incident_us", &[Observable::Incident]);
+    let other = reported("speed_m_s,tof_incident_us", &[Observable::Incident]);
     let expected = "expected times in s; `tof_incident_us` is not read, since its title does not end with the SI unit";
     assert!(other.ends_with(expected), "{other}");
-    let neither = told("speed_m_s,speed_error_m_s", &Observable::ALL);
+    let neither = reported("speed_m_s,speed_error_m_s", &Observable::ALL);
     assert!(
         neither.ends_with("expected times in s or ratios of peaks"),
         "{neither}"

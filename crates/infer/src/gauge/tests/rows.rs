@@ -55,12 +55,12 @@ fn a_line_is_followed_through_a_crossing() {
     }
     assert_eq!((taken[0].pair, taken[8].pair), (1, 0));
     assert_eq!(smoothest(&rows[..2]), [Chosen::default(); 2]);
-    // One bend tells nothing, however much smaller it is.
+    // One bend determines nothing, however much smaller it is.
     assert!(smoothest(&rows[..3]).iter().all(|chosen| !chosen.is_clear));
 }
 
-/// At the end of a row of speeds one bend alone tells: a curve that bends toward it looks
-/// straighter by a pair that is none, which four bends can't tell.
+/// At the end of a row of speeds one bend alone determines: a curve that bends toward it looks
+/// straighter by a pair that is none, which four bends can't determine.
 #[test]
 fn an_end_that_bends_is_not_taken_for_straight() {
     let bends = [0.27, 0.17, 0.10, 0.06];

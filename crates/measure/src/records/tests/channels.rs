@@ -31,7 +31,7 @@ fn channels_that_are_called_after_wall_and_bead_are_these_in_whatever_order() {
     assert_eq!(asked(&["Sensor_7", "Wall (V)"]).unwrap(), [0, 1]);
     assert_eq!(asked(&["wall sensor", "CH2"]).unwrap(), [1, 0]);
     assert_eq!(asked(&["trigger", "wall", "bead 7"]).unwrap(), [2, 1]);
-    // Nothing is told by these.
+    // Nothing is reported by these.
     assert_eq!(asked(&["CH1", "CH2"]).unwrap(), [0, 1]);
     assert_eq!(asked(&["sensor 1", "sensor 2"]).unwrap(), [0, 1]);
     assert!(asked(&["wall", "CH1", "CH2"]).is_err());

@@ -18,12 +18,12 @@ fn a_rate_that_contradicts_the_file_is_refused_unless_insisted_on() {
 #[test]
 fn the_roundest_rate_that_times_allow_is_taken_and_told() {
     let taken = |least_s, most_s| {
-        let told = FromTimes {
+        let reported = FromTimes {
             least_s,
             most_s,
             even_to_s: 1e-5,
         };
-        from_times(Path::new("x"), &told, None, &ReadOptions::default()).unwrap()
+        from_times(Path::new("x"), &reported, None, &ReadOptions::default()).unwrap()
     };
     let round = taken(0.9997e-6, 1.0002e-6);
     // Rounding of 1/1e6.
@@ -45,7 +45,7 @@ fn the_roundest_rate_that_times_allow_is_taken_and_told() {
 
 #[test]
 fn a_rate_that_is_given_or_stated_counts_where_times_allow_it() {
-    let told = FromTimes {
+    let reported = FromTimes {
         least_s: 0.95e-6,
         most_s: 1.05e-6,
         even_to_s: 1e-4,
@@ -55,7 +55,7 @@ fn a_rate_that_is_given_or_stated_counts_where_times_allow_it() {
             rate_hz,
             ..ReadOptions::default()
         };
-        from_times(Path::new("x"), &told, stated_s, &options)
+        from_times(Path::new("x"), &reported, stated_s, &options)
     };
     let given = of(Some(1.03e6), None).unwrap();
     assert_eq!(

@@ -43,22 +43,22 @@ with h5py.File("text.h5", "w") as file:
     assert_eq!((both.len(), both[0].channels[1].name.as_str()), (1, "wall"));
     assert_wave(&both[0], 1, 1, 1.0);
     assert_eq!(both[0].notes.len(), 2, "{:?}", both[0].notes);
-    let told = |channels: &[&str]| ReadOptions {
+    let reported = |channels: &[&str]| ReadOptions {
         channels: channels.iter().map(|name| (*name).to_owned()).collect(),
         ..at_1_mhz()
     };
     for name in ["numbers.h5", "numbers.npz"] {
         let records = all(&folder.join(name), &open);
-        let told = (records[2].interval_s, records[2].speed_m_s);
-        assert_eq!((records.len(), told), (3, (1e-6, Some(0.5))), "{name}");
+        let reported = (records[2].interval_s, records[2].speed_m_s);
+        assert_eq!((records.len(), reported), (3, (1e-6, Some(0.5))), "{name}");
         assert_wave(&records[2], 0, 2, 1.0);
     }
     let several = folder.join("big-endian.h5");
-    let a = all(&several, &told(&["a"]));
+    let a = all(&several, &reported(&["a"]));
     assert_eq!(a[1].speed_m_s, Some(0.2));
     assert_wave(&a[1], 0, 1, 1.0);
-    assert_wave(&all(&several, &told(&["b"]))[2], 0, 2, 1.0 / 128.0);
-    assert_wave(&all(&several, &told(&["b", "a"]))[2], 1, 2, 1.0);
+    assert_wave(&all(&several, &reported(&["b"]))[2], 0, 2, 1.0 / 128.0);
+    assert_wave(&all(&several, &reported(&["b", "a"]))[2], 1, 2, 1.0);
     let results: Vec<_> = read(&several, &at_1_mhz()).collect();
     let error = results[0].as_ref().unwrap_err().to_string();
     assert!(

@@ -8,7 +8,7 @@ mod wav;
 use hertzchain_measure::records::{ReadOptions, Record, read};
 use std::path::Path;
 
-/// Files that do not tell their rate.
+/// Files that do not determine their rate.
 pub fn at_1_mhz() -> ReadOptions {
     ReadOptions {
         rate_hz: Some(1e6),

@@ -1,6 +1,6 @@
 //! Figures of a fit.
 
-use super::{Fitted, report::short};
+use super::{FitResult, report::short};
 use crate::fit::Inferred;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
@@ -17,8 +17,8 @@ const LOOKS: [(Colour, Marker); 4] = [
 const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
-pub(super) fn fit(fitted: &Fitted) -> Figure {
-    let data = fitted.problem.data();
+pub(super) fn fit(fit_result: &FitResult) -> Figure {
+    let data = fit_result.problem.data();
     let mut figure = Figure::single_column(130.0).share_x();
     for times in [true, false] {
         let shown: Vec<Observable> = Observable::ALL
@@ -26,17 +26,17 @@ pub(super) fn fit(fitted: &Fitted) -> Figure {
             .filter(|of| of.is_time() == times && data.has(*of))
             .collect();
         if !shown.is_empty() {
-            figure = figure.panel(curves(fitted, &shown));
+            figure = figure.panel(curves(fit_result, &shown));
         }
     }
-    figure.panel(residuals(fitted))
+    figure.panel(residuals(fit_result))
 }
 
 fn scale(of: Observable) -> f64 {
     if of.is_time() { 1e6 } else { 1.0 }
 }
 
-fn curves(fitted: &Fitted, shown: &[Observable]) -> Chart {
+fn curves(fit_result: &FitResult, shown: &[Observable]) -> Chart {
     let times = shown.iter().any(|of| of.is_time());
     let label = if times {
         "Time of flight (µs)"
@@ -45,17 +45,17 @@ fn curves(fitted: &Fitted, shown: &[Observable]) -> Chart {
     };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
-    let chart = chart.title(fitted.problem.model().experiment().title());
+    let chart = chart.title(fit_result.problem.model().experiment().title());
     let named = shown.iter().enumerate();
     named.fold(chart, |chart, (at, of)| {
         let line = if at == 0 { "fit" } else { "" };
-        with_curve(fitted, chart, *of, line)
+        with_curve(fit_result, chart, *of, line)
     })
 }
 
 /// Measured points, the fitted line and its 95 % band.
-fn with_curve(fitted: &Fitted, chart: Chart, of: Observable, line: &str) -> Chart {
-    let rows = fitted.problem.data().rows.iter().enumerate();
+fn with_curve(fit_result: &FitResult, chart: Chart, of: Observable, line: &str) -> Chart {
+    let rows = fit_result.problem.data().rows.iter().enumerate();
     let rows: Vec<_> = rows
         .filter_map(|(at, row)| Some((at, row, row.value(of)?)))
         .collect();
@@ -64,14 +64,14 @@ fn with_curve(fitted: &Fitted, chart: Chart, of: Observable, line: &str) -> Char
         |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(value).collect() };
     let speeds = column(&|i| rows[i].1.speed_m_s.value);
     let predicted = column(&|i| {
-        let of_row = fitted
+        let of_row = fit_result
             .curve
             .predicted
             .get(rows[i].0)
             .and_then(|row| row[of as usize]);
         unit * of_row.unwrap_or(f64::NAN)
     });
-    let spread = column(&|i| unit * BAND * fitted.curve.sd[rows[i].0][of as usize]);
+    let spread = column(&|i| unit * BAND * fit_result.curve.sd[rows[i].0][of as usize]);
     let (colour, marker) = LOOKS[of as usize];
     let edge = |sign: f64| column(&|i| predicted[i] + sign * spread[i]);
     let points = Series::points(short(of), &speeds, &column(&|i| unit * rows[i].2.value))
@@ -90,15 +90,15 @@ fn with_curve(fitted: &Fitted, chart: Chart, of: Observable, line: &str) -> Char
 
 /// Standardised residuals against speed, with the band that the parameters' errors
 /// leave the fit, in the same standard errors.
-fn residuals(fitted: &Fitted) -> Chart {
-    let data = fitted.problem.data();
-    let measured = fitted.problem.measured();
+fn residuals(fit_result: &FitResult) -> Chart {
+    let data = fit_result.problem.data();
+    let measured = fit_result.problem.measured();
     let label = "Residual (standard errors)";
     let chart = Chart::new("Speed of the striker (m/s)", label)
         .x_log()
         .h_line(0.0, "");
-    let residuals = measured.into_iter().zip(&fitted.inferred.fit.residuals);
-    let spreads = spreads(fitted);
+    let residuals = measured.into_iter().zip(&fit_result.inferred.fit.residuals);
+    let spreads = spreads(fit_result);
     let all: Vec<_> = residuals.zip(&spreads).collect();
     let sizes = all
         .iter()
@@ -140,10 +140,10 @@ fn residuals(fitted: &Fitted) -> Chart {
 const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
-fn spreads(fitted: &Fitted) -> Vec<f64> {
+fn spreads(fit_result: &FitResult) -> Vec<f64> {
     let Inferred {
         fit, covariance, ..
-    } = &fitted.inferred;
+    } = &fit_result.inferred;
     let slopes = |at: usize| {
         let columns = fit.jacobian.columns.iter();
         columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))

@@ -1,11 +1,11 @@
 //! Whole pulses of recordings to parameters.
 
 use super::{report, show, write_inferred};
-use crate::fit::pulses::{Pulsed, Shown, TOLD, fitted, json, pulses_csv, recorded, shown};
+use crate::fit::pulses::{Pulsed, Shown, REPORTED, fit_result, json, pulses_csv, recorded, shown};
 use crate::fit::{finished, tables_of_any};
 use crate::inference;
 use crate::options::FitOptions as Arguments;
-use crate::program::failure::{Failure, print_kept};
+use crate::program::failure::{Failure, print_stored};
 use crate::program::folder::Folder;
 use crate::program::format::digits;
 use crate::program::notes::with_notes;
@@ -20,45 +20,45 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.modelled.threads.map(|threads| threads.0);
-    let fitted = with_notes(threads, || fitted(recorded, arguments))??;
-    print_kept(fitted.problem.model(), &arguments.modelled.set);
-    let mut all = json(&fitted, arguments);
-    show(arguments, &mut all, || text(&fitted, arguments))?;
-    folder.map_or(Ok(()), |folder| write(folder, &fitted, &all))
+    let fit_result = with_notes(threads, || fit_result(recorded, arguments))??;
+    print_stored(fit_result.problem.model(), &arguments.modelled.set);
+    let mut all = json(&fit_result, arguments);
+    show(arguments, &mut all, || text(&fit_result, arguments))?;
+    folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
 /// Everything that is to be said.
-fn text(fitted: &Pulsed, arguments: &Arguments) -> String {
-    let records = fitted.problem.records();
+fn text(fit_result: &Pulsed, arguments: &Arguments) -> String {
+    let records = fit_result.problem.records();
     let noise = records.iter().flat_map(|record| &record.sigma_v);
     let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
     let mut text = format!(
         "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n{}",
-        heading(fitted.problem.model().experiment().title()),
+        heading(fit_result.problem.model().experiment().title()),
         records.len(),
-        fitted.problem.residual_count(),
+        fit_result.problem.residual_count(),
         digits(1e3 * noise_v, 2),
-        report::values(&fitted.inferred),
-        lines(inference::references(fitted.problem.model()))
+        report::values(&fit_result.inferred),
+        lines(inference::references(fit_result.problem.model()))
     );
     text += &format!(
         "The model's signals pass the amplifier's filters: {}\n",
-        fitted.filters()
+        fit_result.filters()
     );
-    text += &report::described(&fitted.inferred);
-    text += &lines(fitted.unasked(arguments));
-    text += &report::determined(&fitted.inferred, &advice);
-    text += &report::more(&fitted.inferred);
-    text += &report::beware(&fitted.inferred);
-    if !fitted.refused.is_empty() {
-        text += &format!("{} records were left out:\n", fitted.refused.len());
-        let told = fitted.refused.iter().take(TOLD);
-        text += &told.map(|why| format!("  {why}\n")).collect::<String>();
+    text += &report::described(&fit_result.inferred);
+    text += &lines(fit_result.unasked(arguments));
+    text += &report::determined(&fit_result.inferred, &advice);
+    text += &report::more(&fit_result.inferred);
+    text += &report::warnings(&fit_result.inferred);
+    if !fit_result.refused.is_empty() {
+        text += &format!("{} records were left out:\n", fit_result.refused.len());
+        let reported = fit_result.refused.iter().take(REPORTED);
+        text += &reported.map(|why| format!("  {why}\n")).collect::<String>();
     }
     text
 }
 
-/// What pulses do not tell apart.
+/// What pulses do not separate.
 fn advice() -> Vec<String> {
     vec![
         "shots at other speeds; K and A of the contacts in place of Y, nu and eta; a prior for \

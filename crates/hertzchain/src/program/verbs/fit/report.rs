@@ -1,6 +1,6 @@
 //! A fit for people.
 
-use crate::fit::{Curves, Fitted, Inferred, Limit, More, Rivals, Sampled};
+use crate::fit::{Curves, FitResult, Inferred, Limit, More, AlternativeModels, Sampled};
 use crate::inference::{references, widened};
 use crate::options::FitOptions as Arguments;
 use crate::program::format::{self, digits};
@@ -16,41 +16,41 @@ use hertzchain_infer::{
 const MOST_SHARE: f64 = 0.1;
 
 /// Everything that is to be said.
-pub(super) fn text(fitted: &Fitted, arguments: &Arguments) -> String {
-    let data = fitted.problem.data();
+pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
+    let data = fit_result.problem.data();
     let case = match data.case.as_str() {
         "" => String::new(),
         case => format!(", {case}"),
     };
-    let title = fitted.problem.model().experiment().title();
+    let title = fit_result.problem.model().experiment().title();
     let mut text = format!(
         "{}\n{}{case}: {} values at {} speeds\n\n{}\n{}",
         heading(title),
         data.file,
         data.value_count(),
         data.rows.len(),
-        values(&fitted.inferred),
-        lines(references(fitted.problem.model()))
+        values(&fit_result.inferred),
+        lines(references(fit_result.problem.model()))
     );
-    text += &described(&fitted.inferred);
-    text += &accuracy(fitted);
-    text += &lines(fitted.unasked(arguments));
-    text += &widened(data).map_or(String::new(), |told| format!("{told}\n"));
-    let advice = fitted.advice.as_ref();
-    text += &determined(&fitted.inferred, &|| {
+    text += &described(&fit_result.inferred);
+    text += &accuracy(fit_result);
+    text += &lines(fit_result.unasked(arguments));
+    text += &widened(data).map_or(String::new(), |reported| format!("{reported}\n"));
+    let advice = fit_result.advice.as_ref();
+    text += &determined(&fit_result.inferred, &|| {
         advice.map_or(Vec::new(), Advice::words)
     });
-    text += &more(&fitted.inferred);
-    text += &fitted.rivals.as_ref().map_or(String::new(), rivals);
-    text += &beware(&fitted.inferred);
-    let pairs = fitted.several_pairs();
-    text += &pairs.map_or(String::new(), |told| format!("warning: {told}.\n"));
-    text + &unit(fitted)
+    text += &more(&fit_result.inferred);
+    text += &fit_result.alternatives.as_ref().map_or(String::new(), alternatives);
+    text += &warnings(&fit_result.inferred);
+    let pairs = fit_result.pair_warning();
+    text += &pairs.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
+    text + &unit(fit_result)
 }
 
 /// That speeds seem to be in another unit.
-fn unit(fitted: &Fitted) -> String {
-    fitted.unit_of_speed.map_or(String::new(), |unit| {
+fn unit(fit_result: &FitResult) -> String {
+    fit_result.unit_of_speed.map_or(String::new(), |unit| {
         format!(
             "warning: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
              times of flight at speeds that many times slower\n",
@@ -91,12 +91,12 @@ fn derivatives(fitted: &Inferred) -> String {
 }
 
 /// What is doubtful about the minimum.
-pub(super) fn beware(fitted: &Inferred) -> String {
+pub(super) fn warnings(fitted: &Inferred) -> String {
     let doubt = doubt(&fitted.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
     let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
-    text += &rough.map_or(String::new(), |told| format!("warning: {told}.\n"));
-    text += &misfit(&fitted.goodness).map_or(String::new(), |told| format!("warning: {told}.\n"));
+    text += &rough.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
+    text += &misfit(&fitted.goodness).map_or(String::new(), |reported| format!("warning: {reported}.\n"));
     if let Err(why) = &fitted.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
@@ -167,7 +167,7 @@ fn limit(limit: &Limit) -> String {
 }
 
 /// Pairs whose correlation is worth a line.
-const TOLD: f64 = 0.5;
+const REPORTED: f64 = 0.5;
 
 /// Most of them that anybody reads.
 const PAIRS: usize = 6;
@@ -177,16 +177,16 @@ fn correlations(fitted: &Inferred) -> String {
     let count = fitted.parameters.len();
     let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
     let known = pairs.filter_map(|(i, j)| Some((i, j, fitted.covariance.correlation(i, j)?)));
-    let mut told: Vec<(usize, usize, f64)> = known.filter(|pair| pair.2.abs() >= TOLD).collect();
-    told.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    let mut reported: Vec<(usize, usize, f64)> = known.filter(|pair| pair.2.abs() >= REPORTED).collect();
+    reported.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     let line = |(i, j, value): &(usize, usize, f64)| {
         let value = digits(*value, 3);
         format!("Correlation of {} and {}: {value}\n", name(*i), name(*j))
     };
-    let text: String = told.iter().take(PAIRS).map(line).collect();
-    match told.len().saturating_sub(PAIRS) {
+    let text: String = reported.iter().take(PAIRS).map(line).collect();
+    match reported.len().saturating_sub(PAIRS) {
         0 => text,
-        more => text + &format!("{more} more correlations of {TOLD} and above: in fit.json\n"),
+        more => text + &format!("{more} more correlations of {REPORTED} and above: in fit.json\n"),
     }
 }
 
@@ -233,14 +233,14 @@ fn accuracy(fitted: &Fitted) -> String {
         return String::new();
     }
     let share = fitted.accuracy / least;
-    let told = format!(
+    let reported = format!(
         "The model's times of flight are right to {:.0e}, {} of the least standard error",
         fitted.accuracy,
         percent(share)
     );
     match share > MOST_SHARE {
-        true => format!("{told}: ask for more by --accuracy\n"),
-        false => format!("{told}\n"),
+        true => format!("{reported}: ask for more by --accuracy\n"),
+        false => format!("{reported}\n"),
     }
 }
 
@@ -416,8 +416,8 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
     });
     let without: String = without.collect();
     let kept = rivals.all.iter().flat_map(|rival| {
-        let told = |kept: &String| format!("{}: {kept}\n", rival.name);
-        rival.kept.iter().map(told).collect::<Vec<_>>()
+        let reported = |kept: &String| format!("{}: {kept}\n", rival.name);
+        rival.kept.iter().map(reported).collect::<Vec<_>>()
     });
     let kept: String = kept.collect();
     format!("\n{table}{}\n{without}{kept}", comparison.sentence)

@@ -6,12 +6,12 @@ use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profil
 use hertzchain_infer::{Parameter, Posterior, Profile, RISE_OF_95_PERCENT};
 
 /// Parameters as axes say them.
-fn labels(fitted: &Inferred) -> Vec<String> {
+fn labels(fit_result: &Inferred) -> Vec<String> {
     let label = |parameter: &Parameter| match parameter.unit.as_str() {
         "" => parameter.name.clone(),
         unit => format!("{} ({})", parameter.name, in_markup(unit)),
     };
-    fitted.parameters.iter().map(label).collect()
+    fit_result.parameters.iter().map(label).collect()
 }
 
 /// A unit with its powers raised: `N/m^(3/2)` as a figure shows it.
@@ -29,15 +29,15 @@ fn in_markup(unit: &str) -> String {
 
 /// Rise of chi-square along each parameter, beside the parabola that the
 /// covariance stands for.
-pub(super) fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
-    let labels = labels(fitted);
+pub(super) fn profiles(fit_result: &Inferred, profiles: &[Profile]) -> Figure {
+    let labels = labels(fit_result);
     let curves: Vec<ProfileCurve> = (profiles.iter())
         .map(|profile| ProfileCurve {
             label: &labels[profile.parameter],
             values: &profile.values,
             rise: &profile.rise,
-            best: fitted.fit.point[profile.parameter],
-            standard_error: Some(fitted.covariance.sd[profile.parameter]),
+            best: fit_result.fit.point[profile.parameter],
+            standard_error: Some(fit_result.covariance.sd[profile.parameter]),
             levels: &[(1.0, "68 %"), (RISE_OF_95_PERCENT, "95 %")],
         })
         .collect();
@@ -45,20 +45,20 @@ pub(super) fn profiles(fitted: &Inferred, profiles: &[Profile]) -> Figure {
 }
 
 /// The posterior of each parameter and pair, beside the covariance's.
-pub(super) fn corner(fitted: &Inferred, posterior: &Posterior) -> Figure {
+pub(super) fn corner(fit_result: &Inferred, posterior: &Posterior) -> Figure {
     Corner {
-        labels: &labels(fitted),
+        labels: &labels(fit_result),
         samples: &posterior.samples,
-        marks: &fitted.fit.point,
-        covariance: &fitted.covariance.matrix,
+        marks: &fit_result.fit.point,
+        covariance: &fit_result.covariance.matrix,
     }
     .figure()
 }
 
 /// Singular values of the Jacobian, each parameter in units of its scale.
-pub(super) fn singular_values(fitted: &Inferred) -> Figure {
-    let found = &fitted.identifiability;
-    let names = fitted.parameters.iter().map(|p| p.name.clone());
+pub(super) fn singular_values(fit_result: &Inferred) -> Figure {
+    let found = &fit_result.identifiability;
+    let names = fit_result.parameters.iter().map(|p| p.name.clone());
     SingularValues {
         names: &names.collect::<Vec<String>>(),
         values: &found.singular_values,

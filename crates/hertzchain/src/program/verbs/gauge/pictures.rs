@@ -1,6 +1,6 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
-use crate::gauge::Gauged;
+use crate::gauge::GaugeResult;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
 use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_determined};
 
@@ -11,14 +11,14 @@ const BAND: f64 = 1.96;
 const POINTS: usize = 60;
 
 /// Both numbers, one panel each.
-pub(super) fn contacts(gauged: &Gauged) -> Figure {
-    match tells_both(gauged) {
+pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
+    match has_both(run_gauge) {
         true => Figure::single_column(120.0)
             .share_x()
-            .panel(panel(gauged, 0, "$K$ (GN/m$^{3/2}$)", 1e-9))
-            .panel(panel(gauged, 1, "$A$ (ns)", 1e9)),
+            .panel(panel(run_gauge, 0, "$K$ (GN/m$^{3/2}$)", 1e-9))
+            .panel(panel(run_gauge, 1, "$A$ (ns)", 1e9)),
         false => Figure::single_column(70.0).panel(panel(
-            gauged,
+            run_gauge,
             0,
             "$K$ if $A$ is as dry (GN/m$^{3/2}$)",
             1e-9,
@@ -28,42 +28,42 @@ pub(super) fn contacts(gauged: &Gauged) -> Figure {
 
 /// Whether any row, or power laws of the whole curve, determine both K and A. If none does, an
 /// oil's K is another quantity than what was measured.
-fn tells_both(gauged: &Gauged) -> bool {
+fn has_both(run_gauge: &GaugeResult) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
-    let mut told = gauged
+    let mut reported = run_gauge
         .rows
         .iter()
         .filter_map(|row| row.contact.as_ref().ok());
-    gauged.form.is_some() || told.any(both)
+    run_gauge.form.is_some() || reported.any(both)
 }
 
-fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
+fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = match of {
         // K changes by some percent, A tenfold; one legend does for both.
         0 => chart,
         _ => chart.y_log().legend(Legend::Off),
     };
-    let shown = if tells_both(gauged) {
-        gauged.oils.len()
+    let shown = if has_both(run_gauge) {
+        run_gauge.oils.len()
     } else {
         0
     };
-    let oils = gauged.oils.iter().take(shown).enumerate();
+    let oils = run_gauge.oils.iter().take(shown).enumerate();
     let chart = oils.fold(chart, |chart, (at, oil)| {
-        chart.with(curve(gauged, (at, oil), of, unit))
+        chart.with(curve(run_gauge, (at, oil), of, unit))
     });
-    let chart = gauged.form.iter().fold(chart, |chart, form| {
-        let speeds = speeds(gauged);
+    let chart = run_gauge.form.iter().fold(chart, |chart, form| {
+        let speeds = speeds(run_gauge);
         let law = |sds: f64| moved_law(form, &speeds, of, unit, sds);
         let band = Series::band("", &speeds, &law(-BAND), &law(BAND)).colour(Colour::BLACK);
         let line = Series::line("power laws", &speeds, &law(0.0)).colour(Colour::BLACK);
         chart.with(band).with(line)
     });
-    let known = gauged.rows.iter().filter_map(|row| {
+    let known = run_gauge.rows.iter().filter_map(|row| {
         let contact = row.contact.as_ref().ok()?;
         // The K of a combination is not that of a law.
-        let is_combined = gauged.form.is_some() && contact.combination.is_some();
+        let is_combined = run_gauge.form.is_some() && contact.combination.is_some();
         if contact.branch == Branch::Unknown || is_combined {
             return None;
         }
@@ -77,7 +77,7 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
         .y_error(&column(|p| p.2))
         .marker(Marker::Circle)
         .colour(Colour::BLACK);
-    let others = gauged.rows.iter().filter_map(|row| {
+    let others = run_gauge.rows.iter().filter_map(|row| {
         let contact = row.contact.as_ref().ok()?;
         let others = match contact.branch {
             Branch::Unknown => contact.pairs(),
@@ -98,8 +98,8 @@ fn panel(gauged: &Gauged, of: usize, label: &str, unit: f64) -> Chart {
 }
 
 /// Speeds in m/s at which lines are drawn.
-fn speeds(gauged: &Gauged) -> Vec<f64> {
-    let speeds = gauged.gauge.wet().speeds_m_s();
+fn speeds(run_gauge: &GaugeResult) -> Vec<f64> {
+    let speeds = run_gauge.gauge.wet().speeds_m_s();
     let first = speeds.first().copied().unwrap_or(0.1);
     let last = speeds.last().copied().unwrap_or(1.0);
     let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
@@ -116,10 +116,10 @@ fn moved_law(form: &PowerForm, speeds: &[f64], of: usize, unit: f64, sds: f64) -
 }
 
 /// What an oil would give.
-fn curve(gauged: &Gauged, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
-    let speeds = speeds(gauged);
+fn curve(run_gauge: &GaugeResult, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
+    let speeds = speeds(run_gauge);
     let value = |speed: &f64| {
-        let (k, a) = oil.contact(gauged.gauge.wet_radius_m(), *speed);
+        let (k, a) = oil.contact(run_gauge.gauge.wet_radius_m(), *speed);
         unit * [k, a][of]
     };
     let values: Vec<f64> = speeds.iter().map(value).collect();

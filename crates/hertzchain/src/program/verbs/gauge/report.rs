@@ -1,6 +1,6 @@
 //! What the gauge says, for people and for programs.
 
-use crate::gauge::Gauged;
+use crate::gauge::GaugeResult;
 use crate::inference::references;
 use crate::program::format::{self, digits, with_error};
 use crate::program::print::heading;
@@ -9,49 +9,49 @@ use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_determined};
 
 /// Everything that is to be said.
-pub(super) fn text(gauged: &Gauged) -> String {
-    let doubts = doubts(gauged);
+pub(super) fn text(run_gauge: &GaugeResult) -> String {
+    let doubts = doubts(run_gauge);
     let mut text = doubts.clone();
-    let (dry_model, wet_model) = (gauged.gauge.dry().model(), gauged.gauge.wet_model());
+    let (dry_model, wet_model) = (run_gauge.gauge.dry().model(), run_gauge.gauge.wet_model());
     text += &format!(
         "{}\n{}{}\n",
         heading("Dry contacts"),
-        dry(gauged),
+        dry(run_gauge),
         lines(references(dry_model))
     );
     text += &format!(
         "{}\n{}{}",
         heading("Wet contacts"),
-        contacts(gauged),
+        contacts(run_gauge),
         lines(references(wet_model))
     );
-    if let Some(laws) = &gauged.laws {
+    if let Some(laws) = &run_gauge.laws {
         text += &law("K", "N/m^1.5", &laws.stiffness);
         text += &law("A", "s", &laws.relaxation);
     }
-    if let Some(form) = &gauged.form {
-        text += &power_laws(form, &gauged.gauge.wet().speeds_m_s());
+    if let Some(form) = &run_gauge.form {
+        text += &power_laws(form, &run_gauge.gauge.wet().speeds_m_s());
     }
-    if let Some(add) = gauged.to_add() {
+    if let Some(add) = run_gauge.to_add() {
         text += &format!(
-            "One number a speed determines one combination of K and A. To tell both, {add}.\n"
+            "One number a speed determines one combination of K and A. To determine both, {add}.\n"
         );
     }
-    text += &held_numbers(gauged);
-    text += &gauged
+    text += &held_numbers(run_gauge);
+    text += &run_gauge
         .gauge
-        .ambiguous(&gauged.rows)
+        .ambiguous(&run_gauge.rows)
         .map_or(String::new(), |why| format!("{why}\n"));
-    let oils = match gauged.form.as_ref().is_some_and(PowerForm::is_sufficient) {
+    let oils = match run_gauge.form.as_ref().is_some_and(PowerForm::is_sufficient) {
         true => "Known oils, by the power laws that each would give",
         false => "Known oils",
     };
-    text += &format!("\n{}\n{}", heading(oils), matches(gauged));
-    for (oil, why) in &gauged.verdict.failed {
+    text += &format!("\n{}\n{}", heading(oils), matches(run_gauge));
+    for (oil, why) in &run_gauge.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
-    text += &format!("{}\n", gauged.verdict.sentence());
-    // Tables may be longer than a screen: who sees the verdict alone is told, too.
+    text += &format!("{}\n", run_gauge.verdict.sentence());
+    // Tables may be longer than a screen: who sees the verdict alone is reported, too.
     match doubts.is_empty() {
         true => text,
         false => text + "warning: see the first lines.\n",
@@ -59,10 +59,10 @@ pub(super) fn text(gauged: &Gauged) -> String {
 }
 
 /// Before all else: what speaks against believing what is below.
-fn doubts(gauged: &Gauged) -> String {
-    let dry = misfit(&gauged.gauge.dry_goodness())
-        .map(|told| format!("of the dry curve, on which all below rests, {told}."));
-    let all = dry.into_iter().chain(gauged.doubts());
+fn doubts(run_gauge: &GaugeResult) -> String {
+    let dry = misfit(&run_gauge.gauge.dry_goodness())
+        .map(|reported| format!("of the dry curve, on which all below rests, {reported}."));
+    let all = dry.into_iter().chain(run_gauge.doubts());
     let lines: String = all.map(|doubt| format!("warning: {doubt}\n")).collect();
     match lines.is_empty() {
         true => lines,
@@ -70,8 +70,8 @@ fn doubts(gauged: &Gauged) -> String {
     }
 }
 
-fn dry(gauged: &Gauged) -> String {
-    let gauge = &gauged.gauge;
+fn dry(run_gauge: &GaugeResult) -> String {
+    let gauge = &run_gauge.gauge;
     let parameters = gauge.dry().parameters().iter().enumerate();
     let rows = parameters.map(|(at, parameter)| {
         let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
@@ -85,11 +85,11 @@ fn dry(gauged: &Gauged) -> String {
 /// K in GN/m^1.5 and A in ns, with their errors.
 fn shown(pair: &Pair) -> [String; 2] {
     let [(k, k_sd), (a, a_sd)] = pair.estimates();
-    [told(1e-9 * k, 1e-9 * k_sd), told(1e9 * a, 1e9 * a_sd)]
+    [reported(1e-9 * k, 1e-9 * k_sd), reported(1e9 * a, 1e9 * a_sd)]
 }
 
 /// A positive number with its error, if it is known.
-fn told(value: f64, sd: f64) -> String {
+fn reported(value: f64, sd: f64) -> String {
     if !is_determined(value, sd) {
         return "not determined".to_owned();
     }
@@ -112,7 +112,7 @@ fn pairs(contact: &Contact) -> Vec<[String; 3]> {
         let [k, _] = shown(&contact.first);
         return vec![[k, "–".to_owned(), words]];
     }
-    // None before the others, where nothing tells which.
+    // None before the others, where nothing determines which.
     let (all, first) = match contact.is_known() {
         true => (
             std::iter::once(&contact.first)
@@ -129,7 +129,7 @@ fn pairs(contact: &Contact) -> Vec<[String; 3]> {
         .collect()
 }
 
-fn contacts(gauged: &Gauged) -> String {
+fn contacts(run_gauge: &GaugeResult) -> String {
     let lines = |row: &WetRow| -> Vec<Vec<String>> {
         let speed = digits(row.speed_m_s, 4);
         let lines = match &row.contact {
@@ -142,7 +142,7 @@ fn contacts(gauged: &Gauged) -> String {
             .map(|(speed, line)| std::iter::once(speed).chain(line).collect())
             .collect()
     };
-    let rows: Vec<Vec<String>> = gauged.rows.iter().flat_map(lines).collect();
+    let rows: Vec<Vec<String>> = run_gauge.rows.iter().flat_map(lines).collect();
     let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
     let few = rows.iter().all(|row| row[3].is_empty());
     let shown = if few { 3 } else { 4 };
@@ -192,8 +192,8 @@ fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
         let [(k, k_sd), (a, a_sd)] = form.at(*speed).estimates();
         vec![
             digits(*speed, 4),
-            told(1e-9 * k, 1e-9 * k_sd),
-            told(1e9 * a, 1e9 * a_sd),
+            reported(1e-9 * k, 1e-9 * k_sd),
+            reported(1e9 * a, 1e9 * a_sd),
         ]
     };
     let rows: Vec<Vec<String>> = speeds_m_s.iter().map(row).collect();
@@ -209,8 +209,8 @@ fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
 }
 
 /// What K and A take for granted.
-fn held_numbers(gauged: &Gauged) -> String {
-    let own = gauged.gauge.wet_own(&[]);
+fn held_numbers(run_gauge: &GaugeResult) -> String {
+    let own = run_gauge.gauge.wet_own(&[]);
     let each = own.iter().map(|parameter| {
         format!(
             "{} = {} {}",
@@ -230,7 +230,7 @@ fn held_numbers(gauged: &Gauged) -> String {
     }
 }
 
-/// How often chance alone gives as much; what is never is not told to its digits.
+/// How often chance alone gives as much; what is never is not reported to its digits.
 fn by_chance(probability: f64) -> String {
     match probability < NEVER {
         true => format!("below {:.0e} %", 100.0 * NEVER),

@@ -107,7 +107,7 @@ fn with_curve(
         .marker(marker)
         .y_error(&column(&|point| 1e6 * bar(point.1.sigma)))
         .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
-    let fitted = column(&|point| match law {
+    let fit_result = column(&|point| match law {
         Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
         Err(_) => f64::NAN,
     });
@@ -115,7 +115,7 @@ fn with_curve(
         Ok(Ok(Some(false))) => Dash::Dashed,
         _ => Dash::Solid,
     };
-    let line = Series::line("", &speeds, &fitted).dash(dash);
+    let line = Series::line("", &speeds, &fit_result).dash(dash);
     chart
         .with(points.colour(colour))
         .with(line.colour(colour).width(FIT_WIDTH))

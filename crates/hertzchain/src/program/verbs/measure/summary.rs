@@ -174,40 +174,40 @@ fn curve(case: &Case) -> String {
     )
 }
 
-/// A fit, judged; too few speeds for one are plain to see. Errors are widened to
+/// A fit, evaluated; too few speeds for one are plain to see. Errors are widened to
 /// the points' scatter where that is larger.
 fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;
-    let told = |error: f64| if alike { 0.0 } else { law.excess() * error };
-    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * told(law.prefactor_error));
+    let reported = |error: f64| if alike { 0.0 } else { law.excess() * error };
+    let (prefactor, error) = with_error(1e6 * law.prefactor, 1e6 * reported(law.prefactor_error));
     let exponent = match alike {
         // Without the sign of a zero.
         true => (law.exponent / ROUNDING).round() * ROUNDING + 0.0,
         false => law.exponent,
     };
-    let (exponent, exponent_error) = with_error(exponent, told(law.exponent_error));
+    let (exponent, exponent_error) = with_error(exponent, reported(law.exponent_error));
     match law.exponent_error.is_finite() {
         true => format!(
             "{name}: ({prefactor} ± {error}) µs · v^({exponent} ± {exponent_error}){}\n",
             judgement(case, law)
         ),
         false => {
-            format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which tell no errors\n")
+            format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which determine no errors\n")
         }
     }
 }
 
 /// Whether the points follow the law within their errors.
 fn judgement(case: &Case, law: &PowerLaw) -> String {
-    let Some(judged) = &law.chi_square else {
+    let Some(evaluated) = &law.chi_square else {
         return match law.residuals.len() {
             2 => ", from two speeds, which cannot test it".to_owned(),
             _ => String::new(),
         };
     };
-    let squares = format!(", {}", chi_square_text(*judged));
+    let squares = format!(", {}", chi_square_text(*evaluated));
     let supported = case.supports(law);
     if supported.is_ok_and(|supported| supported != Some(false)) {
         return squares;
@@ -220,7 +220,7 @@ fn judgement(case: &Case, law: &PowerLaw) -> String {
         Ok(_) => format!("{squares}: NOT a power law within the errors; {widened}"),
         Err(why) => format!(
             "{squares}: not a power law within the errors of times alone; {why} (the column `speed error` of the table of --shots, or \
-             --speed-error, tells them), so this judges nothing; {widened}"
+             --speed-error, determines them), so this evaluates nothing; {widened}"
         ),
     }
 }

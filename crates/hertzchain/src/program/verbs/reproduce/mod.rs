@@ -63,7 +63,7 @@ fn failure(error: &ReproduceError) -> Failure {
     Failure::Ours(error.to_string())
 }
 
-/// A bar in the terminal; nothing where nobody looks.
+/// A bar in the terminal; nothing where no user looks.
 struct Bar(ProgressBar);
 
 impl Bar {
@@ -155,7 +155,7 @@ fn verdicts(evaluated: &[EvaluatedClaim]) -> String {
     format!("{table}\n{} claims: {}", evaluated.len(), counts.join(", "))
 }
 
-/// Width of tables where the terminal does not tell its own.
+/// Width of tables where the terminal does not determine its own.
 const WIDTH: u16 = 110;
 
 fn plain() -> Table {

@@ -38,7 +38,7 @@ fn line(
     let (exponent, exponent_error) = with_error(law.exponent, errors.exponent);
     if law.residuals.len() == 2 {
         return format!(
-            "{name}: ToF = {prefactor}{unit} · {speed}^({exponent}), through two speeds, which tell no errors\n",
+            "{name}: ToF = {prefactor}{unit} · {speed}^({exponent}), through two speeds, which determine no errors\n",
         );
     }
     format!(
@@ -57,7 +57,7 @@ struct Errors {
 
 impl Errors {
     /// Standard errors, but not less than what the accuracies of the times of
-    /// flight alone leave open; only these where two speeds tell no others.
+    /// flight alone leave open; only these where two speeds determine no others.
     fn of(law: &PowerLaw, uncertainty: Option<Uncertainty>) -> Self {
         let (prefactor, exponent) = uncertainty.map_or((0.0, 0.0), |least| {
             (law.prefactor * least.prefactor_relative, least.exponent)

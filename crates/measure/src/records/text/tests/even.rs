@@ -17,15 +17,15 @@ fn the_true_interval_is_among_those_that_digits_allow() {
         for begun_s in [0.0, -3.21e-4, 17.3e-6] {
             for unit in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
                 let times = printed(interval_s, begun_s, unit, 4000);
-                let told = even_interval(&times).unwrap();
+                let reported = even_interval(&times).unwrap();
                 let slack = 1e-9 * interval_s;
-                let inside = told.least_s - slack..=told.most_s + slack;
+                let inside = reported.least_s - slack..=reported.most_s + slack;
                 assert!(
                     inside.contains(&interval_s),
-                    "{interval_s} {unit}: {told:?}"
+                    "{interval_s} {unit}: {reported:?}"
                 );
                 // The ends alone would leave two halves of a unit over all steps.
-                assert!(told.most_s - told.least_s <= 2.0 * unit / 3999.0 + slack);
+                assert!(reported.most_s - reported.least_s <= 2.0 * unit / 3999.0 + slack);
             }
         }
     }
@@ -33,10 +33,10 @@ fn the_true_interval_is_among_those_that_digits_allow() {
 
 #[test]
 fn digits_that_show_every_step_are_taken_as_they_stand() {
-    let told = even_interval(&printed(2e-6, -1e-3, 1e-6, 1000)).unwrap();
-    assert_eq!(told.least_s, told.most_s);
+    let reported = even_interval(&printed(2e-6, -1e-3, 1e-6, 1000)).unwrap();
+    assert_eq!(reported.least_s, reported.most_s);
     // Rounding.
-    assert!((told.least_s - 2e-6).abs() < 1e-18);
+    assert!((reported.least_s - 2e-6).abs() < 1e-18);
 }
 
 #[test]
@@ -57,8 +57,8 @@ fn jitter_beyond_the_digits_is_borne_to_two_fifths_of_a_step() {
         times.iter_mut().step_by(7).for_each(|time| time.s += by);
         even_interval(&times)
     };
-    let told = jittered(0.2e-6).unwrap();
-    assert!(told.least_s < 1e-6 && told.most_s > 1e-6, "{told:?}");
+    let reported = jittered(0.2e-6).unwrap();
+    assert!(reported.least_s < 1e-6 && reported.most_s > 1e-6, "{reported:?}");
     assert!(jittered(0.6e-6).is_none());
 }
 

@@ -45,7 +45,7 @@ fn units_of_time_are_read_however_they_are_written() {
 }
 
 #[test]
-fn a_unit_that_nobody_knows_is_named() {
+fn a_unit_that_no user_knows_is_named() {
     for title in ["Time (shakes)", "Zeit in shakes", "t [shakes]"] {
         let found = header(&format!("{title};a\n0.5;1\n1;2\n1.5;4\n"));
         assert_eq!(found.time, Some((0, None)), "{title}");
@@ -55,7 +55,7 @@ fn a_unit_that_nobody_knows_is_named() {
 }
 
 #[test]
-fn counts_are_times_where_somebody_says_what_one_is() {
+fn counts_are_times_where_a caller_says_what_one_is() {
     for text in ["0,5.5\n1,7.5\n2,1.5\n3,3.5\n", "n,a\n0,5\n1,7\n2,1\n3,3\n"] {
         let dialect = Dialect::of(text).unwrap();
         assert_eq!(TextHeader::of(text, &dialect, false).time, None);
@@ -79,7 +79,7 @@ fn the_mark_of_a_comment_is_no_title() {
             (vec!["v".to_owned()], vec![1])
         );
     }
-    // A line of words is none of titles; times are told by their even steps.
+    // A line of words is none of titles; times are reported by their even steps.
     let worded = header("# recorded\n0.5 1\n1 2\n1.5 4\n");
     assert_eq!(worded.time, Some((0, None)));
     let channels = header("# summed other\n0.5 1\n0.1 2\n1.5 4\n");

@@ -23,7 +23,7 @@ pub(crate) const TIMES: [&str; 2] = ["incident", "reflected"];
 const EXPONENT: f64 = 0.2;
 
 /// One shot.
-pub(crate) struct Judged {
+pub(crate) struct Evaluated {
     /// The case of the campaign.
     pub case: String,
     /// The shot as measured.
@@ -46,7 +46,7 @@ pub(crate) struct Judged {
 }
 
 /// What measured times are held to.
-pub(crate) type Curve = fn(&Judged) -> [f64; 2];
+pub(crate) type Curve = fn(&Evaluated) -> [f64; 2];
 
 /// The model's curve, of the chain in equilibrium.
 pub(crate) const COMPACT: Curve = |shot| shot.compact_s;
@@ -55,8 +55,8 @@ pub(crate) const OWN: Curve = |shot| shot.own_s;
 /// The model's curve, of chains with the recorded ones' own gaps and loads.
 pub(crate) const HELD: Curve = |shot| shot.held_s;
 
-impl Judged {
-    /// Speed that the striker was told, in m/s.
+impl Evaluated {
+    /// Speed that the striker was reported, in m/s.
     pub(crate) fn programmed_m_s(&self) -> f64 {
         self.shot.programmed_speed_m_s.unwrap_or_default()
     }
@@ -83,7 +83,7 @@ impl Judged {
     }
 }
 
-/// Shots of one speed: what `measure` tells of their mean, less what they are held to.
+/// Shots of one speed: what `measure` determines of their mean, less what they are held to.
 pub(crate) struct Speed {
     /// Programmed speed in m/s.
     pub speed_m_s: f64,
@@ -97,13 +97,13 @@ pub(crate) struct Speed {
 }
 
 /// Means a speed of one case, less what they are held to.
-pub(crate) fn by_speed(shots: &[&Judged], time: usize, curve: Curve) -> Vec<Speed> {
+pub(crate) fn by_speed(shots: &[&Evaluated], time: usize, curve: Curve) -> Vec<Speed> {
     let mut speeds: Vec<f64> = shots.iter().map(|shot| shot.programmed_m_s()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     let of_speed = |speed_m_s: f64| {
         let own = shots.iter().filter(|s| s.programmed_m_s() == speed_m_s);
-        let own: Vec<&Judged> = own.copied().collect();
+        let own: Vec<&Evaluated> = own.copied().collect();
         of_mean(&own, time, curve)
     };
     speeds.into_iter().filter_map(of_speed).collect()
@@ -117,14 +117,14 @@ pub(crate) fn agreement(rows: &[Speed]) -> Option<ChiSquare> {
 
 /// The row of `speeds.csv` that shots of one speed give, held against the mean of the curve over
 /// those whose time is in it, each taken to the mean speed as `measure` takes times there.
-fn of_mean(shots: &[&Judged], time: usize, curve: Curve) -> Option<Speed> {
+fn of_mean(shots: &[&Evaluated], time: usize, curve: Curve) -> Option<Speed> {
     let all: Vec<Shot> = shots.iter().map(|shot| shot.shot.clone()).collect();
     let curves = Curves::of(&all, &Grouping::default());
     let row = curves.cases.first()?.rows.first()?;
     let mean_s = row.at_mean_speed_s[time]?;
     let summary = [Some(row.incident_s), row.reflected_s][time]?;
     let speed_m_s = row.speed_m_s;
-    let counted: Vec<(&Judged, &Flight)> = shots
+    let counted: Vec<(&Evaluated, &Flight)> = shots
         .iter()
         .filter(|shot| !shot.shot.is_dubious())
         .filter_map(|shot| Some((*shot, shot.shot.flight.as_ref().ok()?)))
@@ -174,7 +174,7 @@ pub(crate) fn run(
 
 /// Measures the recordings of a campaign's folder, and holds every shot against
 /// its true values and the model.
-pub(crate) fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box<dyn Error>> {
+pub(crate) fn evaluate(folder: &Path, options: &Options) -> Result<Vec<Evaluated>, Box<dyn Error>> {
     let text = fs::read_to_string(folder.join("campaign.toml"))?;
     let plan = Plan::new(&Experiment::from_text("campaign.toml", &text)?, None)?;
     let mut files = Vec::new();
@@ -184,19 +184,19 @@ pub(crate) fn judge(folder: &Path, options: &Options) -> Result<Vec<Judged>, Box
     files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
     files.sort();
     let shots = measure(&files, options, &()).shots;
-    let mut judged = Vec::new();
+    let mut evaluated = Vec::new();
     for case in &plan.cases {
-        judged.extend(of_case(case, &shots)?);
+        evaluated.extend(of_case(case, &shots)?);
     }
-    Ok(judged)
+    Ok(evaluated)
 }
 
-fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
+fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Evaluated>, Box<dyn Error>> {
     let own: Vec<&Shot> = shots.iter().filter(|shot| shot.case == case.name).collect();
     let speeds: Vec<Estimate> = own.iter().filter_map(|shot| shot.speed_m_s).collect();
     let models = models(&case.experiment, &speeds)?;
     let mut known = HashMap::new();
-    let mut judged = Vec::new();
+    let mut evaluated = Vec::new();
     for ((shot, speed_m_s), compact_s) in own.into_iter().zip(speeds).zip(models) {
         if !known.contains_key(&shot.file) {
             let columns: HashMap<String, Vec<f64>> = truth(&shot.file)?.into_iter().collect();
@@ -209,7 +209,7 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
         let contacts = case.experiment.beads();
         let overlaps_m = &known[&shot.file]["overlap_before_m"][row * contacts..][..contacts];
         let flight = shot.flight.as_ref().ok();
-        judged.push(Judged {
+        evaluated.push(Evaluated {
             case: case.name.clone(),
             shot: shot.clone(),
             speed_m_s,
@@ -223,7 +223,7 @@ fn of_case(case: &Case, shots: &[Shot]) -> Result<Vec<Judged>, Box<dyn Error>> {
             held_s: held(&case.experiment, overlaps_m, speed_m_s.value)?,
         });
     }
-    Ok(judged)
+    Ok(evaluated)
 }
 
 /// Longest wave in s.

@@ -1,5 +1,5 @@
 //! A sweep's table and power laws: printed, as CSV, as a figure. Shots of this
-//! process and merged shards are told alike.
+//! process and merged shards are reported alike.
 
 use super::fits;
 use crate::program::failure::Failure;
@@ -38,7 +38,7 @@ pub(crate) fn nothing(part: &BatchResult) -> bool {
 }
 
 /// Prints the table with its power laws; nothing where no speed has a shot,
-/// which is told instead.
+/// which is reported instead.
 pub(crate) fn show(part: &BatchResult) -> Result<(), Failure> {
     if nothing(part) {
         return Ok(());
@@ -58,8 +58,8 @@ pub(crate) fn rows(part: &BatchResult) -> String {
     format!("{}\n{}", heading(&part.title), lines(style, &part.rows))
 }
 
-/// Whether a column has anything to tell.
-fn told(rows: &Rows, column: Column) -> bool {
+/// Whether a column has any value.
+fn reported(rows: &Rows, column: Column) -> bool {
     rows.column(column).iter().any(|value| !value.is_nan())
 }
 
@@ -83,9 +83,9 @@ fn lines(style: Style, rows: &Rows) -> String {
         };
         (head, format::column(&values, digits))
     };
-    let shown = SHOWN.iter().filter(|shown| told(rows, shown.3));
+    let shown = SHOWN.iter().filter(|shown| reported(rows, shown.3));
     let (mut head, mut columns): (Vec<String>, Vec<Vec<String>>) = shown.map(column).unzip();
-    if told(rows, Column::Accuracy) {
+    if reported(rows, Column::Accuracy) {
         let text = |reached: &f64| match reached.is_nan() {
             true => String::new(),
             false => format!("{reached:.0e}"),

@@ -9,20 +9,20 @@ use hertzchain_infer::{FreeNumber, Model};
 /// What it means that a number on which a unit depends, such as the n of F = k δ^n,
 /// is free or set, one sentence for each number in that unit.
 #[must_use]
-pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
+pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let experiment = model.experiment();
     let free = model.numbers().as_slice().iter().map(|n| n.name());
     let free = paths(experiment, free);
     let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
-    let mut told: Vec<String> = beside(model, sets);
+    let mut reported: Vec<String> = without_effect(model, sets);
     let unlike = set
         .iter()
         .filter_map(|path| super::reference::of_unlike(experiment, path));
-    told.extend(unlike);
+    reported.extend(unlike);
     for steering in free.iter().chain(&set) {
         let followers = experiment.followers(steering).unwrap_or_default();
         let is_free = free.contains(steering);
-        told.extend(followers.iter().filter_map(|follower| {
+        reported.extend(followers.iter().filter_map(|follower| {
             match (is_free, free.contains(&follower.path)) {
                 (true, true) => Some(follows(steering, follower)),
                 (false, true) => None,
@@ -31,7 +31,7 @@ pub fn kept(model: &Model, sets: &[Assignment]) -> Vec<String> {
             }
         }));
     }
-    told
+    reported
 }
 
 /// That friction holds other loads on a pushed row than the model's equilibrium has, and how much
@@ -57,7 +57,7 @@ pub fn held_loads(model: &Model) -> Option<String> {
     Some(format!(
         "the model's row is loaded with {} N at the wall and its track has friction: where the row was tapped or shot \
          before, friction holds up to {} N more or less than the model's equilibrium, which the wave does not know, and \
-         fitted numbers may be off by more than their errors. {free} a row that was laid compact",
+         fit_result numbers may be off by more than their errors. {free} a row that was laid compact",
         digits(load_n, 2),
         digits(held_n, 2)
     ))
@@ -68,7 +68,7 @@ const PUSH: &str = "near_end.force";
 
 /// What a Young modulus still does where a stiffness that would follow from it has a
 /// number of its own.
-fn beside(model: &Model, sets: &[Assignment]) -> Vec<String> {
+fn without_effect(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let free: Vec<&str> = model
         .numbers()
         .as_slice()
@@ -83,13 +83,13 @@ fn beside(model: &Model, sets: &[Assignment]) -> Vec<String> {
         return Vec::new();
     };
     let young = free.iter().filter(|name| YOUNG.contains(&last(name)));
-    let told = |young: &&str| {
+    let reported = |young: &&str| {
         format!(
             "{young} is free and {stiffness} has a number of its own: where contacts have that stiffness, the Young \
              modulus acts through the relaxation time A alone"
         )
     };
-    young.map(told).collect()
+    young.map(reported).collect()
 }
 
 /// What the stiffness of Hertz contacts is called, and the Young modulus.
@@ -104,7 +104,7 @@ fn paths<'a>(experiment: &Experiment, names: impl Iterator<Item = &'a str>) -> V
 fn follows(steering: &str, follower: &Place) -> String {
     format!(
         "{} and {steering}, on which its unit depends, are both free: its number is in the SI unit that \
-         follows from the fitted {}, not in {}",
+         follows from the fit_result {}, not in {}",
         follower.path,
         last(steering),
         follower.unit
@@ -130,7 +130,7 @@ fn stays(steering: &str, follower: &Place, is_free: bool) -> String {
     )
 }
 
-/// Digits of a number that somebody gave: more are rounding.
+/// Digits of a number that a caller gave: more are rounding.
 const DIGITS: usize = 10;
 
 /// The key at the end of a path.
