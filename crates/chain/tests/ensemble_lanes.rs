@@ -253,7 +253,7 @@ fn lanes_with_their_own_steps_and_durations_give_the_bits_of_each_shot_alone() {
 }
 
 #[test]
-fn shots_that_no user_wants_any_more_are_broken_off_within_few_steps() {
+fn shots_that_no_user_wants_any_more_are_broken_off_within_few_steps() {
     let systems = rows(3, |v| row(12, v, dry()));
     let settings = settings(12);
     for precision in PRECISIONS {

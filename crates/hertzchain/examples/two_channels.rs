@@ -9,9 +9,9 @@
 #[allow(dead_code, reason = "the whole loop uses more")]
 mod evaluated;
 
+use evaluated::{Evaluated, TIMES, evaluate, run};
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::median;
-use evaluated::{Evaluated, TIMES, evaluate, run};
 use std::error::Error;
 use std::path::Path;
 

@@ -36,7 +36,10 @@ fn an_exponent_can_be_free_alone_and_the_report_says_what_the_stiffness_then_is(
     ] {
         assert!(reported.contains(words), "{words}: {reported}");
     }
-    assert!(reported.contains(found["kept"][0].as_str().unwrap()), "{reported}");
+    assert!(
+        reported.contains(found["kept"][0].as_str().unwrap()),
+        "{reported}"
+    );
 }
 
 #[test]

@@ -15,7 +15,8 @@ fn measure(folder: &Path, arguments: &[&str]) -> Output {
 
 fn json(output: &Output) -> Value {
     let reported = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {reported}"))
+    serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| unreachable!("{error}: {reported}"))
 }
 
 fn folder(test: &str) -> PathBuf {
@@ -277,7 +278,10 @@ fn a_continuous_recording_is_cut_and_the_cut_is_told() {
     assert_eq!(json(&level)["shots"].as_array().unwrap().len(), 2);
     let never = measure(&folder, &["long.csv", "--level", "-7"]);
     let reported = String::from_utf8_lossy(&never.stderr).into_owned();
-    assert!(reported.contains("never passes the level of -7 V"), "{reported}");
+    assert!(
+        reported.contains("never passes the level of -7 V"),
+        "{reported}"
+    );
     assert_eq!(never.status.code(), Some(2));
 }
 
@@ -470,7 +474,11 @@ fn a_low_pass_above_half_the_rate_is_told_once() {
     let output = measure(&folder, &[".", "--shots", "list.txt", "--smooth", "2MHz"]);
     assert_eq!(output.status.code(), Some(2));
     let reported = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(reported.matches("half the sampling rate").count(), 1, "{reported}");
+    assert_eq!(
+        reported.matches("half the sampling rate").count(),
+        1,
+        "{reported}"
+    );
     assert!(reported.contains("sampled at 1000000 Hz"), "{reported}");
     assert!(output.stdout.is_empty());
 }

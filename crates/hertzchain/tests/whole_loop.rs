@@ -4,9 +4,9 @@
 #[allow(dead_code, reason = "the example determines more")]
 mod evaluated;
 
+use evaluated::{Curve, Evaluated, TIMES, agreement, by_speed, evaluate, run};
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square, coverage};
-use evaluated::{Curve, Evaluated, TIMES, agreement, by_speed, evaluate, run};
 use std::fs;
 
 /// What begins a case of a campaign.
@@ -70,7 +70,10 @@ const LEAST: f64 = 1e-3;
 /// seven times too large with four means, and 1.7 times with 24 shots.
 fn by_chance(evaluated: &ChiSquare, name: &str) {
     let band = LEAST..1.0 - LEAST;
-    assert!(band.contains(&evaluated.probability), "{name}: {evaluated:?}");
+    assert!(
+        band.contains(&evaluated.probability),
+        "{name}: {evaluated:?}"
+    );
 }
 
 /// Chi-squares of both times against what they are held to at all four speeds.

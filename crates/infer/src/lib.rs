@@ -27,8 +27,8 @@ pub use compare::{
 };
 pub use covariance::Covariance;
 pub use curve::{
-    Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part,
-    Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
+    Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part, Predicted,
+    Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
 };
 pub use data::{
     Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,

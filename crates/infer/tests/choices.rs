@@ -30,7 +30,10 @@ fn a_product_is_one_number_and_the_words_say_so() {
     );
     let found = fit_result(&data);
     let reported = Identifiability::new(&data.parameters, &found, |i| data.residual_label(i));
-    assert_eq!((reported.determined(), reported.unidentifiable.len()), (1, 2));
+    assert_eq!(
+        (reported.determined(), reported.unidentifiable.len()),
+        (1, 2)
+    );
     for confusion in &reported.unidentifiable {
         assert!(confusion.standard_error.is_infinite());
         // In a combination that leaves a product, relative changes sum to 0;
@@ -296,7 +299,8 @@ fn designs_rank_by_what_linear_regression_would_gain() {
     assert!(reported.ranked[2].gain.abs() < 1e-7);
     assert_eq!(reported.greedy[0].candidate, 1);
     assert!(
-        reported.greedy
+        reported
+            .greedy
             .windows(2)
             .all(|pair| pair[1].after[0] < pair[0].after[0])
     );

@@ -157,6 +157,9 @@ fn the_correlation_is_that_of_the_times_that_are_read() {
     assert_eq!(without.lines_without_correlation(), [2]);
     for wrong in ["1", "-1.5", "nan"] {
         let reported = read(&format!("{head}\n{row}{wrong}\n")).unwrap_err();
-        assert!(reported.to_string().contains("tof_correlation"), "{reported}");
+        assert!(
+            reported.to_string().contains("tof_correlation"),
+            "{reported}"
+        );
     }
 }

@@ -256,7 +256,10 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
     assert!(open.count() > 0, "{rows:?}");
     assert!(GaugeLaws::through(&rows).is_err());
     let reported = gauge.ambiguous(&rows).unwrap();
-    assert!(reported.contains("Branch ambiguous at 0.0759"), "{reported}");
+    assert!(
+        reported.contains("Branch ambiguous at 0.0759"),
+        "{reported}"
+    );
 }
 
 /// A ratio of peaks beside both times: a third equation for two numbers.

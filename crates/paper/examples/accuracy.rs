@@ -49,9 +49,10 @@ fn main() -> Result<()> {
         Some("steps") => by_step(),
         Some("rounding") => rounding(),
         Some("evaluates") => evaluates(),
-        Some(other) => {
-            Err(format!("`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing").into())
-        }
+        Some(other) => Err(format!(
+            "`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing"
+        )
+        .into()),
     }
 }
 

@@ -7,9 +7,9 @@
 
 mod evaluated;
 
+use evaluated::{Evaluated, Speed, TIMES, agreement, by_speed, evaluate, run};
 use hertzchain_measure::Options;
 use hertzchain_measure::signal::{Coverage, Method, Shape, coverage, median};
-use evaluated::{Evaluated, Speed, TIMES, agreement, by_speed, evaluate, run};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -157,7 +157,10 @@ fn share(of: Coverage) -> String {
 /// Means a speed against the model's curve, and against the shots' own times.
 fn against_model(shots: &[Evaluated], cases: &[&str]) {
     let curves = [
-        ("the model's of the chain in equilibrium", evaluated::COMPACT),
+        (
+            "the model's of the chain in equilibrium",
+            evaluated::COMPACT,
+        ),
         (
             "the model's of the chain with each shot's own gaps and loads",
             evaluated::HELD,

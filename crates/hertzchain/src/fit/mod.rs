@@ -1,19 +1,19 @@
 //! `fit`: times of flight to parameters.
 
+mod alternatives;
 mod checkpoint;
 mod limits;
 mod more;
 pub mod pulses;
 mod results;
-mod alternatives;
 mod tables;
 mod validation;
 
+pub use alternatives::{AlternativeModel, AlternativeModels, Unfitted};
 pub use checkpoint::{CHAIN, finished, leave, saved};
 pub use limits::{Limit, Limits};
 pub use more::{Curves, More, Sampled};
 pub use results::{inferred, joined, json, rows_json};
-pub use alternatives::{Unfitted, AlternativeModel, AlternativeModels};
 pub use tables::{Table, of_any as tables_of_any, tables};
 
 use crate::failure::Failure;
@@ -253,7 +253,11 @@ fn asked(arguments: &Arguments) -> Fitting {
 ///
 /// # Errors
 /// Options, data and model that do not fit together; what is in the way of a fit.
-pub fn fit(data: &Data, experiment: &Experiment, options: &Arguments) -> Result<FitResult, Failure> {
+pub fn fit(
+    data: &Data,
+    experiment: &Experiment,
+    options: &Arguments,
+) -> Result<FitResult, Failure> {
     let experiment = inference::in_case(experiment.clone(), &data.case)?;
     let experiment = inference::changed(experiment, &options.modelled.set)?;
     let model = inference::model(&experiment, &options.modelled, &options.freed)?;
@@ -274,7 +278,11 @@ pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitRes
 }
 
 /// The same, after so many attempts with less accurate curves.
-fn attempted(problem: CurveProblem, times: u32, arguments: &Arguments) -> Result<FitResult, Failure> {
+fn attempted(
+    problem: CurveProblem,
+    times: u32,
+    arguments: &Arguments,
+) -> Result<FitResult, Failure> {
     let fit = best_of_starts(&problem, 0, &asked(arguments))?;
     if let Some(finer) = finer(&problem, &fit, times) {
         return attempted(finer, times + 1, arguments);

@@ -299,7 +299,10 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
     let all = records.flat_map(|(at, record)| {
         (0..record.means_v.len()).map(move |channel| {
             let point = &fit_result.inferred.fit.point;
-            let columns = fit_result.problem.picture(point, at, channel).map_err(user)?;
+            let columns = fit_result
+                .problem
+                .picture(point, at, channel)
+                .map_err(user)?;
             Ok(Shown {
                 record,
                 channel,

@@ -1,9 +1,9 @@
 //! A fit as JSON, in SI.
 
-use super::more::{Curves, More};
 use super::alternatives::{AlternativeModel, AlternativeModels};
+use super::more::{Curves, More};
 use super::{FitResult, Inferred, Limit};
-use crate::inference::{assumed, held_loads, kept, references_json, widened};
+use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
 use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};

@@ -1,7 +1,7 @@
 //! A fit as tables (CSV), in SI: what `fit.json` holds, and the samples of a posterior.
 
-use super::more::{More, Sampled};
 use super::alternatives::AlternativeModels;
+use super::more::{More, Sampled};
 use super::{FitResult, Inferred};
 use crate::csv::{Cell, Csv, square};
 use hertzchain_infer::{
@@ -74,7 +74,10 @@ fn summary(fit_result: &Inferred) -> String {
             "jacobian_disagreement",
             fit.jacobian.worst_disagreement().into(),
         ),
-        ("singular_value_floor", fit_result.identifiability.floor.into()),
+        (
+            "singular_value_floor",
+            fit_result.identifiability.floor.into(),
+        ),
         (
             "combinations_determined",
             (fit.ending.converged())
@@ -268,7 +271,10 @@ fn comparison(alternatives: &AlternativeModels) -> String {
         let none = || [const { Cell::Empty }; 7];
         let [free, freedom, p, aic, aicc, bic, weight] =
             found.map_or_else(none, |found| evaluated(at, found));
-        let (name, chi_square) = (alternative.name.clone().into(), alternative.fit.chi_square().into());
+        let (name, chi_square) = (
+            alternative.name.clone().into(),
+            alternative.fit.chi_square().into(),
+        );
         let foretells = alternative.foretells.as_ref();
         let (mean, error) = (
             foretells.map(|f| f.mean).into(),

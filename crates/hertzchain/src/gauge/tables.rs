@@ -17,7 +17,12 @@ pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
         ("oils.csv", oils(run_gauge)),
     ];
     all.extend((!run_gauge.verdict.failed.is_empty()).then(|| ("failed.csv", failed(run_gauge))));
-    all.extend(run_gauge.laws.is_some().then(|| ("laws.csv", laws(run_gauge))));
+    all.extend(
+        run_gauge
+            .laws
+            .is_some()
+            .then(|| ("laws.csv", laws(run_gauge))),
+    );
     if let Some(form) = &run_gauge.form {
         all.push(("form.csv", form_laws(form)));
         all.push(("form-contacts.csv", form_contacts(form, run_gauge)));
@@ -66,7 +71,7 @@ fn dry(run_gauge: &GaugeResult) -> String {
 fn contacts(run_gauge: &GaugeResult) -> String {
     let titles = "line,speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,relaxation_time_s_error,ln_covariance,\
                   combination_exponent,combination_reference_s,taken,missing,branch,scan_complete";
-    let lines = gauged.rows.iter().flat_map(|row| match &row.contact {
+    let lines = run_gauge.rows.iter().flat_map(|row| match &row.contact {
         Err(why) => vec![missing(row, why)],
         Ok(contact) => pairs(row, contact),
     });
@@ -129,10 +134,10 @@ fn pair(row: &WetRow, pair: &Pair) -> Line {
 }
 
 /// One line an oil, nearest first.
-fn oils(gauged: &Gauged) -> String {
+fn oils(run_gauge: &GaugeResult) -> String {
     let titles =
         "name,distance,chi_square,freedom,probability,possible,farthest,farthest_standard_errors";
-    let own: Vec<&str> = gauged
+    let own: Vec<&str> = run_gauge
         .verdict
         .matches
         .first()
@@ -166,14 +171,14 @@ fn oils(gauged: &Gauged) -> String {
             .collect::<Vec<_>>()
     };
     let table = Csv::new(titles.chain(own));
-    table.with_all(&gauged.verdict.matches, line).text()
+    table.with_all(&run_gauge.verdict.matches, line).text()
 }
 
 /// One line an oil that could not be computed.
-fn failed(gauged: &Gauged) -> String {
+fn failed(run_gauge: &GaugeResult) -> String {
     let line = |(oil, why): &(String, String)| [oil.clone(), why.clone()];
     Csv::new(["name", "why"])
-        .with_all(&gauged.verdict.failed, line)
+        .with_all(&run_gauge.verdict.failed, line)
         .text()
 }
 
@@ -181,7 +186,7 @@ fn failed(gauged: &Gauged) -> String {
 const CALLED: [(&str, &str); 2] = [("stiffness", "N/m^1.5"), ("relaxation_time", "s")];
 
 /// One line a power law through values of single speeds.
-fn laws(gauged: &Gauged) -> String {
+fn laws(run_gauge: &GaugeResult) -> String {
     let titles =
         "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
     let line = |((name, unit), law): ((&str, &str), &SharedLaw)| -> [Cell; 7] {
@@ -195,7 +200,7 @@ fn laws(gauged: &Gauged) -> String {
             law.reduced_chi_square.into(),
         ]
     };
-    let both = gauged
+    let both = run_gauge
         .laws
         .iter()
         .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
@@ -223,7 +228,7 @@ fn form_laws(form: &PowerForm) -> String {
 }
 
 /// One line a speed: K and A by both laws of the whole curve.
-fn form_contacts(form: &PowerForm, gauged: &Gauged) -> String {
+fn form_contacts(form: &PowerForm, run_gauge: &GaugeResult) -> String {
     let titles = "speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,\
                   relaxation_time_s_error";
     let line = |speed: f64| {

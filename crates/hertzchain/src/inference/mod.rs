@@ -1,12 +1,12 @@
 //! From arguments to a problem of inference.
 
-mod unit_changes;
 mod known;
 mod reference;
+mod unit_changes;
 
-pub use unit_changes::{held_loads, unit_changes};
 pub use known::is_meant;
 pub use reference::{references, references_json};
+pub use unit_changes::{held_loads, unit_changes};
 
 use crate::failure::Failure;
 use crate::input;

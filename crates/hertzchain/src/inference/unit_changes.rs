@@ -57,7 +57,7 @@ pub fn held_loads(model: &Model) -> Option<String> {
     Some(format!(
         "the model's row is loaded with {} N at the wall and its track has friction: where the row was tapped or shot \
          before, friction holds up to {} N more or less than the model's equilibrium, which the wave does not know, and \
-         fit_result numbers may be off by more than their errors. {free} a row that was laid compact",
+         fitted numbers may be off by more than their errors. {free} a row that was laid compact",
         digits(load_n, 2),
         digits(held_n, 2)
     ))
@@ -104,7 +104,7 @@ fn paths<'a>(experiment: &Experiment, names: impl Iterator<Item = &'a str>) -> V
 fn follows(steering: &str, follower: &Place) -> String {
     format!(
         "{} and {steering}, on which its unit depends, are both free: its number is in the SI unit that \
-         follows from the fit_result {}, not in {}",
+         follows from the fitted {}, not in {}",
         follower.path,
         last(steering),
         follower.unit

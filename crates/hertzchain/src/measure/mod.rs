@@ -300,7 +300,7 @@ fn method(picking: &Picking) -> Method {
         MethodName::Correlation => Method::CrossCorrelation,
         MethodName::Shape => Method::MatchedShape {
             shape: Shape::cos_power(POWER),
-            width: FITTED_WIDTHS,
+            width: FIT_WIDTHS,
         },
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::failure;
 pub(crate) use crate::failure::{Failure, of_speed};
-use crate::inference::{assumed, held_loads, kept};
+use crate::inference::{assumed, held_loads, unit_changes};
 use crate::input::option;
 use crate::options::Given;
 use crate::options::{Assignment, CurveOptions as Measured};
@@ -51,7 +51,10 @@ pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
 
 /// Numbers that are kept while their unit changes, and loads that the model does not have.
 pub(crate) fn print_stored(model: &Model, sets: &[Assignment]) {
-    for kept in unit_changes(model, sets).into_iter().chain(held_loads(model)) {
+    for kept in unit_changes(model, sets)
+        .into_iter()
+        .chain(held_loads(model))
+    {
         note(&format!("warning: {kept}"));
     }
 }

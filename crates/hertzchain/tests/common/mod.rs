@@ -21,7 +21,8 @@ pub(crate) fn refused(arguments: &[&str]) -> String {
 pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = run(arguments);
     let reported = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| unreachable!("{error}: {reported}"))
+    serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| unreachable!("{error}: {reported}"))
 }
 
 pub(crate) fn folder(test: &str) -> PathBuf {

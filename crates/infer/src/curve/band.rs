@@ -22,11 +22,7 @@ impl CurveProblem {
     /// # Errors
     /// What is in the way of a shot at the optimum; where the model fails on both
     /// sides of it, standard errors are not numbers.
-    pub fn fit_curve(
-        &self,
-        fit: &Fit,
-        covariance: &Covariance,
-    ) -> Result<FitCurve, ModelError> {
+    pub fn fit_curve(&self, fit: &Fit, covariance: &Covariance) -> Result<FitCurve, ModelError> {
         let moved = |(at, sign): (usize, f64)| {
             let mut point = fit.point.clone();
             point[at] += sign * fit.jacobian.steps[at];

@@ -130,7 +130,7 @@ const FRICTION: &str = "track.friction";
 fn of_place(name: &str, place: Place) -> Result<Found, InferError> {
     if place.path == FRICTION {
         return InferError::input(format!(
-            "{name} can't be fit_result: the wave knows no friction, which acts between shots alone and decides how beads come \
+            "{name} can't be fitted: the wave knows no friction, which acts between shots alone and decides how beads come \
              to lie. No data that a fit takes can determine it; what it leaves behind are loads (preload, near_end.force, or \
              --own of `gauge`)"
         ));

@@ -142,8 +142,8 @@ impl Gauge {
         let minima = self.law_minima(&wet).map_err(about)?;
         let start = [&self.dry_fit.point[..], &minima[0].point].concat();
         let joint = self.both_curves(self.dry.clone(), wet, &start);
-        let fitted = fit(&joint, &accurate()).map_err(about)?;
-        let mut form = self.form(&joint, &fitted);
+        let fit_result = fit(&joint, &accurate()).map_err(about)?;
+        let mut form = self.form(&joint, &fit_result);
         form.others = others(&minima);
         Ok(form)
     }
@@ -181,8 +181,8 @@ impl Gauge {
         let count = dry.parameters().len();
         let own = self.wet_own(&wet.data().speeds_m_s());
         let laws = &wet.parameters()[self.common() + own.len()..];
-        let fitted = dry.parameters().iter().chain(&own).zip(start);
-        let mut parameters: Vec<Parameter> = fitted
+        let fit_result = dry.parameters().iter().chain(&own).zip(start);
+        let mut parameters: Vec<Parameter> = fit_result
             .map(|(parameter, value)| Parameter {
                 start: *value,
                 ..parameter.clone()
@@ -202,26 +202,26 @@ impl Gauge {
     }
 
     /// Laws and their errors of a fit to both curves.
-    fn form(&self, joint: &Joint, fitted: &Fit) -> PowerForm {
+    fn form(&self, joint: &Joint, fit_result: &Fit) -> PowerForm {
         let parameters = joint.parameters();
         let (dry, first) = (self.dry_fit.point.len(), parameters.len() - LAWS);
-        let covariance = Covariance::new(parameters, fitted);
+        let covariance = Covariance::new(parameters, fit_result);
         let label = |at: usize| joint.residual_label(at);
-        let open = Identifiability::new(parameters, fitted, label).unidentifiable;
+        let open = Identifiability::new(parameters, fit_result, label).unidentifiable;
         let own = (dry..first).map(|at| NuisanceParameter {
             parameter: parameters[at].clone(),
-            value: fitted.point[at],
+            value: fit_result.point[at],
             standard_error: covariance.sd[at],
         });
         let mut form = PowerForm {
-            values: laws_of(fitted),
-            covariance: of_logarithms(&covariance, &fitted.point[first..]),
-            chi_square: Goodness::new(joint, fitted).chi_square,
+            values: laws_of(fit_result),
+            covariance: of_logarithms(&covariance, &fit_result.point[first..]),
+            chi_square: Goodness::new(joint, fit_result).chi_square,
             largest_ln_sd: 0.0,
             others: Vec::new(),
             undetermined: open.into_iter().map(|direction| direction.words).collect(),
             own: own.collect(),
-            beside_laws: fitted.point[..first].to_vec(),
+            beside_laws: fit_result.point[..first].to_vec(),
         };
         let speeds = self.data.speeds_m_s().into_iter();
         let errors = speeds.flat_map(|speed| form.at(speed).ln_sd);

@@ -383,11 +383,13 @@ impl Gauge {
             iterations: 20,
             ..Fitting::default()
         };
-        let fitted = fit(&joint, &how)?;
+        let fit_result = fit(&joint, &how)?;
         let first = self.dry.residual_count();
-        let residuals = &fitted.residuals[first..];
-        let sd = Covariance::new(joint.parameters(), &fitted).sd;
-        let Some(largest) = largest_residual(&joint, &fitted, first..fitted.residuals.len()) else {
+        let residuals = &fit_result.residuals[first..];
+        let sd = Covariance::new(joint.parameters(), &fit_result).sd;
+        let Some(largest) =
+            largest_residual(&joint, &fit_result, first..fit_result.residuals.len())
+        else {
             return InferError::input("no wet number is checked by others");
         };
         if residuals.len() <= own.len() {

@@ -150,7 +150,10 @@ fn a_jump_in_times_is_told_where_it_is() {
     let rows: String = times.map(|t| format!("{t},{}\n", t % 7)).collect();
     let path = file(&folder, "jump.csv", &format!("t (us),a\n{rows}"));
     let reported = only_error(&path);
-    assert!(reported.contains("from sample 60, at 0.000059 s"), "{reported}");
+    assert!(
+        reported.contains("from sample 60, at 0.000059 s"),
+        "{reported}"
+    );
     assert!(
         reported.contains("by 4.0000 µs where steps of 1.0000 µs"),
         "{reported}"

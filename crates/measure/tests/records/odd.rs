@@ -142,7 +142,10 @@ fn single_cells_without_a_number_are_gaps_and_refuse_nothing() {
         .next()
         .unwrap()
         .unwrap_err();
-    assert!(reported.to_string().contains("line 202 is no row"), "{reported}");
+    assert!(
+        reported.to_string().contains("line 202 is no row"),
+        "{reported}"
+    );
 }
 
 #[test]
@@ -257,8 +260,14 @@ fn half_an_array_is_told_as_such_before_a_rate_is_asked_for() {
         .next()
         .unwrap()
         .unwrap_err();
-    assert!(matches!(reported, MeasureError::Truncated(..)), "{reported}");
-    assert!(reported.to_string().contains("3200 of 7200 bytes"), "{reported}");
+    assert!(
+        matches!(reported, MeasureError::Truncated(..)),
+        "{reported}"
+    );
+    assert!(
+        reported.to_string().contains("3200 of 7200 bytes"),
+        "{reported}"
+    );
 }
 
 #[test]

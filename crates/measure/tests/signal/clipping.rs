@@ -208,7 +208,10 @@ fn other_methods_use_the_flanks_or_say_why_they_cannot() {
         .flight
         .unwrap_err()
         .to_string();
-    assert!(reported.contains("wall") && reported.contains("clipped"), "{reported}");
+    assert!(
+        reported.contains("wall") && reported.contains("clipped"),
+        "{reported}"
+    );
 }
 
 #[test]

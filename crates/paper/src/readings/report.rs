@@ -176,7 +176,7 @@ fn closest(page: &mut String, scan: &Scan) {
         }
     };
     let _ = writeln!(page, "- Gained: {}.", or_none(names(scan, &gained)));
-    let _ = writeln!(page, "- Unfitted: {}.", or_none(names(scan, &lost)));
+    let _ = writeln!(page, "- Missing: {}.", or_none(names(scan, &lost)));
     let unmet = row.verdicts.iter().enumerate();
     let unmet: Vec<usize> = unmet
         .filter(|(_, v)| **v == Verdict::Fails)

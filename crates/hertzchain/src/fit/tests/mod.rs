@@ -7,7 +7,7 @@ use crate::options::parsed;
 const ROW: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,tof_reflected_s_error\n\
                    0.119052,0.0006708,0.000936197428,1.118e-07,0.00110372846,1.118e-07\n";
 
-fn of_row(more: &[&str]) -> Fitted {
+fn of_row(more: &[&str]) -> FitResult {
     let begin = ["row.csv", "--preset=pump", "--free=wet.K,wet.A"];
     let words = begin.iter().chain(more).map(|word| (*word).to_owned());
     let arguments: Arguments = parsed("fit", &words.collect::<Vec<_>>()).unwrap();
@@ -15,19 +15,19 @@ fn of_row(more: &[&str]) -> Fitted {
     let experiment = inference::experiment(&arguments.modelled, None).unwrap();
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed).unwrap();
     let problem = inference::problem(model, data, &arguments.freed).unwrap();
-    fitted(problem, &arguments).unwrap()
+    fit_result(problem, &arguments).unwrap()
 }
 
 #[test]
 fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
-    let reported = of_row(&[]).several_pairs().unwrap();
+    let reported = of_row(&[]).pair_warning().unwrap();
     assert!(
         reported.contains("--starts") && reported.contains("gauge"),
         "{reported}"
     );
     let bounds = ["--bounds=wet.K=5e9:2e10", "--bounds=wet.A=1e-7:1e-5"];
     let found = of_row(&[&bounds[..], &["--starts=10"]].concat());
-    assert_eq!(found.several_pairs(), None);
+    assert_eq!(found.pair_warning(), None);
     let minima = found.inferred.other_minima();
     let best = (&found.inferred.fit.point, 0);
     let others = minima.iter().map(|(start, _)| (&start.point, 1));

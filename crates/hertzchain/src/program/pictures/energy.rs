@@ -45,7 +45,12 @@ const PARTS: [Part; 8] = [
         (Colour::VERMILION, Dash::Dashed),
         true,
     ),
-    part("lost", dissipated_j, (Colour::GREEN, Dash::DashDotted), false),
+    part(
+        "lost",
+        dissipated_j,
+        (Colour::GREEN, Dash::DashDotted),
+        false,
+    ),
     part(
         "clipped",
         |b| b.clipped_j,

@@ -63,10 +63,14 @@ fn pace(problem: &CurveProblem, arguments: &Arguments) {
     }
 }
 
-fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result<(), Failure> {
-    folder.figure("fit", &pictures::fit(fitted))?;
-    let tables = fit::tables(fitted);
-    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
+fn write(
+    mut folder: Folder,
+    fit_result: &FitResult,
+    all: &serde_json::Value,
+) -> Result<(), Failure> {
+    folder.figure("fit", &pictures::fit(fit_result))?;
+    let tables = fit::tables(fit_result);
+    write_inferred(&mut folder, &fit_result.inferred, (all, &tables))?;
     let out = folder.path().to_owned();
     print::written(&folder.finish()?);
     fit::finished(&out);
@@ -76,16 +80,16 @@ fn write(mut folder: Folder, fitted: &Fitted, all: &serde_json::Value) -> Result
 /// Files that any fit has.
 fn write_inferred(
     folder: &mut Folder,
-    fitted: &Inferred,
+    fit_result: &Inferred,
     (all, tables): (&serde_json::Value, &[fit::Table]),
 ) -> Result<(), Failure> {
     folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(tables)?;
-    folder.figure("singular-values", &uncertainty::singular_values(fitted))?;
-    match &fitted.more {
+    folder.figure("singular-values", &uncertainty::singular_values(fit_result))?;
+    match &fit_result.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            folder.figure("profiles", &uncertainty::profiles(fitted, profiles))?;
+            folder.figure("profiles", &uncertainty::profiles(fit_result, profiles))?;
         }
         More::Sampled(sampled) => {
             folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;

@@ -49,7 +49,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| write(folder, &run_gauge, &all))
 }
 
-fn write(mut folder: Folder, run_gauge: &GaugeResult, all: &serde_json::Value) -> Result<(), Failure> {
+fn write(
+    mut folder: Folder,
+    run_gauge: &GaugeResult,
+    all: &serde_json::Value,
+) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(&gauge::tables(run_gauge))?;
     if run_gauge.form.is_some() || run_gauge.rows.iter().any(|row| row.contact.is_ok()) {

@@ -1,7 +1,7 @@
 //! `hertzchain merge`: shards of several machines put together.
 
 use super::campaign::failure;
-use super::sweep::{shard, reported};
+use super::sweep::{reported, shard};
 use crate::program::arguments::Merge as Arguments;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;

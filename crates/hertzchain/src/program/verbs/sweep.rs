@@ -1,8 +1,8 @@
 //! `hertzchain sweep`: times of flight against speed.
 
 mod fits;
-pub(crate) mod shard;
 pub(crate) mod reported;
+pub(crate) mod shard;
 
 use crate::json::SweepView;
 use crate::options::check_speeds;

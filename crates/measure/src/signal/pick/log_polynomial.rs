@@ -4,7 +4,7 @@ use super::clipping::Flanks;
 use super::polynomial::Top;
 use super::{ChannelView, Picked};
 use crate::signal::linear::{
-    PolynomialFit, MOST, NormalEquations, Optimum, Row, levenberg_marquardt, powers,
+    MOST, NormalEquations, Optimum, PolynomialFit, Row, levenberg_marquardt, powers,
 };
 use crate::signal::{Pulse, PulseKind};
 use std::array::from_fn;
@@ -367,12 +367,7 @@ impl BellData {
         squares.is_finite().then_some((normal, squares))
     }
 
-    fn polynomial(
-        &self,
-        optimum: &Optimum<Row>,
-        centre: f64,
-        half: f64,
-    ) -> Option<PolynomialFit> {
+    fn polynomial(&self, optimum: &Optimum<Row>, centre: f64, half: f64) -> Option<PolynomialFit> {
         let mut solution = optimum.normal.solve()?;
         solution.values = optimum.model;
         // What the samples, not the prior, determine.

@@ -30,7 +30,10 @@ wavfile.write("long.wav", 500000, (long * 32768).astype("int16"))
     }
     let wide = read(&folder.join("f8.wav"), &ReadOptions::default());
     let reported: Vec<String> = wide.map(|record| record.unwrap_err().to_string()).collect();
-    assert!(reported.len() == 1 && reported[0].contains("float32"), "{reported:?}");
+    assert!(
+        reported.len() == 1 && reported[0].contains("float32"),
+        "{reported:?}"
+    );
     assert_wave(&all(&folder.join("u1.wav"), &at_1_mhz())[0], 0, 0, 1.0);
     let cut = ReadOptions {
         parts: Parts::Shots(200),

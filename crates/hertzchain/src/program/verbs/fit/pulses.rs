@@ -1,7 +1,7 @@
 //! Whole pulses of recordings to parameters.
 
 use super::{report, show, write_inferred};
-use crate::fit::pulses::{Pulsed, Shown, REPORTED, fit_result, json, pulses_csv, recorded, shown};
+use crate::fit::pulses::{Pulsed, REPORTED, Shown, fit_result, json, pulses_csv, recorded, shown};
 use crate::fit::{finished, tables_of_any};
 use crate::inference;
 use crate::options::FitOptions as Arguments;
@@ -67,12 +67,12 @@ fn advice() -> Vec<String> {
     ]
 }
 
-fn write(mut folder: Folder, fitted: &Pulsed, all: &Value) -> Result<(), Failure> {
-    let shown = shown(fitted)?;
+fn write(mut folder: Folder, fit_result: &Pulsed, all: &Value) -> Result<(), Failure> {
+    let shown = shown(fit_result)?;
     folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
     folder.figure("pulses", &picture(&shown))?;
-    let tables = tables_of_any(&fitted.inferred);
-    write_inferred(&mut folder, &fitted.inferred, (all, &tables))?;
+    let tables = tables_of_any(&fit_result.inferred);
+    write_inferred(&mut folder, &fit_result.inferred, (all, &tables))?;
     let out = folder.path().to_owned();
     print::written(&folder.finish()?);
     finished(&out);

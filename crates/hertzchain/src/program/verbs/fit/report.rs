@@ -1,6 +1,6 @@
 //! A fit for people.
 
-use crate::fit::{Curves, FitResult, Inferred, Limit, More, AlternativeModels, Sampled};
+use crate::fit::{AlternativeModels, Curves, FitResult, Inferred, Limit, More, Sampled};
 use crate::inference::{references, widened};
 use crate::options::FitOptions as Arguments;
 use crate::program::format::{self, digits};
@@ -41,7 +41,10 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
         advice.map_or(Vec::new(), Advice::words)
     });
     text += &more(&fit_result.inferred);
-    text += &fit_result.alternatives.as_ref().map_or(String::new(), alternatives);
+    text += &fit_result
+        .alternatives
+        .as_ref()
+        .map_or(String::new(), alternatives);
     text += &warnings(&fit_result.inferred);
     let pairs = fit_result.pair_warning();
     text += &pairs.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
@@ -54,19 +57,22 @@ fn unit(fit_result: &FitResult) -> String {
         format!(
             "warning: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
              times of flight at speeds that many times slower\n",
-            fitted.problem.data().file
+            fit_result.problem.data().file
         )
     })
 }
 
 /// Correlations and how well the data are described.
-pub(super) fn described(fitted: &Inferred) -> String {
-    correlations(fitted) + &goodness(&fitted.goodness) + &robust(fitted) + &derivatives(fitted)
+pub(super) fn described(fit_result: &Inferred) -> String {
+    correlations(fit_result)
+        + &goodness(&fit_result.goodness)
+        + &robust(fit_result)
+        + &derivatives(fit_result)
 }
 
 /// Which loss was robust, and what it makes of the errors.
-fn robust(fitted: &Inferred) -> String {
-    let loss = fitted.fit.loss;
+fn robust(fit_result: &Inferred) -> String {
+    let loss = fit_result.fit.loss;
     if loss == Loss::Squares {
         return String::new();
     }
@@ -74,16 +80,16 @@ fn robust(fitted: &Inferred) -> String {
         "Robust loss ({}): {} of {} residuals, those beyond {} standard errors, count by their size; \
          the covariance is {} times that of least squares, but for what priors say\n",
         loss.name(),
-        fitted.fit.beyond_loss(),
-        fitted.fit.residuals.len(),
+        fit_result.fit.beyond_loss(),
+        fit_result.fit.residuals.len(),
         loss.scale(),
-        digits(fitted.covariance.loss_factor, 3)
+        digits(fit_result.covariance.loss_factor, 3)
     )
 }
 
 /// How far derivatives by two step sizes agree.
-fn derivatives(fitted: &Inferred) -> String {
-    let worst = fitted.fit.jacobian.worst_disagreement();
+fn derivatives(fit_result: &Inferred) -> String {
+    let worst = fit_result.fit.jacobian.worst_disagreement();
     format!(
         "Derivatives by two step sizes agree within {}\n",
         percent(worst)
@@ -91,30 +97,34 @@ fn derivatives(fitted: &Inferred) -> String {
 }
 
 /// What is doubtful about the minimum.
-pub(super) fn warnings(fitted: &Inferred) -> String {
-    let doubt = doubt(&fitted.fit.ending);
+pub(super) fn warnings(fit_result: &Inferred) -> String {
+    let doubt = doubt(&fit_result.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
-    let rough = rough(&fitted.parameters, &fitted.fit.jacobian);
+    let rough = rough(&fit_result.parameters, &fit_result.fit.jacobian);
     text += &rough.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
-    text += &misfit(&fitted.goodness).map_or(String::new(), |reported| format!("warning: {reported}.\n"));
-    if let Err(why) = &fitted.limits {
+    text += &misfit(&fit_result.goodness)
+        .map_or(String::new(), |reported| format!("warning: {reported}.\n"));
+    if let Err(why) = &fit_result.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
-    if fitted.fit.starts.len() > 1 {
-        let (agree, all) = (fitted.fit.agreeing_starts(), fitted.fit.starts.len());
+    if fit_result.fit.starts.len() > 1 {
+        let (agree, all) = (
+            fit_result.fit.agreeing_starts(),
+            fit_result.fit.starts.len(),
+        );
         text += &format!("{agree} of {all} starts came to this minimum.\n");
     }
-    text + &other_minima(fitted)
+    text + &other_minima(fit_result)
 }
 
 /// Other minima that fit as well: errors hold for one of them.
-fn other_minima(fitted: &Inferred) -> String {
-    let minima = fitted.other_minima();
+fn other_minima(fit_result: &Inferred) -> String {
+    let minima = fit_result.other_minima();
     if minima.is_empty() {
         return String::new();
     }
     let line = |(start, count): &(&Started, usize)| {
-        let values = fitted.parameters.iter().zip(&start.point);
+        let values = fit_result.parameters.iter().zip(&start.point);
         let values = values.map(|(parameter, value)| {
             format!(
                 "{} = {} {}",
@@ -126,7 +136,7 @@ fn other_minima(fitted: &Inferred) -> String {
         format!(
             "  {} (χ² higher by {}, {count} starts)\n",
             values.collect::<Vec<_>>().join(", ").trim_end(),
-            digits(2.0 * (start.cost - fitted.fit.cost), 2)
+            digits(2.0 * (start.cost - fit_result.fit.cost), 2)
         )
     };
     let lines: String = minima.iter().map(line).collect();
@@ -136,11 +146,11 @@ fn other_minima(fitted: &Inferred) -> String {
 }
 
 /// The parameters with their standard errors.
-pub(super) fn values(fitted: &Inferred) -> String {
-    let parameters = fitted.parameters.iter().enumerate();
+pub(super) fn values(fit_result: &Inferred) -> String {
+    let parameters = fit_result.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
-        let (value, sd) = (fitted.fit.point[at], fitted.standard_error(at));
-        let limit = fitted.limit(at).map(limit).unwrap_or_default();
+        let (value, sd) = (fit_result.fit.point[at], fit_result.standard_error(at));
+        let limit = fit_result.limit(at).map(limit).unwrap_or_default();
         (
             parameter.name.clone(),
             estimate(parameter, value, sd) + &limit,
@@ -172,12 +182,13 @@ const REPORTED: f64 = 0.5;
 /// Most of them that anybody reads.
 const PAIRS: usize = 6;
 
-fn correlations(fitted: &Inferred) -> String {
-    let name = |at: usize| &fitted.parameters[at].name;
-    let count = fitted.parameters.len();
+fn correlations(fit_result: &Inferred) -> String {
+    let name = |at: usize| &fit_result.parameters[at].name;
+    let count = fit_result.parameters.len();
     let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
-    let known = pairs.filter_map(|(i, j)| Some((i, j, fitted.covariance.correlation(i, j)?)));
-    let mut reported: Vec<(usize, usize, f64)> = known.filter(|pair| pair.2.abs() >= REPORTED).collect();
+    let known = pairs.filter_map(|(i, j)| Some((i, j, fit_result.covariance.correlation(i, j)?)));
+    let mut reported: Vec<(usize, usize, f64)> =
+        known.filter(|pair| pair.2.abs() >= REPORTED).collect();
     reported.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     let line = |(i, j, value): &(usize, usize, f64)| {
         let value = digits(*value, 3);
@@ -224,18 +235,18 @@ fn runs_text(runs: Runs) -> String {
 }
 
 /// The model's own error against the data's.
-fn accuracy(fitted: &Fitted) -> String {
-    let rows = fitted.problem.data().rows.iter();
+fn accuracy(fit_result: &FitResult) -> String {
+    let rows = fit_result.problem.data().rows.iter();
     let times = rows.flat_map(|row| row.values.iter().take(2).flatten());
     let relative = times.map(|time| time.sigma / time.value);
     let least = relative.fold(f64::INFINITY, f64::min);
     if !least.is_finite() {
         return String::new();
     }
-    let share = fitted.accuracy / least;
+    let share = fit_result.accuracy / least;
     let reported = format!(
         "The model's times of flight are right to {:.0e}, {} of the least standard error",
-        fitted.accuracy,
+        fit_result.accuracy,
         percent(share)
     );
     match share > MOST_SHARE {
@@ -245,14 +256,14 @@ fn accuracy(fitted: &Fitted) -> String {
 }
 
 /// What the data determine and what not, and what would help.
-pub(super) fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
-    let found = &fitted.identifiability;
-    if !fitted.fit.ending.converged() {
+pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
+    let found = &fit_result.identifiability;
+    if !fit_result.fit.ending.converged() {
         return "The fit found no minimum: what the data determine is not known where it ended.\n"
             .to_owned();
     }
     let (known, all) = (found.determined(), found.singular_values.len());
-    if known == all && fitted.goodness.is_rejected() {
+    if known == all && fit_result.goodness.is_rejected() {
         return String::new();
     }
     if known == all {
@@ -273,15 +284,15 @@ pub(super) fn determined(fitted: &Inferred, advice: &dyn Fn() -> Vec<String>) ->
 }
 
 /// Intervals of profiles or of a posterior.
-pub(super) fn more(fitted: &Inferred) -> String {
-    match &fitted.more {
+pub(super) fn more(fit_result: &Inferred) -> String {
+    match &fit_result.more {
         More::Nothing => String::new(),
-        More::Profiles(profiles) => intervals_of_profiles(fitted, profiles),
-        More::Sampled(sampled) => sampled_text(fitted, sampled),
+        More::Profiles(profiles) => intervals_of_profiles(fit_result, profiles),
+        More::Sampled(sampled) => sampled_text(fit_result, sampled),
     }
 }
 
-fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
+fn intervals_of_profiles(fit_result: &Inferred, profiles: &[Profile]) -> String {
     let end = |end: End| match end {
         End::At(value) => digits(value, 6),
         End::Bound(value) => format!("{} (its bound)", digits(value, 4)),
@@ -289,7 +300,7 @@ fn intervals_of_profiles(fitted: &Inferred, profiles: &[Profile]) -> String {
         End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
     };
     let row = |profile: &Profile| {
-        let name = fitted.parameters[profile.parameter].title();
+        let name = fit_result.parameters[profile.parameter].title();
         let ends = profile
             .intervals
             .iter()
@@ -316,7 +327,7 @@ fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
     }
 }
 
-fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
+fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
     let chain = &sampled.chain;
     let how = match &sampled.curves {
         Curves::Computed(None) => "every curve computed".to_owned(),
@@ -351,7 +362,7 @@ fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
             digits(found.effective, 3),
         ]
     };
-    let rows: Vec<Vec<String>> = fitted.parameters.iter().enumerate().map(row).collect();
+    let rows: Vec<Vec<String>> = fit_result.parameters.iter().enumerate().map(row).collect();
     let head = [
         "posterior",
         "median",
@@ -366,8 +377,8 @@ fn sampled_text(fitted: &Inferred, sampled: &Sampled) -> String {
 }
 
 /// Models of the same data.
-fn rivals(rivals: &Rivals) -> String {
-    let lost = rivals.lost.iter().map(|lost| {
+fn alternatives(alternatives: &AlternativeModels) -> String {
+    let lost = alternatives.lost.iter().map(|lost| {
         format!(
             "{} is far from the data: χ² = {} where it ended ({})\n",
             lost.name,
@@ -376,22 +387,23 @@ fn rivals(rivals: &Rivals) -> String {
         )
     });
     let lost: String = lost.collect();
-    let compared = rivals.comparison.as_ref();
-    compared.map_or(String::new(), |found| compared_text(rivals, found)) + &lost
+    let compared = alternatives.comparison.as_ref();
+    compared.map_or(String::new(), |found| compared_text(alternatives, found)) + &lost
 }
 
-fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
+fn compared_text(alternatives: &AlternativeModels, comparison: &Comparison) -> String {
     let row = |&at: &usize| {
-        let (rival, criteria) = (&rivals.all[at], &comparison.criteria[at]);
+        let (alternative, criteria) = (&alternatives.all[at], &comparison.criteria[at]);
         vec![
-            rival.name.clone(),
+            alternative.name.clone(),
             criteria.parameters.to_string(),
-            digits(rival.fit.chi_square(), 5),
+            digits(alternative.fit.chi_square(), 5),
             (criteria.chi_square).map_or("–".to_owned(), |found| found.freedom.to_string()),
             (criteria.chi_square).map_or("–".to_owned(), |found| digits(found.probability, 2)),
             digits(comparison.aicc_above_best[at], 4),
             digits(criteria.bic, 6),
-            (rival.foretells.as_ref()).map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
+            (alternative.foretells.as_ref())
+                .map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
         ]
     };
     let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
@@ -406,18 +418,21 @@ fn compared_text(rivals: &Rivals, comparison: &Comparison) -> String {
         "cross-validated score",
     ];
     let table = format::table(&head.map(str::to_owned), &rows);
-    let without = rivals.all.iter().filter(|rival| !rival.without.is_empty());
-    let without = without.map(|rival| {
-        let settings = rival.without.join(", ");
+    let without = alternatives
+        .all
+        .iter()
+        .filter(|alternative| !alternative.without.is_empty());
+    let without = without.map(|alternative| {
+        let settings = alternative.without.join(", ");
         format!(
             "{} has no such number: --set {settings} is left out there\n",
-            rival.name
+            alternative.name
         )
     });
     let without: String = without.collect();
-    let kept = rivals.all.iter().flat_map(|rival| {
-        let reported = |kept: &String| format!("{}: {kept}\n", rival.name);
-        rival.kept.iter().map(reported).collect::<Vec<_>>()
+    let kept = alternatives.all.iter().flat_map(|alternative| {
+        let reported = |kept: &String| format!("{}: {kept}\n", alternative.name);
+        alternative.kept.iter().map(reported).collect::<Vec<_>>()
     });
     let kept: String = kept.collect();
     format!("\n{table}{}\n{without}{kept}", comparison.sentence)

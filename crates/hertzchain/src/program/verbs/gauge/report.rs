@@ -42,7 +42,11 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         .gauge
         .ambiguous(&run_gauge.rows)
         .map_or(String::new(), |why| format!("{why}\n"));
-    let oils = match run_gauge.form.as_ref().is_some_and(PowerForm::is_sufficient) {
+    let oils = match run_gauge
+        .form
+        .as_ref()
+        .is_some_and(PowerForm::is_sufficient)
+    {
         true => "Known oils, by the power laws that each would give",
         false => "Known oils",
     };
@@ -85,7 +89,10 @@ fn dry(run_gauge: &GaugeResult) -> String {
 /// K in GN/m^1.5 and A in ns, with their errors.
 fn shown(pair: &Pair) -> [String; 2] {
     let [(k, k_sd), (a, a_sd)] = pair.estimates();
-    [reported(1e-9 * k, 1e-9 * k_sd), reported(1e9 * a, 1e9 * a_sd)]
+    [
+        reported(1e-9 * k, 1e-9 * k_sd),
+        reported(1e9 * a, 1e9 * a_sd),
+    ]
 }
 
 /// A positive number with its error, if it is known.
@@ -238,9 +245,9 @@ fn by_chance(probability: f64) -> String {
     }
 }
 
-fn matches(gauged: &Gauged) -> String {
-    let own = gauged.gauge.wet_own(&[]);
-    let rows = gauged.verdict.matches.iter().map(|found| {
+fn matches(run_gauge: &GaugeResult) -> String {
+    let own = run_gauge.gauge.wet_own(&[]);
+    let rows = run_gauge.verdict.matches.iter().map(|found| {
         let mut row = vec![
             found.oil.clone(),
             digits(found.distance, 3),

@@ -194,7 +194,9 @@ fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
             judgement(case, law)
         ),
         false => {
-            format!("{name}: {prefactor} µs · v^{exponent}, two speeds, which determine no errors\n")
+            format!(
+                "{name}: {prefactor} µs · v^{exponent}, two speeds, which determine no errors\n"
+            )
         }
     }
 }

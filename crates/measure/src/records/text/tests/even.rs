@@ -58,7 +58,10 @@ fn jitter_beyond_the_digits_is_borne_to_two_fifths_of_a_step() {
         even_interval(&times)
     };
     let reported = jittered(0.2e-6).unwrap();
-    assert!(reported.least_s < 1e-6 && reported.most_s > 1e-6, "{reported:?}");
+    assert!(
+        reported.least_s < 1e-6 && reported.most_s > 1e-6,
+        "{reported:?}"
+    );
     assert!(jittered(0.6e-6).is_none());
 }
 

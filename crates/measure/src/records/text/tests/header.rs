@@ -45,7 +45,7 @@ fn units_of_time_are_read_however_they_are_written() {
 }
 
 #[test]
-fn a_unit_that_no user_knows_is_named() {
+fn a_unit_that_no_user_knows_is_named() {
     for title in ["Time (shakes)", "Zeit in shakes", "t [shakes]"] {
         let found = header(&format!("{title};a\n0.5;1\n1;2\n1.5;4\n"));
         assert_eq!(found.time, Some((0, None)), "{title}");
@@ -55,7 +55,7 @@ fn a_unit_that_no user_knows_is_named() {
 }
 
 #[test]
-fn counts_are_times_where_a caller_says_what_one_is() {
+fn counts_are_times_where_a_caller_says_what_one_is() {
     for text in ["0,5.5\n1,7.5\n2,1.5\n3,3.5\n", "n,a\n0,5\n1,7\n2,1\n3,3\n"] {
         let dialect = Dialect::of(text).unwrap();
         assert_eq!(TextHeader::of(text, &dialect, false).time, None);

@@ -20,6 +20,14 @@ fn no_error_is_quoted_below_the_accuracy_of_the_times() {
         "{}",
         reported(1e-6)
     );
-    assert!(reported(1e-6).contains("^(-0.20000000 ± 8."), "{}", reported(1e-6));
-    assert!(reported(1e-3).contains("(630.84 ± 0."), "{}", reported(1e-3));
+    assert!(
+        reported(1e-6).contains("^(-0.20000000 ± 8."),
+        "{}",
+        reported(1e-6)
+    );
+    assert!(
+        reported(1e-3).contains("(630.84 ± 0."),
+        "{}",
+        reported(1e-3)
+    );
 }

@@ -2,7 +2,7 @@
 
 use super::{asked, best_of_starts, finer};
 use crate::failure::Failure;
-use crate::inference::{self, is_meant, kept, user, wanted};
+use crate::inference::{self, is_meant, unit_changes, user, wanted};
 use crate::options::{
     Accuracy, Against, Assignment, FitOptions as Arguments, ParameterOptions as Freed,
 };
@@ -61,7 +61,12 @@ pub(super) fn alternatives(
         problem.model().experiment().name(),
         arguments.freed.free.join(", ")
     );
-    let mut all = vec![alternative(name, (problem, kept), own.clone(), arguments.seed)?];
+    let mut all = vec![alternative(
+        name,
+        (problem, kept),
+        own.clone(),
+        arguments.seed,
+    )?];
     let mut lost = Vec::new();
     for against in &arguments.against {
         match other(against, problem, arguments)? {
@@ -175,8 +180,8 @@ fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Exper
         let number = of_own.filter(|number| is_of(&given.name, number));
         let number = number.max_by_key(|number| number.len())?;
         let of_rival = free.iter().map(|name| plain(name));
-        let mut same =
-            of_rival.filter(|other| *other == number || same_number((own, number), (alternative, other)));
+        let mut same = of_rival
+            .filter(|other| *other == number || same_number((own, number), (alternative, other)));
         Some(format!("{}{}", same.next()?, &given.name[number.len()..]))
     };
     let all = |given: &[Assignment]| {
@@ -268,5 +273,5 @@ fn enough(speeds: usize, free: usize) -> bool {
 const PARTS: usize = 5;
 
 #[cfg(test)]
-#[path = "tests/rivals.rs"]
+#[path = "tests/alternatives.rs"]
 mod tests;
