@@ -167,7 +167,7 @@ pub(crate) fn levenberg_marquardt<M>(
 }
 
 /// A polynomial in u = (sample − centre)/half, fitted where |u| ≤ 1.
-pub(crate) struct PolynomialFit {
+pub(crate) struct LocalPolynomial {
     pub(crate) centre: f64,
     pub(crate) half: f64,
     pub(crate) degree: usize,
@@ -185,7 +185,7 @@ pub(crate) struct Derivatives {
     pub(crate) curvature: f64,
 }
 
-impl PolynomialFit {
+impl LocalPolynomial {
     /// Least squares through `values`, the first of which is sample `first`.
     ///
     /// The degree is lowered where there are too few samples for it. `None` if fewer than three

@@ -4,7 +4,7 @@ use super::clipping::Flanks;
 use super::polynomial::Top;
 use super::{ChannelView, Picked};
 use crate::signal::linear::{
-    MOST, NormalEquations, Optimum, PolynomialFit, Row, levenberg_marquardt, powers,
+    LocalPolynomial, MOST, NormalEquations, Optimum, Row, levenberg_marquardt, powers,
 };
 use crate::signal::{Pulse, PulseKind};
 use std::array::from_fn;
@@ -207,7 +207,7 @@ fn inexact(pulse: &Pulse) -> f64 {
 fn pick_at(
     view: &ChannelView<'_>,
     pulse: &Pulse,
-    fit: &PolynomialFit,
+    fit: &LocalPolynomial,
     u: f64,
     prior: &ShapePrior,
 ) -> Option<(Picked, bool)> {
@@ -241,7 +241,7 @@ fn pick_at(
 }
 
 /// From u to the place furthest at which noise may have made the logarithm the lower.
-fn reach(fit: &PolynomialFit, u: f64, noise: f64) -> f64 {
+fn reach(fit: &LocalPolynomial, u: f64, noise: f64) -> f64 {
     const STEPS: i32 = 24;
     let (top, row) = (fit.at(u).value, powers(u));
     let may_be_top = |v: &f64| {
@@ -262,7 +262,7 @@ fn fit(
     centre: f64,
     window: &BellWindow,
     noise: f64,
-) -> Option<(PolynomialFit, f64)> {
+) -> Option<(LocalPolynomial, f64)> {
     let half = window.half;
     let (first, heights) = view.window(centre - half, centre + half);
     let point = |(i, height): (usize, f64)| {
@@ -367,7 +367,12 @@ impl BellData {
         squares.is_finite().then_some((normal, squares))
     }
 
-    fn polynomial(&self, optimum: &Optimum<Row>, centre: f64, half: f64) -> Option<PolynomialFit> {
+    fn polynomial(
+        &self,
+        optimum: &Optimum<Row>,
+        centre: f64,
+        half: f64,
+    ) -> Option<LocalPolynomial> {
         let mut solution = optimum.normal.solve()?;
         solution.values = optimum.model;
         // What the samples, not the prior, determine.
@@ -377,7 +382,7 @@ impl BellData {
         let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
         let residuals = self.residuals(&optimum.model);
         let squares: f64 = residuals.map(|(residual, _)| residual * residual).sum();
-        Some(PolynomialFit {
+        Some(LocalPolynomial {
             centre,
             half,
             degree: self.degree,
@@ -399,7 +404,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(bell: &PolynomialFit, [a, b]: [f64; 2], u: f64) -> Self {
+    fn new(bell: &LocalPolynomial, [a, b]: [f64; 2], u: f64) -> Self {
         let (a, b) = (a / bell.half, b / bell.half.powi(2));
         let rows = derivative_rows(u);
         let of = |row: &Row| -> f64 {
@@ -421,7 +426,7 @@ impl Slope {
     }
 
     /// Where it falls through 0, from the bell's own maximum on.
-    fn zero(bell: &PolynomialFit, inverse: [f64; 2], from: f64) -> Option<f64> {
+    fn zero(bell: &LocalPolynomial, inverse: [f64; 2], from: f64) -> Option<f64> {
         let mut u = from;
         for _ in 0..40 {
             let at = Self::new(bell, inverse, u);

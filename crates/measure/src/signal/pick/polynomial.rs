@@ -3,7 +3,7 @@
 use super::{ChannelView, Picked, Systematic};
 use crate::error::MeasureError;
 use crate::signal::Pulse;
-use crate::signal::linear::PolynomialFit;
+use crate::signal::linear::LocalPolynomial;
 use std::f64::consts::LN_2;
 
 /// Degree and width tried, in this order, where noise leaves what was asked for
@@ -51,7 +51,7 @@ impl Top {
         &self,
         view: &ChannelView<'_>,
         pulse: &Pulse,
-        fit: &PolynomialFit,
+        fit: &LocalPolynomial,
         u: f64,
     ) -> Picked {
         let noise = self.noise;
@@ -99,7 +99,7 @@ pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Pic
     Ok(Picked { time_s, ..picked })
 }
 
-fn pick_at(view: &ChannelView<'_>, pulse: &Pulse, fit: &PolynomialFit, u: f64) -> Picked {
+fn pick_at(view: &ChannelView<'_>, pulse: &Pulse, fit: &LocalPolynomial, u: f64) -> Picked {
     let (at, variances) = (fit.at(u), fit.variances(u));
     let top = Top {
         noise: view.broad_noise(pulse),
@@ -121,14 +121,14 @@ fn fit_maximum(
     pulse: &Pulse,
     degree: usize,
     length: f64,
-) -> Option<(PolynomialFit, f64)> {
+) -> Option<(LocalPolynomial, f64)> {
     let half = (0.5 * length).max(2.0);
     let reach = 2.0 * half + 2.0;
     let begun = pulse.at as f64;
     let (first, heights) = view.window(begun - reach, begun + reach);
     let mut centre = begun;
     for _ in 0..6 {
-        let fit = PolynomialFit::through(&heights, first as f64, centre, half, degree)?;
+        let fit = LocalPolynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.maximum()?;
         let next = fit.sample(u).round();
         if next == centre {
@@ -140,7 +140,7 @@ fn fit_maximum(
         centre = next;
     }
     // Two neighbouring centres that point at each other: either will do.
-    let fit = PolynomialFit::through(&heights, first as f64, centre, half, degree)?;
+    let fit = LocalPolynomial::through(&heights, first as f64, centre, half, degree)?;
     let u = fit.maximum()?;
     Some((fit, u))
 }
@@ -223,16 +223,16 @@ fn fit_crossing(
     pulse: &Pulse,
     rough: f64,
     threshold: f64,
-) -> Option<(PolynomialFit, f64)> {
+) -> Option<(LocalPolynomial, f64)> {
     let half = (FLANK * pulse.width_samples).max(2.0);
     let (first, heights) = view.window(rough - 3.0 * half, rough + 3.0 * half);
     let through = |centre, half, degree| {
-        let fit = PolynomialFit::through(&heights, first as f64, centre, half, degree)?;
+        let fit = LocalPolynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.rise_through(threshold)?;
         Some((fit, u))
     };
     // A second time about the place just found, for a window that noise did not choose.
-    let again = |(fit, u): (PolynomialFit, f64), half, degree| {
+    let again = |(fit, u): (LocalPolynomial, f64), half, degree| {
         let centre = fit.sample(u);
         through(centre, half, degree).unwrap_or((fit, u))
     };
