@@ -45,7 +45,7 @@ def write(folder: Path) -> None:
 
 
 def complete(_app: Any, page: str, source: list[str]) -> None:
-    """Turns [Key2015] into a citation, and links that leave docs/ into names of files."""
+    """Turns a key in brackets into a citation, and links that leave docs/ into names of files."""
     parts = re.split(r"(^```.*?^```$)", source[0], flags=re.MULTILINE | re.DOTALL)
     source[0] = "".join(text if text.startswith("```") else completed(text) for text in parts)
 
