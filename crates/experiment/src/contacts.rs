@@ -134,7 +134,7 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<FileProblem> {
         match read(parameter) {
             _ if unsound.iter().copied().any(|other| steers(&other)) => {}
             Some(read) => problems.extend(read.err()),
-            None if unknown.iter().any(|entry| misspelt(entry)) => {}
+            None if unknown.iter().any(misspelt) => {}
             None => problems.push(missing(parameter, row, node, units)),
         }
     }

@@ -378,7 +378,7 @@ impl<'a> Drawing<'a> {
                 let (post, end) = (self.start - 10.0, self.start + 0.32 * r);
                 block(svg, (post - 1.6, y - 1.8), (1.6, 3.6), INK);
                 let turn = |i: u32| {
-                    let side = if i % 2 == 0 { -1.5 } else { 1.5 };
+                    let side = if i.is_multiple_of(2) { -1.5 } else { 1.5 };
                     (post + (end - post) / 6.0 * (f64::from(i) + 0.5), y + side)
                 };
                 let turns: Vec<(f64, f64)> = (0..6).map(turn).collect();
