@@ -60,8 +60,9 @@ def cited(found: re.Match[str], role: str) -> str:
 
 
 def complete_docstring(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: list[str]) -> None:
-    """The same for docstrings, which are reStructuredText."""
-    lines[:] = [re.sub(r"\[(\w+\d{4})\]", lambda found: cited(found, ":cite:p:"), line) for line in lines]
+    """The same for docstrings, which are reStructuredText: there a name that ends in `_` would be a link."""
+    named = (re.sub(r"\b(?:options\.)?Path_(?!\w)", "path", line) for line in lines)
+    lines[:] = [re.sub(r"\[(\w+\d{4})\]", lambda found: cited(found, ":cite:p:"), line) for line in named]
 
 
 def laws() -> str:

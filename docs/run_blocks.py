@@ -42,7 +42,7 @@ PIECE = re.compile(
 )
 NUMBER = re.compile(r"[-+−]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 # Beginnings of numbers before `...`, numbers, spaces, all else.
-PIECES = re.compile(rf"\d[\d.]*\.{{3}}|\.{{3}}|{NUMBER.pattern}|\s+|.")
+PIECES = re.compile(rf"[-+−]?\d[\d.]*\.{{3}}|\.{{3}}|{NUMBER.pattern}|\s+|.")
 # A block that takes longer than this is no block for a reader to wait for.
 LONGEST_S = 600
 # The namespace of a page's Python blocks lives in one process, which gets a block at a time.
@@ -148,7 +148,8 @@ class Page:
                 env=self.environment,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
+                # Libraries write there that a cache is built; a traceback goes to standard output.
+                stderr=subprocess.DEVNULL,
                 text=True,
             )
         assert self.python.stdin and self.python.stdout
