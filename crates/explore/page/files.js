@@ -38,6 +38,19 @@ function standalone(chart) {
   return copy;
 }
 
+/** Names and colours of stacked parts, in a line that ends at a place. */
+function keys(series, right, y) {
+  const group = svg("g");
+  let x = right;
+  for (const one of series) {
+    const width = one.name.length * 5.6;
+    group.append(svg("text", { x, y, "text-anchor": "end", "font-size": 10, "font-family": "system-ui, sans-serif", fill: colour("soft") }, one.name));
+    group.append(svg("rect", { x: x - width - 12, y: y - 8, width: 8, height: 8, rx: 2, fill: one.colour }));
+    x -= width + 22;
+  }
+  return group;
+}
+
 /** All figures of the page as one SVG. */
 export function figures(state, plots, row) {
   const charts = [[plots.signals, "Signals"], [plots.curve, "Time of flight against speed"], [plots.spacetime, "Contact forces in space and time"], [plots.energy, "Where the energy is"]];
@@ -62,6 +75,7 @@ export function figures(state, plots, row) {
       root.append(svg("image", { x: x + 54, y: y + 32, width: inner, height: deep, preserveAspectRatio: "none", href: plots.map.toDataURL("image/png") }));
     }
     root.append(copy);
+    if (chart === plots.energy) root.append(keys(chart.spec?.series ?? [], x + chart.size.width, y));
   });
   return new XMLSerializer().serializeToString(root);
 }

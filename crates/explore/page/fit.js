@@ -206,7 +206,7 @@ export class Fit {
     for (const words of found.would_separate ?? []) parts.push(html("p", { class: "hint" }, words));
     if (parameters.length > 1) {
       const body = correlation.map((row, at) => html("tr", {}, [html("th", { scope: "row" }, String(at + 1)), ...row.map((value) => html("td", { class: "n" }, value === null ? "–" : plain(value, 3)))]));
-      parts.push(html("h3", {}, "Correlation"), html("table", { class: "result" }, [head(["", ...parameters.map((_, at) => String(at + 1))]), html("tbody", {}, body)]));
+      parts.push(html("h3", {}, "Correlation"), html("table", { class: "result" }, [head(["Number", ...parameters.map((_, at) => String(at + 1))]), html("tbody", {}, body)]));
     }
     const plot = html("div", { class: "plot" });
     parts.push(html("h3", {}, "Residuals"), plot, html("div", { class: "row" }, html("button", { type: "button", onclick: () => this.adopt(found) }, "Take these values over into the experiment")));

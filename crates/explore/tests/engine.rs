@@ -103,7 +103,10 @@ fn an_edit_changes_its_value_and_keeps_comments() {
         json!(["contacts", 0, "laws", 2, "coefficient"]),
         json!("80 kg s/m^2"),
     );
-    assert_eq!(edited["text"], text("dry").replace("77 kg", "80 kg"));
+    assert_eq!(
+        edited["text"],
+        text("dry").replace("coefficient = \"77 kg", "coefficient = \"80 kg")
+    );
     let gap = json!([{ "contact": 20, "gap": "10 um" }]);
     assert_eq!(edit(json!(["gaps"]), gap)["mistakes"], json!([]));
     let push = json!({ "push": "constant", "force": "30 N" });
