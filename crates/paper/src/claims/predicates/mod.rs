@@ -289,9 +289,12 @@ fn tof_falls(claim: &Claim, evidence: &Evidence) -> Finding {
     rises(claim, evidence, &quantities.collect::<Vec<_>>())
 }
 
+/// A pulse and the height of its peak in N.
+type NamedPeak = (&'static str, fn(&Point) -> f64);
+
 /// Between neighbouring speeds every peak rises by more than the threshold.
 fn peaks_rise(claim: &Claim, evidence: &Evidence) -> Finding {
-    let peaks: [(&str, fn(&Point) -> f64); 3] = [
+    let peaks: [NamedPeak; 3] = [
         ("sensor peak", |p| p.sensor_peak_n),
         ("wall peak", |p| p.wall_peak_n),
         ("reflected peak", |p| p.returning_peak_n),
